@@ -1,0 +1,15 @@
+#!/usr/bin/env bash
+# Installs the Debian packages that the build (and, with --tests, the tests) needs and that are not there yet.
+set -euo pipefail
+packages=(g++ cmake ninja-build pkg-config libopenimageio-dev libopenexr-dev libopencolorio-dev libcli11-dev libtbb-dev
+  libeigen3-dev nlohmann-json3-dev libfmt-dev)
+[ "${1-}" != --tests ] || packages+=(libgtest-dev libgmock-dev libbenchmark-dev openimageio-tools clang-format clang-tidy)
+missing=()
+for package in "${packages[@]}"; do
+  dpkg-query -W -f='${Status}' "$package" 2>/dev/null | grep -q 'ok installed' || missing+=("$package")
+done
+[ ${#missing[@]} -gt 0 ] || exit 0
+echo "installing ${missing[*]}"
+sudo=$([ "$(id -u)" -eq 0 ] || echo sudo)
+$sudo apt-get update -qq
+DEBIAN_FRONTEND=noninteractive $sudo apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null

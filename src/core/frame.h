@@ -1,0 +1,44 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/image.h"
+
+namespace polyrecon {
+
+/// A pass of a Monte Carlo render: per-pixel means, and what is known of their noise.
+struct Pass {
+  std::string name;  ///< Layer name as in the file, without a channel: "ViewLayer.Combined".
+  Image mean;        ///< 1 or 3 channels.
+  Image variance;    ///< Variance of the mean, same shape; empty where unknown.
+  Image half_a;      ///< Means over two independent halves of the samples; both there or both empty.
+  Image half_b;
+
+  bool has_halves() const { return !half_a.empty(); }
+};
+
+enum class FeatureKind { Normal, Albedo, Depth, Visibility };
+
+/// A feature f of the local model (2): normal and albedo have 3 channels, depth and visibility 1.
+struct Feature {
+  FeatureKind kind = FeatureKind::Normal;
+  Pass pass;
+};
+
+/// One view layer of one frame, as the reconstruction sees it: linear radiance, pixel (0, 0) at the upper left corner
+/// of the data window. All images have the same width and height.
+struct Frame {
+  Rect data_window;               ///< Where the pixels stand in the file's coordinates.
+  Pass beauty;                    ///< y of equation (1), 3 channels.
+  std::vector<Feature> features;  ///< f of equation (2).
+  std::vector<Pass> aovs;         ///< Further colour layers to be reconstructed with the beauty's windows, 3 channels.
+  Pass prior;                     ///< An already denoised beauty; prior.mean is empty where there is none.
+  Image alpha;                    ///< 1 channel; empty where there is none.
+  Image sample_count;             ///< Samples per pixel, 1 channel; empty where unknown.
+
+  int width() const { return beauty.mean.width(); }
+  int height() const { return beauty.mean.height(); }
+};
+
+}  // namespace polyrecon

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "core/real.h"
+#include "core/rect.h"
+
+namespace polyrecon {
+
+/// A planar image: channels() planes, each height() rows of width() samples, rows without padding.
+/// A default-constructed Image is empty and stands for "this pass is not there".
+class Image {
+ public:
+  Image() = default;
+  Image(int width, int height, int channels, Real fill = 0);
+
+  int width() const { return width_; }
+  int height() const { return height_; }
+  int channels() const { return channels_; }
+  bool empty() const { return samples_.empty(); }
+  Rect bounds() const { return {0, 0, width_, height_}; }
+  /// Number of pixels, and so the distance between two planes.
+  std::size_t pixels() const { return static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_); }
+  std::size_t index(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
+  }
+
+  Real* plane(int c) { return samples_.data() + static_cast<std::size_t>(c) * pixels(); }
+  const Real* plane(int c) const { return samples_.data() + static_cast<std::size_t>(c) * pixels(); }
+  Real* row(int c, int y) { return plane(c) + index(0, y); }
+  const Real* row(int c, int y) const { return plane(c) + index(0, y); }
+  Real& at(int x, int y, int c) { return plane(c)[index(x, y)]; }
+  Real at(int x, int y, int c) const { return plane(c)[index(x, y)]; }
+
+  bool same_shape(const Image& other) const {
+    return width_ == other.width_ && height_ == other.height_ && channels_ == other.channels_;
+  }
+
+ private:
+  int width_ = 0, height_ = 0, channels_ = 0;
+  std::vector<Real> samples_;
+};
+
+/// The part of image inside r, which must lie within its bounds. An empty image stays empty.
+Image crop(const Image& image, const Rect& r);
+
+/// Copies the part `from` of source to the place (x, y) of target; same number of channels.
+void paste(const Image& source, const Rect& from, Image& target, int x, int y);
+
+}  // namespace polyrecon

@@ -1,0 +1,37 @@
+#include "core/parallel.h"
+
+#include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
+
+#include <memory>
+#include <vector>
+
+#include "core/error.h"
+
+namespace polyrecon {
+
+void parallel_for(std::size_t count, Progress& progress, const std::function<void(std::size_t)>& body) {
+  tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
+    if (progress.cancelled()) throw Error(ExitCode::Interrupted, "interrupted");
+    body(i);
+    progress.advance(1);
+  });
+}
+
+double ordered_sum(std::size_t count, const std::function<double(std::size_t)>& term) {
+  std::vector<double> terms(count);
+  tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) { terms[i] = term(i); });
+  double sum = 0;
+  for (const double t : terms) sum += t;
+  return sum;
+}
+
+void set_thread_limit(int threads) {
+  static std::unique_ptr<tbb::global_control> limit;
+  limit.reset();
+  if (threads > 0)
+    limit = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
+                                                  static_cast<std::size_t>(threads));
+}
+
+}  // namespace polyrecon

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <vector>
+
+#include "core/frame.h"
+#include "core/progress.h"
+#include "estimate/error_map.h"
+#include "pipeline/params.h"
+#include "pipeline/report.h"
+
+namespace polyrecon {
+
+/// What comes out of a frame; all images have the frame's width and height.
+struct Result {
+  Image beauty;             ///< 3 channels, linear radiance.
+  std::vector<Image> aovs;  ///< In the order of Frame::aovs, 3 channels each.
+  Image alpha;              ///< 1 channel; empty where the frame has none.
+  ErrorMap error;           ///< How wrong each pixel of beauty may still be.
+  Image order;              ///< 1 channel: the order k of equation (7) as blended from the windows that cover a pixel.
+  Report report;
+};
+
+/// The whole method on one frame: reads like the abstract of Moon et al. 2016. Frames that need more memory than
+/// params.max_memory are worked in tiles, with the same result to the bit.
+/// Throws Error{BadInput} where the frame holds nothing to work on (no finite beauty pixel), Error{OutOfMemory} where
+/// not even the smallest tile fits, Error{Interrupted} when progress asks to stop.
+Result reconstruct(const Frame& frame, const Params& params, Progress& progress);
+
+}  // namespace polyrecon

@@ -1,0 +1,19 @@
+# What the library is built on; included by the build and by the installed package (it is static: its users link these).
+find_package(Eigen3 REQUIRED)
+find_package(TBB REQUIRED)
+find_package(OpenEXR CONFIG REQUIRED)
+find_package(OpenImageIO REQUIRED)
+find_package(PkgConfig REQUIRED)
+pkg_check_modules(OpenColorIO REQUIRED IMPORTED_TARGET OpenColorIO)  # Debian ships no CMake package of it
+find_package(fmt CONFIG REQUIRED)
+find_package(nlohmann_json CONFIG REQUIRED)
+
+# Debian's OpenImageIO names OpenCV's headers, which its own headers do not need, whether they are installed or not.
+get_target_property(oiio_includes OpenImageIO::OpenImageIO INTERFACE_INCLUDE_DIRECTORIES)
+set(existing_includes "")
+foreach(folder IN LISTS oiio_includes)
+  if(EXISTS "${folder}")
+    list(APPEND existing_includes "${folder}")
+  endif()
+endforeach()
+set_target_properties(OpenImageIO::OpenImageIO PROPERTIES INTERFACE_INCLUDE_DIRECTORIES "${existing_includes}")
