@@ -283,21 +283,22 @@ std::vector<BlendedFit> fit_and_blend(const FitSource& source, const std::vector
   Blending b{source, params, BasisLayout(source.features->channels(), params.max_order), counters, {}};
   for (std::size_t h = 0; h < params.bandwidths.size(); ++h) b.planes.emplace_back(width, height, source.response->channels());
   const auto needed = reached(active, width, height, params.radius);
-  const auto on_grid = [&](int x, int y) { return x % params.stride == 0 && y % params.stride == 0; };
-  sweep(b, progress, [&](int x, int y) { return on_grid(x, y) && needed[source.response->index(x, y)]; });
-  if (params.stride > 1) {
-    // Pixels that only unlike centres cover would get a bad blend: they become centres themselves.
-    const std::size_t widest = static_cast<std::size_t>(
-        std::max_element(params.bandwidths.begin(), params.bandwidths.end()) - params.bandwidths.begin());
-    std::vector<unsigned char> lonely(active.size(), 0);
+  const std::size_t widest = static_cast<std::size_t>(
+      std::max_element(params.bandwidths.begin(), params.bandwidths.end()) - params.bandwidths.begin());
+  // A coarse lattice of centres first; then, on ever finer ones, pixels that only unlike centres cover so far: they would get
+  // a bad blend, and become centres themselves.
+  std::vector<unsigned char> is_center(active.size(), 0), done(active.size(), 0);
+  for (int step = params.stride; step >= 1; step /= 2) {
+    const BlendPlane& plane = b.planes[widest];
     for (int y = 0; y < height; ++y)
       for (int x = 0; x < width; ++x) {
-        const BlendPlane& plane = b.planes[widest];
         const std::size_t i = source.response->index(x, y);
-        lonely[i] = active[i] && !on_grid(x, y) &&
-                    static_cast<double>(plane.sums[(i + 1) * plane.channels - 1]) < params.coverage;
+        const bool on_lattice = x % step == 0 && y % step == 0;
+        const bool lonely = static_cast<double>(plane.sums[(i + 1) * plane.channels - 1]) < params.coverage;
+        is_center[i] = on_lattice && !done[i] && (step == params.stride ? needed[i] : active[i] && lonely);
+        done[i] |= is_center[i];
       }
-    sweep(b, progress, [&](int x, int y) { return lonely[source.response->index(x, y)] != 0; });
+    sweep(b, progress, [&](int x, int y) { return is_center[source.response->index(x, y)] != 0; });
   }
   std::vector<BlendedFit> out;
   for (BlendPlane& plane : b.planes) out.push_back(normalise(plane, *source.response, active, counters));
