@@ -90,6 +90,29 @@ TEST(PatchDistances, AreTheirDefinitionWhereCentresAreSparse) {
     check(noisy_pictures(), {0, width - 1, 0, width - 1, 6}, {0, 0, height - 1, height - 1, 5}, 3, patch_radius);
 }
 
+/// Wide enough for the vector units: there a compiler that fuses products and sums has more than one way to.
+TEST(PatchDistances, HaveTheSameBitsWhetherCentresAreDenseOrSparse) {
+  test::Random random(4);
+  const Image guide = image_of(48, 40, 3, [&](int, int, int) { return 1 + 0.2 * random.normal(); });
+  const Image variance = image_of(48, 40, 3, [&](int, int, int) { return 0.04 * (0.5 + random.uniform()); });
+  for (const int patch_radius : {0, 1, 2}) {
+    std::vector<int> cx, cy;
+    for (int y = 0; y < 40; ++y)
+      for (int x = 0; x < 48; ++x) {
+        cx.push_back(x);
+        cy.push_back(y);
+      }
+    PatchDistances dense, sparse;
+    dense.compute(guide, variance, guide.bounds(), cx, cy, 9, patch_radius);
+    for (std::size_t k = 0; k < cx.size(); k += 37) {
+      sparse.compute(guide, variance, guide.bounds(), {cx[k]}, {cy[k]}, 9, patch_radius);
+      const Window a = window_at(dense, k, 9, everything), b = window_at(sparse, 0, 9, everything);
+      ASSERT_EQ(a.count, b.count);
+      for (std::size_t j = 0; j < static_cast<std::size_t>(a.count); ++j) ASSERT_EQ(a.distance[j], b.distance[j]) << patch_radius;
+    }
+  }
+}
+
 TEST(PatchDistances, OfLikePixelsAreZeroOnAverageWhateverTheNoise) {
   // One colour everywhere: E[(a-b)^2] = va + vb, so a distance is 0 on average: here -vmin-vb+va+vb. 27 numbers a
   // patch.
