@@ -265,6 +265,7 @@ TEST(Factorise, LapackSixKindsOfMatricesHaveResidualRatiosBelow30) {
   const std::uint64_t seed = 20160701;
   RecordProperty("seed", std::to_string(seed));
   Random random(seed);
+  int clear_ranks = 0;
   const double small = static_cast<double>(std::numeric_limits<Real>::min()) / eps, scales[] = {1, small, 1 / small};
   for (int instance = 0; instance < 500; ++instance) {
     const double scale = scales[instance % 3];
@@ -279,13 +280,20 @@ TEST(Factorise, LapackSixKindsOfMatricesHaveResidualRatiosBelow30) {
     const MatrixXd q = p.q(), sx = s.asDiagonal() * p.x, sq = s.asDiagonal() * q;
     ASSERT_TRUE(q.allFinite());
     const double n = rows;
-    EXPECT_EQ(p.factor.rank, std::min<int>(rank, static_cast<int>((p.w.array() > 0).count())));
+    // Rounding of the stored samples, amplified by the condition of the leading columns, has to stay clear of the 1e-4 at which
+    // a column is dropped; else a dependent column may rightly be taken for one of its own.
+    const Eigen::JacobiSVD<MatrixXd> svd(sx.leftCols(rank) / scale);
+    if (svd.singularValues()(0) * eps < 0.1 * 1e-4 * svd.singularValues()(rank - 1)) {
+      ++clear_ranks;
+      EXPECT_EQ(p.factor.rank, rank);
+    }
     EXPECT_LT(orthonormality_error(p) / (n * eps), 30);
     EXPECT_LT((sx / scale - sq * (sq.transpose() * sx / scale)).norm() / (sx.norm() / scale * n * eps), 30);
     const VectorXd residual = s.asDiagonal() * (y - q * z);
     EXPECT_LT((residual.transpose() * sx / scale).norm() / (sx.norm() / scale * (s.asDiagonal() * y).norm() * n * eps),
               30);
   }
+  EXPECT_GT(clear_ranks, 400);
 }
 
 TEST(ProjectBeauty, IsProjectOfEachChannelAndTheVarianceOfItsCoefficients) {
