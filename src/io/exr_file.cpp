@@ -2,14 +2,11 @@
 
 #include <Iex.h>
 #include <OpenEXR/ImfChannelList.h>
-#include <OpenEXR/ImfFloatAttribute.h>
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfInputPart.h>
-#include <OpenEXR/ImfIntAttribute.h>
 #include <OpenEXR/ImfMultiPartInputFile.h>
 #include <OpenEXR/ImfPartType.h>
 #include <OpenEXR/ImfStandardAttributes.h>
-#include <OpenEXR/ImfStringAttribute.h>
 #include <OpenEXR/ImfTestFile.h>
 #include <OpenEXR/ImfThreading.h>
 #include <fmt/format.h>
@@ -129,9 +126,9 @@ int first_bad_line(Imf::InputPart& input, const Rect& window, const std::vector<
   return y0;
 }
 
-Image read_exr_channels(const FileInfo& file, int part, const std::vector<std::string>& channels) {
+void read_exr_planes(const FileInfo& file, int part, const std::vector<std::string>& channels,
+                     const std::vector<Real*>& planes) {
   const Rect window = file.parts[static_cast<std::size_t>(part)].data_window;
-  Image image(window.width(), window.height(), static_cast<int>(channels.size()));
   Imf::MultiPartInputFile container(file.path.c_str(), Imf::globalThreadCount(), false);
   Imf::InputPart input(container, part);
   const std::size_t line_samples = static_cast<std::size_t>(window.width()) * channels.size();
@@ -148,11 +145,10 @@ Image read_exr_channels(const FileInfo& file, int part, const std::vector<std::s
                                   first_bad_line(input, window, channels, y, end), first_line(problem.what())));
     }
     const std::size_t plane = static_cast<std::size_t>(window.width()) * static_cast<std::size_t>(end - y);
-    for (int c = 0; c < image.channels(); ++c)
-      std::copy_n(band.begin() + static_cast<std::ptrdiff_t>(plane * static_cast<std::size_t>(c)), plane,
-                  image.row(c, y - window.y0));
+    const std::size_t done = static_cast<std::size_t>(window.width()) * static_cast<std::size_t>(y - window.y0);
+    for (std::size_t c = 0; c < channels.size(); ++c)
+      std::copy_n(band.begin() + static_cast<std::ptrdiff_t>(plane * c), plane, planes[c] + done);
   }
-  return image;
 }
 
 }  // namespace
@@ -189,17 +185,27 @@ FileInfo describe_file(const std::string& path, const ReadLimits& limits) {
 
 Image read_channels(const FileInfo& file, int part, const std::vector<std::string>& channels,
                     const ReadLimits& limits) {
+  const Rect window = file.parts[static_cast<std::size_t>(part)].data_window;
+  if (window.area() * channels.size() > limits.max_bytes / sizeof(Real))
+    throw Error(ExitCode::OutOfMemory,
+                fmt::format("{}: {} channels of {} x {} pixels need more than the limit of {} MB", file.path,
+                            channels.size(), window.width(), window.height(), limits.max_bytes >> 20));
+  Image image(window.width(), window.height(), static_cast<int>(channels.size()));
+  std::vector<Real*> planes;
+  for (int c = 0; c < image.channels(); ++c) planes.push_back(image.plane(c));
+  read_planes(file, part, channels, planes);
+  return image;
+}
+
+void read_planes(const FileInfo& file, int part, const std::vector<std::string>& channels,
+                 const std::vector<Real*>& planes) {
   const PartInfo& info = file.parts[static_cast<std::size_t>(part)];
   if (!info.readable())
     fail(file.path, fmt::format("{}: {} is unsupported", part_title(file, part),
                                 info.deep ? "deep data" : "a part with subsampled (luminance-chroma) channels"));
-  if (info.data_window.area() * channels.size() > limits.max_bytes / sizeof(Real))
-    throw Error(ExitCode::OutOfMemory, fmt::format("{}: {} channels of {} x {} pixels need more than the limit of {} MB",
-                                                   file.path, channels.size(), info.data_window.width(),
-                                                   info.data_window.height(), limits.max_bytes >> 20));
-  if (file.format != "openexr") return read_plain_image(file, channels);
+  if (file.format != "openexr") return read_plain_planes(file, channels, planes);
   try {
-    return read_exr_channels(file, part, channels);
+    read_exr_planes(file, part, channels, planes);
   } catch (const Iex::BaseExc& problem) {
     fail(file.path, fmt::format("incomplete or damaged: {} cannot be read ({})", part_title(file, part),
                                 first_line(problem.what())));

@@ -69,7 +69,11 @@ FileInfo describe_file(const std::string& path, const ReadLimits& limits = {});
 Image read_channels(const FileInfo& file, int part, const std::vector<std::string>& channels,
                     const ReadLimits& limits = {});
 
-/// Value of an attribute of a part, nullptr where there is none.
+/// The same, into planes of the caller: planes[c] has room for the data window's pixels. Does not look at max_bytes.
+void read_planes(const FileInfo& file, int part, const std::vector<std::string>& channels,
+                 const std::vector<Real*>& planes);
+
+/// An attribute of a part, nullptr where there is none.
 const AttributeInfo* find_attribute(const PartInfo& part, const std::string& name);
 
 }  // namespace polyrecon

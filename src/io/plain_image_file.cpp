@@ -59,28 +59,26 @@ void describe_plain_image(FileInfo& file, const ReadLimits& limits) {
   file.parts.push_back(std::move(part));
 }
 
-Image read_plain_image(const FileInfo& file, const std::vector<std::string>& channels) {
+void read_plain_planes(const FileInfo& file, const std::vector<std::string>& channels,
+                       const std::vector<Real*>& planes) {
   const PartInfo& part = file.parts.front();
   const auto width = static_cast<std::size_t>(part.data_window.width());
-  const int height = part.data_window.height();
+  const auto height = static_cast<std::size_t>(part.data_window.height());
   const std::size_t stride = part.channels.size();
-  std::vector<float> pixels(part.data_window.area() * stride);
+  std::vector<float> pixels(width * height * stride);
   const auto input = OIIO::ImageInput::open(file.path);
   if (!input || !input->read_image(0, 0, 0, static_cast<int>(stride), OIIO::TypeDesc::FLOAT, pixels.data()))
     fail(file.path, fmt::format("incomplete or damaged ({})", first_line(input ? input->geterror() : OIIO::geterror())));
-  Image image(part.data_window.width(), height, static_cast<int>(channels.size()));
   for (std::size_t c = 0; c < channels.size(); ++c) {
-    const auto source = static_cast<std::size_t>(
-        std::find_if(part.channels.begin(), part.channels.end(), [&](const auto& k) { return k.name == channels[c]; }) -
-        part.channels.begin());
-    for (int y = 0; y < height; ++y) {
-      const int row = is_bottom_up(file) ? height - 1 - y : y;
-      Real* out = image.row(static_cast<int>(c), y);
+    const auto found = std::find_if(part.channels.begin(), part.channels.end(),
+                                    [&](const ChannelInfo& channel) { return channel.name == channels[c]; });
+    const auto source = static_cast<std::size_t>(found - part.channels.begin());
+    for (std::size_t y = 0; y < height; ++y) {
+      const std::size_t row = is_bottom_up(file) ? height - 1 - y : y;
       for (std::size_t x = 0; x < width; ++x)
-        out[x] = static_cast<Real>(pixels[(static_cast<std::size_t>(row) * width + x) * stride + source]);
+        planes[c][y * width + x] = static_cast<Real>(pixels[(row * width + x) * stride + source]);
     }
   }
-  return image;
 }
 
 }  // namespace polyrecon

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "core/frame.h"
@@ -18,9 +17,20 @@ enum class VarianceKind {
   SecondMoment  ///< Mean square m2: (m2 - mean^2) / (n - 1).
 };
 
+/// A role given by hand. layer is a layer's name (whole, or within the view layer), a single channel's whole name, or
+/// the path of another image file.
+struct RoleMapping {
+  Role role = Role::Other;
+  Companion companion = Companion::Mean;
+  std::string layer;
+};
+
+/// Reads "ROLE=LAYER". ROLE is beauty, prior, alpha, albedo, normal, depth, visibility or sample-count, or a companion:
+/// variance, half-a, half-b (of the beauty), albedo-variance, normal-half-a, ... Throws Error{Usage}.
+RoleMapping parse_mapping(const std::string& text);
+
 struct ReadOptions {
-  /// role=LAYER by hand; LAYER is a layer's name, a single channel's name, or another image file.
-  std::vector<std::pair<Role, std::string>> map;
+  std::vector<RoleMapping> map;
   std::vector<std::string> aovs;  ///< Layers for Frame::aovs: whole names, or names within the view layer.
   std::string view_layer;         ///< Empty: the first one that has a beauty.
   std::string view;               ///< Stereo view; empty: the first one.
