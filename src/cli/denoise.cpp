@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "cli/checks.h"
+#include "cli/choice.h"
 #include "cli/commands.h"
 #include "cli/map_files.h"
 #include "cli/progress_output.h"
@@ -68,15 +69,6 @@ std::string settings_text(const DenoiseOptions& o) {
   for (const std::string& aov : o.read.aovs) text += " --aov '" + aov + "'";
   for (const std::string& role : o.roles) text += " --map '" + role + "'";
   return text;
-}
-
-std::pair<Role, std::string> parse_role(const std::string& text) {
-  const std::size_t equals = text.find('=');
-  if (equals == std::string::npos || equals + 1 == text.size())
-    throw Error(ExitCode::Usage, "--map " + text + ": write role=LAYER, for example albedo=ViewLayer.MyAlbedo");
-  const std::optional<Role> role = role_from(text.substr(0, equals));
-  if (!role) throw Error(ExitCode::Usage, "--map " + text + ": no role '" + text.substr(0, equals) + "'");
-  return {*role, text.substr(equals + 1)};
 }
 
 /// Everything that can be refused without reading the input.
@@ -157,7 +149,7 @@ std::string input_text(const ReadResult& in) {
 
 void run(DenoiseOptions o) {
   const auto start = std::chrono::steady_clock::now();
-  for (const std::string& role : o.roles) o.read.map.push_back(parse_role(role));
+  for (const std::string& role : o.roles) o.read.map.push_back(parse_mapping(role));
   check(o);
   set_thread_limit(o.threads);
   if (o.read.samples > 0) o.sampling.params.assumed_samples = o.read.samples;
@@ -211,10 +203,8 @@ void add_input_options(CLI::App& app, DenoiseOptions& o) {
   app.add_option("--view-layer", o.read.view_layer, "View layer to denoise, in place of the first one")
       ->type_name("NAME")
       ->group(group);
-  app.add_option("--variance-kind", o.read.variance_kind,
-                 "What variance layers hold: auto, mean (of the pixel), sample (of one sample), moment (mean square)")
-      ->transform(CLI::CheckedTransformer(variance_kinds, CLI::ignore_case).description(""))
-      ->type_name("KIND")
+  add_choice(app, "--variance-kind", o.read.variance_kind, variance_kinds,
+             "What variance layers hold: auto, mean (of the pixel), sample (of one sample), moment (mean square)")
       ->group(group);
   app.add_option("--samples", o.read.samples, "Samples per pixel, where the file does not tell")
       ->check(CLI::PositiveNumber)
@@ -223,10 +213,7 @@ void add_input_options(CLI::App& app, DenoiseOptions& o) {
 
 void add_method_options(CLI::App& app, DenoiseOptions& o) {
   const std::string group = "Reconstruction";
-  app.add_option("--quality", o.params.quality, "draft, standard or best")
-      ->transform(CLI::CheckedTransformer(qualities, CLI::ignore_case).description(""))
-      ->type_name("NAME")
-      ->group(group);
+  add_choice(app, "--quality", o.params.quality, qualities, "draft, standard or best")->group(group);
   app.add_option("--stages", o.params.stages, "Rounds of error estimation, 1 to 4")
       ->capture_default_str()
       ->group(group);
@@ -244,13 +231,11 @@ void add_run_options(CLI::App& app, DenoiseOptions& o) {
       ->capture_default_str()
       ->group(group);
   app.add_option("--max-memory", o.params.max_memory, "Memory to stay within, in bytes or as 512M, 4G")
-      ->transform(CLI::AsSizeValue(false))
+      ->transform(CLI::AsSizeValue(false).description(""))
       ->type_name("SIZE")
       ->group(group);
-  app.add_option("--progress", o.progress,
-                 "none, bar or json (one object per line), on standard error; a bar on a terminal")
-      ->transform(CLI::CheckedTransformer(progress_styles, CLI::ignore_case).description(""))
-      ->type_name("STYLE")
+  add_choice(app, "--progress", o.progress, progress_styles,
+             "none, bar or json (one object per line), on standard error; a bar on a terminal")
       ->group(group);
   app.add_flag("-q,--quiet", o.quiet, "Print nothing but errors")->group(group);
 }

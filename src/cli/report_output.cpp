@@ -68,13 +68,14 @@ std::size_t peak_memory() {
 
 std::string roles_text(const FrameSource& source) {
   std::string text;
-  for (const RoleChoice& choice : source.chosen)
-    text += fmt::format("  {:<26} {}  ({})\n",
-                        choice.companion == Companion::Mean
-                            ? std::string(name_of(choice.role))
-                            : fmt::format("{}, {}", name_of(choice.role), name_of(choice.companion)),
-                        choice.layer.empty() ? "(no name)" : choice.layer, choice.why);
-  return text;
+  for (const RoleChoice& choice : source.chosen) {
+    const std::string layer = choice.layer.empty() ? "(no name)" : choice.layer;
+    if (choice.companion == Companion::Mean)
+      text += (text.empty() ? "" : "\n") + fmt::format("  {:<26} {} ({})", name_of(choice.role), layer, choice.why);
+    else
+      text += fmt::format("\n  {:<26} {}", fmt::format("  {}", name_of(choice.companion)), layer);
+  }
+  return text + "\n";
 }
 
 Json roles_json(const FrameSource& source) {

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "cli/checks.h"
+#include "cli/choice.h"
 #include "cli/layers.h"
 #include "core/error.h"
 
@@ -54,8 +55,8 @@ void add_sample_map_options(CLI::App& app, SampleMapOptions& o) {
       app.add_option("--budget", o.params.budget, "Extra samples per pixel on average")->check(CLI::PositiveNumber);
   CLI::Option* target = app.add_option("--target", o.params.target, "Mean relative MSE to reach instead of a budget")
                             ->check(CLI::PositiveNumber);
-  budget->excludes(target)->group(group);
-  target->group(group);
+  target->excludes(budget)->group(group);
+  budget->group(group);
   app.add_option("--max-samples", o.params.max_samples, "Most extra samples of one pixel")
       ->check(CLI::PositiveNumber)
       ->capture_default_str()
@@ -68,9 +69,7 @@ void add_sample_map_options(CLI::App& app, SampleMapOptions& o) {
       ->group(group);
   app.add_option("--frame", o.frame, "Frame number to write into the map")->capture_default_str()->group(group);
   app.add_option("--seed", o.seed, "Seed of the next pass to write into the map")->capture_default_str()->group(group);
-  app.add_option("--export", o.format, "Write the map for a renderer: appleseed, luxcore or vray")
-      ->transform(CLI::CheckedTransformer(formats, CLI::ignore_case).description(""))
-      ->type_name("RENDERER")
+  add_choice(app, "--export", o.format, formats, "Write the map for a renderer: appleseed, luxcore or vray")
       ->group(group);
 }
 
