@@ -145,7 +145,8 @@ TEST_F(Inspect, TellsTheRoleOfEachLayer) {
   const Outcome o = run({"inspect", "in.exr", "--json"});
   ASSERT_EQ(o.code, 0) << o.err;
   const auto found = nlohmann::json::parse(o.out);
-  for (const char* key : {"files", "layers", "view_layer", "roles", "missing", "samples", "noise_level", "notes"})
+  for (const char* key :
+       {"files", "layers", "view_layer", "roles", "missing", "samples", "noise_level", "effects", "notes"})
     EXPECT_TRUE(found.contains(key)) << key;
   EXPECT_EQ(found["files"][0]["parts"][0]["channels"].size(), 16u);
   EXPECT_EQ(found["view_layer"], "ViewLayer");
