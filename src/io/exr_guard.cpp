@@ -49,11 +49,11 @@ class HeaderWalk {
       ++position_;
       if (c == '\0') return text;
     }
-    fail(path_, "damaged header (a name longer than 255 bytes)");
+    fail(path_, "incomplete or damaged header (a name longer than 255 bytes)");
   }
 
   void skip(std::uint32_t size, const std::string& attribute) {
-    if (size > bytes_ - position_) fail(path_, fmt::format("damaged header (attribute {} claims {} bytes)", attribute, size));
+    if (size > bytes_ - position_) fail(path_, fmt::format("incomplete or damaged header (attribute {} claims {} bytes)", attribute, size));
     position_ += size;
     stream_.seekg(static_cast<std::streamoff>(position_));
   }

@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <filesystem>
+#include <memory>
 
 #include "core/error.h"
 #include "io/exr_attributes.h"
@@ -26,8 +28,14 @@ bool is_known_extension(const std::string& path) {
   return std::find(known.begin(), known.end(), extension) != known.end();
 }
 
-/// Rows of a PFM run bottom-up, and OpenImageIO does not turn them.
+/// Rows of a PFM run bottom-up. Whether OpenImageIO turns them depends on its version, so it is told not to.
 bool is_bottom_up(const FileInfo& file) { return file.format == "pnm"; }
+
+std::unique_ptr<OIIO::ImageInput> open_image(const std::string& path) {
+  OIIO::ImageSpec hints;
+  hints.attribute("pnm:pfmflip", 0);
+  return OIIO::ImageInput::open(path, &hints);
+}
 
 SampleType to_sample_type(const OIIO::TypeDesc& type) {
   if (type.basetype == OIIO::TypeDesc::HALF) return SampleType::Half;
@@ -38,7 +46,7 @@ SampleType to_sample_type(const OIIO::TypeDesc& type) {
 
 void describe_plain_image(FileInfo& file, const ReadLimits& limits) {
   if (!is_known_extension(file.path)) fail(file.path, "not an OpenEXR file");
-  const auto input = OIIO::ImageInput::open(file.path);
+  const auto input = open_image(file.path);
   if (!input) fail(file.path, fmt::format("cannot be read ({})", first_line(OIIO::geterror())));
   const OIIO::ImageSpec& spec = input->spec();
   if (spec.width <= 0 || spec.height <= 0 || spec.nchannels <= 0 || spec.image_pixels() > limits.max_pixels ||
@@ -65,7 +73,7 @@ Image read_plain_image(const FileInfo& file, const std::vector<std::string>& cha
   const auto height = static_cast<std::size_t>(part.data_window.height());
   const std::size_t stride = part.channels.size();
   std::vector<float> pixels(width * height * stride);
-  const auto input = OIIO::ImageInput::open(file.path);
+  const auto input = open_image(file.path);
   if (!input || !input->read_image(0, 0, 0, static_cast<int>(stride), OIIO::TypeDesc::FLOAT, pixels.data()))
     fail(file.path, fmt::format("incomplete or damaged ({})", first_line(input ? input->geterror() : OIIO::geterror())));
   Image image(part.data_window.width(), part.data_window.height(), static_cast<int>(channels.size()));
