@@ -120,14 +120,6 @@ bool is_tiled_part(const Imf::Header& header) {
   return header.hasType() ? Imf::isTiled(header.type()) : header.hasTileDescription();
 }
 
-std::uint64_t chunk_count(const Imf::Header& header) {
-  const auto& window = header.dataWindow();
-  const std::uint64_t width = side(window.min.x, window.max.x), height = side(window.min.y, window.max.y);
-  if (is_tiled_part(header)) return tile_count(header.tileDescription(), width, height);
-  const bool deep = header.hasType() && Imf::isDeepData(header.type());
-  return ceil_divide(height, deep ? 1 : lines_per_chunk(header.compression()));
-}
-
 std::string part_title(const Imf::Header& header, std::size_t index) {
   return header.hasName() ? fmt::format("part {} \"{}\"", index, header.name()) : fmt::format("part {}", index);
 }
@@ -140,6 +132,14 @@ std::uint64_t bytes_per_pixel(const Imf::Header& header) {
 }
 
 }  // namespace
+
+std::uint64_t chunk_count(const Imf::Header& header) {
+  const auto& window = header.dataWindow();
+  const std::uint64_t width = side(window.min.x, window.max.x), height = side(window.min.y, window.max.y);
+  if (is_tiled_part(header)) return tile_count(header.tileDescription(), width, height);
+  const bool deep = header.hasType() && Imf::isDeepData(header.type());
+  return ceil_divide(height, deep ? 1 : lines_per_chunk(header.compression()));
+}
 
 std::uint64_t check_attribute_sizes(const std::string& path, std::uint64_t file_bytes) {
   HeaderWalk walk(path, file_bytes);
