@@ -47,7 +47,7 @@ std::array<double, 2> variances(const Candidate& result) {
 
 }  // namespace
 
-double cross_validated_error(const HalfPair& pair, const Candidate& result) {
+double cross_validated_error(const HalfPair& pair, const Image& variance, const Candidate& result) {
   const double sum = ordered_sum(static_cast<std::size_t>(pair.height()), [&](std::size_t row) {
     const int y = static_cast<int>(row);
     double total = 0;
@@ -55,8 +55,9 @@ double cross_validated_error(const HalfPair& pair, const Candidate& result) {
       for (int x = 0; x < pair.width(); ++x) {
         const double fa = result.half[0].at(x, y, c), fb = result.half[1].at(x, y, c);
         const double a = pair.color[0].at(x, y, c), b = pair.color[1].at(x, y, c), f = 0.5 * (fa + fb);
-        const double error = 0.5 * ((fa - b) * (fa - b) + (fb - a) * (fb - a)) - static_cast<double>(pair.variance.at(x, y, c)) -
-                             0.25 * (fa - fb) * (fa - fb);
+        const double known = 2 * static_cast<double>(variance.at(x, y, c)), floored = pair.variance.at(x, y, c);
+        const double noise = known >= 0 && known < floored ? known : floored;
+        const double error = 0.5 * ((fa - b) * (fa - b) + (fb - a) * (fb - a)) - noise - 0.25 * (fa - fb) * (fa - fb);
         total += error / (f * f + relative_floor);
       }
     return total;
@@ -64,7 +65,7 @@ double cross_validated_error(const HalfPair& pair, const Candidate& result) {
   return sum / (3.0 * static_cast<double>(pair.variance.pixels()));
 }
 
-ErrorMap make_error_map(const HalfPair& pair, const Candidate& result) {
+ErrorMap make_error_map(const HalfPair& pair, const Image& variance, const Candidate& result) {
   ErrorMap map;
   map.mse = Image(pair.width(), pair.height(), 3);
   map.relative_mse = Image(pair.width(), pair.height(), 1);
@@ -73,19 +74,19 @@ ErrorMap make_error_map(const HalfPair& pair, const Candidate& result) {
   if (claimed > 0) map.calibration = measured / claimed;
   for (int y = 0; y < pair.height(); ++y)
     for (int x = 0; x < pair.width(); ++x) {
-      double error = 0, variance = 0;
+      double error = 0, random = 0;
       for (int c = 0; c < 3; ++c) {
         const double f = mean_half(result, x, y, c), windows = result.variance.at(x, y, c);
         const double bias = std::max(static_cast<double>(result.error.at(x, y, c)) - windows, 0.0);
         map.mse.at(x, y, c) = static_cast<Real>(bias + map.calibration * windows);
         error += (bias + map.calibration * windows) / (f * f + relative_floor) / 3;
-        variance += map.calibration * windows / (f * f + relative_floor) / 3;
+        random += map.calibration * windows / (f * f + relative_floor) / 3;
       }
       map.relative_mse.at(x, y, 0) = static_cast<Real>(error);
-      map.relative_variance.at(x, y, 0) = static_cast<Real>(variance);
+      map.relative_variance.at(x, y, 0) = static_cast<Real>(random);
     }
   map.mean_relative_mse = mean_of(map.relative_mse);
-  map.cross_validated = cross_validated_error(pair, result);
+  map.cross_validated = cross_validated_error(pair, variance, result);
   return map;
 }
 

@@ -18,12 +18,13 @@ struct ErrorMap {
 
 /// Relative MSE of the whole image from the halves alone:
 ///     mean of [ ((f_A - B)^2 + (f_B - A)^2) / 2 - Var - (f_A - f_B)^2 / 4 ] / (yhat^2 + 0.01)
-/// where Var is the noise variance of one half. Unbiased for a reconstruction f_A that never saw B; the windows of f_A are
+/// where Var is the noise variance of one half: twice that of the mean, or the pair's where an outlier was replaced. Unbiased for a reconstruction f_A that never saw B; the windows of f_A are
 /// weighed by B, so here it is a lower bound, near the truth at high sample counts, and may be negative.
-double cross_validated_error(const HalfPair& pair, const Candidate& result);
+double cross_validated_error(const HalfPair& pair, const Image& variance, const Candidate& result);
 
 /// The error map of a result: the windows' bias^2 (5), and their variance (6) scaled by one factor. A window does not know that
 /// its neighbours average its noise away; (f_A - f_B)^2 / 4 does, so the factor makes the two agree over the image.
-ErrorMap make_error_map(const HalfPair& pair, const Candidate& result);
+/// variance: of the mean's noise as it was measured (HalfPair's has a floor).
+ErrorMap make_error_map(const HalfPair& pair, const Image& variance, const Candidate& result);
 
 }  // namespace polyrecon

@@ -173,7 +173,7 @@ Result reconstruct(const Frame& frame, const Params& params, Progress& progress)
     restore_energy(outliers, max_restored_gain, out);
     return out;
   });
-  result.error = timed(report, progress, "error map", 1, [&] { return make_error_map(pair, solved); });
+  result.error = timed(report, progress, "error map", 1, [&] { return make_error_map(pair, noise.variance, solved); });
   result.order = solved.order;
   result.beauty = channels_of(image, 0, 3);
   for (std::size_t k = 0; k < frame.aovs.size(); ++k) result.aovs.push_back(channels_of(image, 3 * static_cast<int>(k + 1), 3));
