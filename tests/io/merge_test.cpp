@@ -193,6 +193,30 @@ TEST(Merge, MultiPartFilesBecomeOnePart) {
   EXPECT_EQ(stored_bytes(out, 0, "V.CryptoObject00.a"), stored_bytes(paths[0], 2, "V.CryptoObject00.a"));
 }
 
+TEST(Merge, StereoPartsBecomeViewsOfOnePart) {
+  const TemporaryFolder folder;
+  std::vector<std::string> paths;
+  for (const double value : {1.0, 3.0}) {
+    std::vector<TestPart> parts(2);
+    parts[0].channels = flat_layer("", "RGB", value);
+    parts[1].channels = flat_layer("", "RGB", 10 * value);
+    parts[0].view = "left";
+    parts[1].view = "right";
+    for (TestPart& part : parts) part.name = "beauty." + part.view;
+    paths.push_back(write_exr(folder / ("s" + std::to_string(value) + ".exr"), parts));
+  }
+  const std::string out = folder / "out.exr";
+  merge(paths, out);
+  ReadOptions options;
+  for (const auto& [view, scale] : {std::pair{"left", 1.0}, std::pair{"right", 10.0}}) {
+    options.view = view;
+    const Frame frame = read_frame(out, options).frame;
+    EXPECT_EQ(static_cast<double>(frame.beauty.mean.at(0, 0, 0)), 2 * scale);
+    EXPECT_EQ(static_cast<double>(frame.beauty.variance.at(0, 0, 0)), scale * scale);
+    EXPECT_EQ(static_cast<double>(frame.beauty.half_b.at(0, 0, 0)), 3 * scale);
+  }
+}
+
 TEST(Merge, LayersWithoutANameAndTheirCompanionsAreFoundAgain) {
   const TemporaryFolder folder;
   std::vector<TestPart> renders(2);
