@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/parallel.h"
 #include "core/simd.h"
@@ -71,31 +72,33 @@ POLYRECON_SIMD void add_scaled(Real* y, const Real* x, Real factor, int n) {
   for (int j = 0; j < n; ++j) y[j] += factor * x[j];
 }
 
-double weighted_sum(const Window& window, const Real* weight, const Real* values) {
-  double sum = 0;
-  for (int j = 0; j < window.count; ++j) sum += static_cast<double>(weight[j]) * static_cast<double>(values[j]);
-  return sum;
-}
-
-double weighted_energy(const Window& window, const Real* weight, const Real* values) {
-  double sum = 0;
-  for (int j = 0; j < window.count; ++j)
-    sum += static_cast<double>(weight[j]) * static_cast<double>(values[j]) * static_cast<double>(values[j]);
-  return sum;
+POLYRECON_SIMD void energies(const Real* weight, const Real* guess, const Real* variance, int n, double* guess_energy,
+                             double* noise_energy) {
+  double guess_sum = 0, noise_sum = 0;
+#pragma omp simd reduction(+ : guess_sum, noise_sum)
+  for (int j = 0; j < n; ++j) {
+    const double w = weight[j], m = guess[j];
+    guess_sum += w * m * m;
+    noise_sum += w * static_cast<double>(variance[j]);
+  }
+  *guess_energy = guess_sum;
+  *noise_energy = noise_sum;
 }
 
 std::array<ColumnStatistics, 3> column_statistics(const Scratch& s, bool first_stage) {
   std::array<ColumnStatistics, 3> channels;
-  for (std::size_t c = 0; c < channels.size(); ++c) {
+  double *z[3], *guess_z[3], *variance[3];
+  for (std::size_t c = 0; c < 3; ++c) {
+    z[c] = channels[c].z.data();
+    guess_z[c] = channels[c].guess.data();
+    variance[c] = channels[c].variance.data();
+  }
+  project_beauty(s.factor, s.window, s.weight.data(), z, guess_z, variance);
+  for (std::size_t c = 0; c < 3; ++c) {
     const std::size_t offset = c * static_cast<std::size_t>(s.window.stride);
-    const Real* y = s.window.response.data() + offset;
-    const Real* variance = s.window.noise_variance.data() + offset;
-    const Real* guess = first_stage ? y : s.window.guess.data() + offset;
-    project(s.factor, s.window, s.weight.data(), y, channels[c].z.data());
-    project_variance(s.factor, s.window, s.weight.data(), variance, channels[c].variance.data());
-    if (!first_stage) project(s.factor, s.window, s.weight.data(), guess, channels[c].guess.data());
-    channels[c].guess_energy = weighted_energy(s.window, s.weight.data(), guess);
-    channels[c].noise_energy = weighted_sum(s.window, s.weight.data(), variance);
+    const Real* guess = (first_stage ? s.window.response : s.window.guess).data() + offset;
+    energies(s.weight.data(), guess, s.window.noise_variance.data() + offset, s.window.padded, &channels[c].guess_energy,
+             &channels[c].noise_energy);
   }
   return channels;
 }
