@@ -19,7 +19,7 @@ def build():
     kit.sphere((2.4, 2.3, 0.60), 0.60, kit.plain("Blue enamel", (0.02, 0.07, 0.45), 0.15), 96)
     kit.torus((-0.25, -1.05, 0.09), 0.26, 0.09, kit.plain("Gold", (1.0, 0.70, 0.22), 0.18, 1.0))
     kit.sphere((1.55, -0.25, 0.16), 0.16, kit.plain("Red enamel", (0.55, 0.03, 0.02), 0.2), 64)
-    kit.lamp("AREA", 380, (2.4, 2.0, 4.2), (1.0, 0.88, 0.72), target=(0, 0, 0.2), shape="DISK", size=0.9)
+    kit.lamp("AREA", 420, (2.4, 2.0, 4.2), (1.0, 0.88, 0.72), target=(0, 0, 0.2), shape="DISK", size=1.5)
     background = scene.world.node_tree.nodes["Background"]
     background.inputs["Color"].default_value = (0.35, 0.45, 0.65, 1)
     background.inputs["Strength"].default_value = 0.22
