@@ -375,6 +375,21 @@ void find_denoised(std::vector<Layer>& layers) {
   }
 }
 
+/// Mitsuba's moment integrator gives the image itself no second moment, but the nested integrator that makes it: a layer
+/// with alpha and with the same channels as the beauty.
+void find_nested_moment(std::vector<Layer>& layers) {
+  const auto beauty = std::find_if(layers.begin(), layers.end(), [](const Layer& l) { return is_beauty_mean(l) && l.pass == "RGBA"; });
+  if (beauty == layers.end()) return;
+  for (Layer& moment : layers) {
+    if (moment.companion != Companion::SecondMoment) continue;
+    const Layer* nested = find_whole_name(layers, moment, moment.of);
+    if (nested && nested->role == Role::Color && !nested->alpha.empty() && !moment.alpha.empty()) {
+      make_companion(moment, *beauty, Companion::SecondMoment, fmt::format("Mitsuba's nested integrator {}", nested->name));
+      return;
+    }
+  }
+}
+
 std::optional<double> number_in(const FileInfo& file, const std::string& attribute) {
   for (const PartInfo& part : file.parts)
     if (const AttributeInfo* found = find_attribute(part, attribute)) {
@@ -422,6 +437,7 @@ void classify_layers(const std::vector<FileInfo>& files, std::vector<Layer>& lay
   find_denoised(layers);
   find_companions(layers);
   find_beauty_companions(layers);
+  find_nested_moment(layers);
 }
 
 bool is_sample_fraction(const Layer& layer) { return normalised(layer.pass) == "debugsamplecount"; }

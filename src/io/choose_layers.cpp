@@ -178,7 +178,7 @@ PassChoice with_companions(const FrameSource& source, Role role, int mean) {
 [[noreturn]] void no_beauty(const FrameSource& source) {
   if (find_mean(source, Role::Beauty, false) >= 0)
     throw Error(ExitCode::BadInput,
-                fmt::format("{}: the beauty is deep or subsampled (luminance-chroma), which is unsupported", source.path));
+                fmt::format("{}: the beauty is deep, mip-mapped or subsampled (luminance-chroma), which is unsupported", source.path));
   std::vector<std::string> names;
   for (const Layer& layer : source.layers) names.push_back(layer.name);
   throw Error(ExitCode::Missing, fmt::format("{}: no beauty among the layers {}; name it with --map beauty=LAYER",
@@ -273,10 +273,12 @@ LayerChoice choose_layers(const std::string& path, const ReadOptions& options) {
   }
   choose_aovs(choice, options);
   const Layer& layer = source.layers[static_cast<std::size_t>(beauty)];
-  source.alpha_channel = layer.alpha;
+  if (!layer.alpha.empty()) source.alpha_layer = layer.name;
   for (const PassChoice& pass : choice.passes)
-    if (pass.role == Role::Alpha && (layer.alpha.empty() || source.layers[static_cast<std::size_t>(pass.mean)].rank == kByHand))
-      source.alpha_channel = source.layers[static_cast<std::size_t>(pass.mean)].channels.front();
+    if (pass.role == Role::Alpha) {
+      const Layer& own = source.layers[static_cast<std::size_t>(pass.mean)];
+      if (layer.alpha.empty() || own.rank == kByHand) source.alpha_layer = own.name;
+    }
   describe_choice(choice);
   return choice;
 }

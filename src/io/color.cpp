@@ -1,6 +1,7 @@
 #include "io/color.h"
 
 #include <OpenColorIO/OpenColorIO.h>
+#include <OpenImageIO/color.h>
 #include <OpenImageIO/imagebufalgo.h>
 
 #include <algorithm>
@@ -140,9 +141,10 @@ Image false_color(const Image& values, const LogRange& range) {
   for (int y = 0; y < values.height(); ++y)
     for (int x = 0; x < values.width(); ++x) {
       const bool finite = std::isfinite(values.at(x, y, 0));
+      // OpenImageIO's table is linear.
       for (int c = 0; c < 3; ++c)
         out.at(x, y, c) =
-            finite ? std::clamp(mapped.getchannel(x, y, 0, c), 0.0f, 1.0f) : cyan[static_cast<std::size_t>(c)];
+            finite ? OIIO::linear_to_sRGB(mapped.getchannel(x, y, 0, c)) : cyan[static_cast<std::size_t>(c)];
     }
   return out;
 }

@@ -154,7 +154,7 @@ void read_exr_planes(const FileInfo& file, int part, const std::vector<std::stri
 }  // namespace
 
 bool PartInfo::readable() const {
-  return !deep && std::all_of(channels.begin(), channels.end(),
+  return !deep && !mipmapped && std::all_of(channels.begin(), channels.end(),
                               [](const ChannelInfo& c) { return c.x_sampling == 1 && c.y_sampling == 1; });
 }
 
@@ -201,8 +201,8 @@ void read_planes(const FileInfo& file, int part, const std::vector<std::string>&
                  const std::vector<Real*>& planes) {
   const PartInfo& info = file.parts[static_cast<std::size_t>(part)];
   if (!info.readable())
-    fail(file.path, fmt::format("{}: {} is unsupported", part_title(file, part),
-                                info.deep ? "deep data" : "a part with subsampled (luminance-chroma) channels"));
+    fail(file.path, fmt::format("{} is unsupported ({})", part_title(file, part),
+                                "deep, mip-mapped or subsampled (luminance-chroma)"));
   if (file.format != "openexr") return read_plain_planes(file, channels, planes);
   try {
     read_exr_planes(file, part, channels, planes);

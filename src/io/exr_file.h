@@ -41,7 +41,7 @@ struct PartInfo {
   std::vector<std::string> views;     ///< The `multiView` attribute: views told apart by channel names.
   std::vector<AttributeInfo> attributes;
 
-  /// Whether the pixels can be read as plain images: flat, and every channel has one sample a pixel.
+  /// Whether the pixels are a plain image: flat, one level, and every channel has one sample a pixel.
   bool readable() const;
 };
 

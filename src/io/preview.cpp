@@ -1,17 +1,15 @@
 #include "io/preview.h"
 
 #include <OpenImageIO/imagebufalgo.h>
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <filesystem>
 #include <string>
 
 #include "core/error.h"
+#include "io/whole_file.h"
 
 namespace polyrecon {
 namespace {
@@ -118,23 +116,11 @@ Image compose(const std::vector<Panel>& panels) {
 }
 
 void write_png(const std::string& target, const Image& rgb) {
-  namespace fs = std::filesystem;
-  const fs::path path(target);
-  const fs::path temporary = path.parent_path() / fmt::format(".{}.{}.tmp", path.filename().string(), ::getpid());
-  const auto fail = [&](const std::string& why) {
-    std::error_code ignored;
-    fs::remove(temporary, ignored);
-    throw Error(ExitCode::CannotWrite, target + ": " + why);
-  };
-  OIIO::ImageBuf buffer = buffer_of(rgb);
-  if (!buffer.write(temporary.string(), OIIO::TypeDesc::UINT8, "png")) fail(buffer.geterror());
-  const int file = ::open(temporary.c_str(), O_RDONLY | O_CLOEXEC);
-  const bool kept = file >= 0 && ::fsync(file) == 0;
-  if (file >= 0) ::close(file);
-  if (!kept) fail("the file could not be flushed to the disk");
-  std::error_code error;
-  fs::rename(temporary, path, error);
-  if (error) fail(error.message());
+  write_whole(target, [&](const std::string& temporary) {
+    OIIO::ImageBuf buffer = buffer_of(rgb);
+    if (!buffer.write(temporary, OIIO::TypeDesc::UINT8, "png"))
+      throw Error(ExitCode::CannotWrite, target + ": " + buffer.geterror());
+  });
 }
 
 }  // namespace polyrecon

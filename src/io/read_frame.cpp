@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <memory>
 #include <utility>
 
 #include "core/error.h"
@@ -187,7 +188,7 @@ class FrameBuilder {
     for (const PassChoice& p : passes_)
       planned_.push_back({p, image(p.mean), image(p.variance), image(p.half_a), image(p.half_b)});
     const Layer& beauty = layer(passes_.front().mean);
-    if (!beauty.alpha.empty() && result_.source.alpha_channel == beauty.alpha) alpha_ = reader_.plan(beauty, {beauty.alpha});
+    if (result_.source.alpha_layer == beauty.name) alpha_ = reader_.plan(beauty, {beauty.alpha});
   }
 
   Image take(Image* image, int index, int channels, bool is_variance = false) {

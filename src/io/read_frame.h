@@ -54,7 +54,7 @@ struct FrameSource {
   std::vector<Layer> layers;       ///< Of all files.
   std::string view_layer, view;    ///< Chosen ones.
   std::vector<RoleChoice> chosen;  ///< Beauty first, then its companions, the features, the others.
-  std::string alpha_channel;       ///< Whole channel name of Frame::alpha, empty without one; takes a Replacement.
+  std::string alpha_layer;         ///< Layer whose alpha (or only channel) is Frame::alpha; empty without one.
 };
 
 struct ReadResult {

@@ -5,15 +5,16 @@
 #include <vector>
 
 #include "core/frame.h"
+#include "io/atomic_file.h"
 #include "io/read_frame.h"
 
 namespace polyrecon {
 
-/// New samples for one layer. An image with fewer channels than the layer replaces the first ones; a layer with one
-/// channel takes the mean of three.
+/// New samples for one layer: one image channel for each of its channels. A layer with one channel takes the mean of three.
 struct Replacement {
-  std::string layer;  ///< Layer::name, or a single channel's whole name (FrameSource::alpha_channel).
-  Image image;        ///< Width and height of the data window.
+  std::string layer;   ///< Layer::name.
+  Image image;         ///< Width and height of Frame::data_window.
+  bool alpha = false;  ///< Replace the layer's alpha instead of its colour (FrameSource::alpha_layer); 1 channel.
 };
 
 /// What the file says about how it was made: written as polyrecon/version, polyrecon/settings, polyrecon/input and
@@ -29,15 +30,12 @@ struct WriteOptions {
   Provenance provenance;
 };
 
-/// Throws Error{CannotWrite} unless a file could be made beside target (the folder is there and can be written to, target
-/// itself is no folder). Call it before computing; it leaves nothing behind.
-void check_writable(const std::string& target);
-
 /// Writes the file source.path anew with the given layers replaced: same parts, layers, names, types, windows, metadata
 /// and compression. Parts without a replacement are copied chunk by chunk, other channels keep their bits; a part with a
 /// lossy compression is written with ZIP, since encoding it again would change the other channels. Half values beyond
 /// 65504 saturate. Returns notes on both. The file takes its name only after it was read back and found equal: target may
-/// be the input itself. Throws Error{CannotWrite}, an older target is then untouched.
+/// be the input itself; try it with check_writable before computing. Throws Error{CannotWrite}, an older target is then untouched.
+/// Throws Error{BadInput} where a part that is only copied turns out to be damaged.
 std::vector<std::string> write_result(const FrameSource& source, const std::vector<Replacement>& replacements,
                                       const std::string& target, const WriteOptions& options = {});
 
