@@ -16,11 +16,15 @@ def build():
     _carpet_and_chair()
     sun = kit.lamp("SUN", 16.0, (-6, 2.2, 5), (1.0, 0.86, 0.68), target=(0.2, 2.5, 0.4), angle=0.02)
     kit.sky((0.62, 0.72, 0.85), (0.30, 0.48, 0.85), 9.0)
+    for y in (1.1, 2.6):  # tells Cycles where the sky comes in
+        portal = kit.lamp("AREA", 0, (-2.1, y, 1.55), target=(0, y, 1.55), shape="RECTANGLE", size=1.5, size_y=1.0)
+        portal.data.cycles.is_portal = True
     kit.light_groups({"daylight": [sun, scene.world], "lamp": [bulb]})
     kit.camera((1.15, -1.75, 1.4), (-0.05, 3.2, 0.98), 23)
     scene.cycles.max_bounces = 8
     scene.cycles.diffuse_bounces = 6
     scene.cycles.glossy_bounces = 4
+    scene.cycles.caustics_reflective = False  # the sun in the floor would speckle even the reference
     return scene
 
 
