@@ -10,8 +10,6 @@
 namespace polyrecon {
 namespace {
 
-constexpr int kBandLines = 256;  ///< A multiple of the lines in a chunk, whatever the compression.
-
 bool is_tiled(const Imf::Header& header) { return header.hasType() ? Imf::isTiled(header.type()) : header.hasTileDescription(); }
 
 }  // namespace
@@ -44,9 +42,9 @@ Imf::FrameBuffer NativeBand::buffer() {
   return buffer;
 }
 
-std::vector<std::pair<int, int>> bands_of(const Imf::Header& header) {
+std::vector<std::pair<int, int>> bands_of(const Imf::Header& header, int lines) {
   const int first = header.dataWindow().min.y, end = header.dataWindow().max.y + 1;
-  const int lines = is_tiled(header) ? static_cast<int>(header.tileDescription().ySize) : kBandLines;
+  if (is_tiled(header)) lines = static_cast<int>(header.tileDescription().ySize);
   std::vector<std::pair<int, int>> bands;
   for (int y = first; y < end; y += std::min(lines, end - y)) bands.emplace_back(y, y + std::min(lines, end - y));
   if (header.lineOrder() == Imf::DECREASING_Y) std::reverse(bands.begin(), bands.end());
@@ -58,7 +56,8 @@ void read_band(Imf::InputPart& input, NativeBand& band) {
   input.readPixels(band.y0, band.y1 - 1);
 }
 
-void write_bands(Imf::MultiPartOutputFile& output, int part, const std::function<void(NativeBand&)>& make) {
+void write_bands(Imf::MultiPartOutputFile& output, int part, const std::function<void(NativeBand&)>& make,
+                 int lines) {
   const Imf::Header& header = output.header(part);
   if (is_tiled(header)) {
     Imf::TiledOutputPart tiles(output, part);
@@ -71,12 +70,12 @@ void write_bands(Imf::MultiPartOutputFile& output, int part, const std::function
     }
     return;
   }
-  Imf::OutputPart lines(output, part);
-  for (const auto& [y0, y1] : bands_of(header)) {
+  Imf::OutputPart scanlines(output, part);
+  for (const auto& [y0, y1] : bands_of(header, lines)) {
     NativeBand band(header, y0, y1);
     make(band);
-    lines.setFrameBuffer(band.buffer());
-    lines.writePixels(y1 - y0);
+    scanlines.setFrameBuffer(band.buffer());
+    scanlines.writePixels(y1 - y0);
   }
 }
 

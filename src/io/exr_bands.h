@@ -33,13 +33,17 @@ struct NativeBand {
 
 std::size_t size_of(Imf::PixelType type);
 
-/// Lines of the bands that cover a part: whole chunks or tile rows, in the order in which its line order has them written.
-std::vector<std::pair<int, int>> bands_of(const Imf::Header& header);
+constexpr int kBandLines = 256;  ///< A multiple of the lines in a chunk, whatever the compression.
+
+/// The bands that cover a part: so many lines each, or a row of tiles, in the order in which the part's line order has
+/// them written.
+std::vector<std::pair<int, int>> bands_of(const Imf::Header& header, int lines = kBandLines);
 
 /// Decodes the lines of band from a flat part whose channels have one sample a pixel.
 void read_band(Imf::InputPart& input, NativeBand& band);
 
 /// Writes a part band by band; make fills the lines of each band. The bands are those of bands_of, in its order.
-void write_bands(Imf::MultiPartOutputFile& output, int part, const std::function<void(NativeBand&)>& make);
+void write_bands(Imf::MultiPartOutputFile& output, int part, const std::function<void(NativeBand&)>& make,
+                 int lines = kBandLines);
 
 }  // namespace polyrecon

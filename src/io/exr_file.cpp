@@ -1,9 +1,6 @@
 #include "io/exr_file.h"
 
-#include <Iex.h>
 #include <OpenEXR/ImfChannelList.h>
-#include <OpenEXR/ImfFrameBuffer.h>
-#include <OpenEXR/ImfInputPart.h>
 #include <OpenEXR/ImfMultiPartInputFile.h>
 #include <OpenEXR/ImfPartType.h>
 #include <OpenEXR/ImfStandardAttributes.h>
@@ -18,15 +15,13 @@
 #include <fstream>
 
 #include "core/error.h"
+#include "io/channel_reader.h"
 #include "io/exr_attributes.h"
 #include "io/exr_guard.h"
 #include "io/plain_image_file.h"
 
 namespace polyrecon {
 namespace {
-
-constexpr std::size_t kBandSamples = std::size_t{1} << 24;  ///< Samples decoded at once, before they go to the image.
-constexpr int kBandLines = 256;                             ///< The tallest chunk of any compression.
 
 [[noreturn]] void fail(const std::string& path, const std::string& what) {
   throw Error(ExitCode::BadInput, fmt::format("{}: {}", path, what));
@@ -64,11 +59,6 @@ PartInfo describe_part(const Imf::Header& header) {
   return part;
 }
 
-std::string part_title(const FileInfo& file, int part) {
-  const PartInfo& info = file.parts[static_cast<std::size_t>(part)];
-  return info.name.empty() ? fmt::format("part {}", part) : fmt::format("part {} \"{}\"", part, info.name);
-}
-
 bool begins_with_zeros(const std::string& path) {
   std::ifstream stream(path, std::ios::binary);
   std::array<char, 8> head{};
@@ -99,56 +89,6 @@ void describe_exr(FileInfo& file, const ReadLimits& limits) {
   check_chunk_tables(file.path, table_begin, headers);
   file.format = "openexr";
   for (const Imf::Header& header : headers) file.parts.push_back(describe_part(header));
-}
-
-/// Decodes the lines [y0, y1) of all channels into band, one plane of (y1 - y0) * width after the other.
-void read_band(Imf::InputPart& input, const Rect& window, const std::vector<std::string>& channels, int y0, int y1,
-               std::vector<float>& band) {
-  const auto width = static_cast<std::size_t>(window.width());
-  const std::size_t plane = width * static_cast<std::size_t>(y1 - y0);
-  band.resize(plane * channels.size());
-  Imf::FrameBuffer buffer;
-  for (std::size_t c = 0; c < channels.size(); ++c)
-    buffer.insert(channels[c], Imf::Slice::Make(Imf::FLOAT, band.data() + c * plane, Imath::V2i(window.x0, y0),
-                                                window.width(), y1 - y0, sizeof(float), sizeof(float) * width));
-  input.setFrameBuffer(buffer);
-  input.readPixels(y0, y1 - 1);
-}
-
-/// The first line of [y0, y1) that cannot be decoded; y0 where each can be on its own.
-int first_bad_line(Imf::InputPart& input, const Rect& window, const std::vector<std::string>& channels, int y0, int y1) {
-  std::vector<float> line;
-  for (int y = y0; y < y1; ++y) try {
-      read_band(input, window, channels, y, y + 1, line);
-    } catch (const std::exception&) {
-      return y;
-    }
-  return y0;
-}
-
-void read_exr_planes(const FileInfo& file, int part, const std::vector<std::string>& channels,
-                     const std::vector<Real*>& planes) {
-  const Rect window = file.parts[static_cast<std::size_t>(part)].data_window;
-  Imf::MultiPartInputFile container(file.path.c_str(), Imf::globalThreadCount(), false);
-  Imf::InputPart input(container, part);
-  const std::size_t line_samples = static_cast<std::size_t>(window.width()) * channels.size();
-  const int lines = std::max(kBandLines, static_cast<int>(std::min<std::size_t>(kBandSamples / line_samples, 1u << 20)));
-  std::vector<float> band;
-  for (int y = window.y0; y < window.y1; y += lines) {
-    const int end = std::min(window.y1, y + lines);
-    try {
-      read_band(input, window, channels, y, end, band);
-    } catch (const std::bad_alloc&) {
-      throw;
-    } catch (const std::exception& problem) {
-      fail(file.path, fmt::format("incomplete or damaged: {} cannot be read at scanline {} ({})", part_title(file, part),
-                                  first_bad_line(input, window, channels, y, end), first_line(problem.what())));
-    }
-    const std::size_t plane = static_cast<std::size_t>(window.width()) * static_cast<std::size_t>(end - y);
-    const std::size_t done = static_cast<std::size_t>(window.width()) * static_cast<std::size_t>(y - window.y0);
-    for (std::size_t c = 0; c < channels.size(); ++c)
-      std::copy_n(band.begin() + static_cast<std::ptrdiff_t>(plane * c), plane, planes[c] + done);
-  }
 }
 
 }  // namespace
@@ -199,16 +139,16 @@ Image read_channels(const FileInfo& file, int part, const std::vector<std::strin
 
 void read_planes(const FileInfo& file, int part, const std::vector<std::string>& channels,
                  const std::vector<Real*>& planes) {
-  const PartInfo& info = file.parts[static_cast<std::size_t>(part)];
-  if (!info.readable())
-    fail(file.path, fmt::format("{} is unsupported ({})", part_title(file, part),
-                                "deep, mip-mapped or subsampled (luminance-chroma)"));
-  if (file.format != "openexr") return read_plain_planes(file, channels, planes);
-  try {
-    read_exr_planes(file, part, channels, planes);
-  } catch (const Iex::BaseExc& problem) {
-    fail(file.path, fmt::format("incomplete or damaged: {} cannot be read ({})", part_title(file, part),
-                                first_line(problem.what())));
+  const Rect window = file.parts[static_cast<std::size_t>(part)].data_window;
+  ChannelReader reader(file, part, channels);
+  const int lines = reader.lines_per_band();
+  for (int y = window.y0; y < window.y1; y += std::min(lines, window.y1 - y)) {
+    const int end = y + std::min(lines, window.y1 - y);
+    const std::vector<float>& band = reader.read(y, end);
+    const std::size_t done = static_cast<std::size_t>(window.width()) * static_cast<std::size_t>(y - window.y0);
+    const std::size_t plane = static_cast<std::size_t>(window.width()) * static_cast<std::size_t>(end - y);
+    for (std::size_t c = 0; c < channels.size(); ++c)
+      std::copy_n(band.begin() + static_cast<std::ptrdiff_t>(plane * c), plane, planes[c] + done);
   }
 }
 

@@ -18,7 +18,7 @@ struct LayerStatistics {
 
 struct Inspection {
   FrameSource source;
-  std::vector<LayerStatistics> statistics;  ///< In the order of source.layers; layers of unreadable parts are left out.
+  std::vector<LayerStatistics> statistics;  ///< By file and part; layers of unreadable parts are left out.
   std::vector<std::string> missing;         ///< Roles that no layer plays: "variance", "albedo", ...
   double samples = 0;                       ///< Samples per pixel where known, else 0.
   double noise_level = -1;                  ///< Mean over pixels of variance / (mean^2 + 0.01) of the beauty; -1 where unknown.

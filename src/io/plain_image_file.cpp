@@ -59,8 +59,7 @@ void describe_plain_image(FileInfo& file, const ReadLimits& limits) {
   file.parts.push_back(std::move(part));
 }
 
-void read_plain_planes(const FileInfo& file, const std::vector<std::string>& channels,
-                       const std::vector<Real*>& planes) {
+Image read_plain_image(const FileInfo& file, const std::vector<std::string>& channels) {
   const PartInfo& part = file.parts.front();
   const auto width = static_cast<std::size_t>(part.data_window.width());
   const auto height = static_cast<std::size_t>(part.data_window.height());
@@ -69,6 +68,7 @@ void read_plain_planes(const FileInfo& file, const std::vector<std::string>& cha
   const auto input = OIIO::ImageInput::open(file.path);
   if (!input || !input->read_image(0, 0, 0, static_cast<int>(stride), OIIO::TypeDesc::FLOAT, pixels.data()))
     fail(file.path, fmt::format("incomplete or damaged ({})", first_line(input ? input->geterror() : OIIO::geterror())));
+  Image image(part.data_window.width(), part.data_window.height(), static_cast<int>(channels.size()));
   for (std::size_t c = 0; c < channels.size(); ++c) {
     const auto found = std::find_if(part.channels.begin(), part.channels.end(),
                                     [&](const ChannelInfo& channel) { return channel.name == channels[c]; });
@@ -76,9 +76,10 @@ void read_plain_planes(const FileInfo& file, const std::vector<std::string>& cha
     for (std::size_t y = 0; y < height; ++y) {
       const std::size_t row = is_bottom_up(file) ? height - 1 - y : y;
       for (std::size_t x = 0; x < width; ++x)
-        planes[c][y * width + x] = static_cast<Real>(pixels[(row * width + x) * stride + source]);
+        image.plane(static_cast<int>(c))[y * width + x] = static_cast<Real>(pixels[(row * width + x) * stride + source]);
     }
   }
+  return image;
 }
 
 }  // namespace polyrecon

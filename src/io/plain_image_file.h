@@ -11,8 +11,7 @@ namespace polyrecon {
 /// Channels are named R, G, B, A or Y. Throws Error{BadInput} as describe_file does.
 void describe_plain_image(FileInfo& file, const ReadLimits& limits);
 
-/// Counterpart of read_planes, upper row first whatever the format's order. Throws Error{BadInput}.
-void read_plain_planes(const FileInfo& file, const std::vector<std::string>& channels,
-                       const std::vector<Real*>& planes);
+/// Channels of the whole image, upper row first whatever the format's order. Throws Error{BadInput}.
+Image read_plain_image(const FileInfo& file, const std::vector<std::string>& channels);
 
 }  // namespace polyrecon

@@ -28,6 +28,7 @@
 #include "io/exr_attributes.h"
 #include "io/exr_bands.h"
 #include "io/exr_raw.h"
+#include "io/exr_single_part.h"
 
 namespace polyrecon {
 namespace {
@@ -336,24 +337,8 @@ std::vector<std::string> write_result(const FrameSource& source, const std::vect
 
 void write_maps(const std::string& target, const std::vector<MapChannel>& channels, const Rect& data_window,
                 const Rect& display_window, const MapAttributes& attributes) {
-  const Imf::Header header = map_header(channels, data_window, display_window, attributes);
-  const auto write = [&](const std::string& path) {
-    Imf::MultiPartOutputFile output(path.c_str(), &header, 1, true);
-    write_bands(output, 0, [&](NativeBand& band) { fill_map_band(channels, data_window, band); });
-  };
-  const auto verify = [&](const std::string& path) {
-    Imf::MultiPartInputFile written(path.c_str(), Imf::globalThreadCount(), false);
-    Imf::InputPart back(written, 0);
-    for (const auto& [y0, y1] : bands_of(header)) {
-      NativeBand expected(header, y0, y1), found(header, y0, y1);
-      fill_map_band(channels, data_window, expected);
-      read_band(back, found);
-      for (std::size_t c = 0; c < found.channels.size(); ++c)
-        if (found.channels[c].samples != expected.channels[c].samples)
-          throw std::runtime_error(fmt::format("channel {} differs when it is read back", found.channels[c].name));
-    }
-  };
-  write_atomically(target, write, verify);
+  write_single_part(target, map_header(channels, data_window, display_window, attributes),
+                    [&](NativeBand& band) { fill_map_band(channels, data_window, band); });
 }
 
 }  // namespace polyrecon
