@@ -4,7 +4,7 @@
 #include <fstream>
 
 #include "core/error.h"
-#include "io/write_result.h"
+#include "io/atomic_file.h"
 
 namespace polyrecon {
 namespace {

@@ -1,10 +1,10 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <chrono>
 #include <cstdio>
-#include <cstdlib>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <map>
 #include <memory>
 #include <string>
@@ -19,8 +19,8 @@
 #include "cli/sample_map_options.h"
 #include "core/error.h"
 #include "core/parallel.h"
+#include "io/atomic_file.h"
 #include "io/read_frame.h"
-#include "io/whole_file.h"
 #include "io/write_result.h"
 #include "pipeline/reconstruct.h"
 
@@ -133,6 +133,16 @@ std::vector<std::string> write_all(const DenoiseOptions& o, const ReadResult& in
     notes.push_back("sample map: " + make_and_write_sample_map(o.sample_map, result.error, in.frame.sample_count,
                                                                windows, o.sampling, progress));
   return notes;
+}
+
+void write_text(const std::string& target, const std::string& text) {
+  const auto write = [&](const std::string& path) { std::ofstream(path, std::ios::binary) << text; };
+  const auto verify = [&](const std::string& path) {
+    std::ifstream file(path, std::ios::binary);
+    if (std::string(std::istreambuf_iterator<char>(file), {}) != text)
+      throw Error(ExitCode::CannotWrite, target + ": cannot be read back, is the disk full?");
+  };
+  write_atomically(target, write, verify);
 }
 
 void print(bool quiet, const std::string& text) {

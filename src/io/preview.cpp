@@ -9,7 +9,7 @@
 #include <string>
 
 #include "core/error.h"
-#include "io/whole_file.h"
+#include "io/atomic_file.h"
 
 namespace polyrecon {
 namespace {
@@ -116,11 +116,17 @@ Image compose(const std::vector<Panel>& panels) {
 }
 
 void write_png(const std::string& target, const Image& rgb) {
-  write_whole(target, [&](const std::string& temporary) {
-    OIIO::ImageBuf buffer = buffer_of(rgb);
-    if (!buffer.write(temporary, OIIO::TypeDesc::UINT8, "png"))
+  const auto write = [&](const std::string& path) {
+    const OIIO::ImageBuf buffer = buffer_of(rgb);
+    if (!buffer.write(path, OIIO::TypeDesc::UINT8, "png"))
       throw Error(ExitCode::CannotWrite, target + ": " + buffer.geterror());
-  });
+  };
+  const auto verify = [&](const std::string& path) {
+    OIIO::ImageBuf back(path);
+    if (!back.read() || back.spec().width != rgb.width() || back.spec().height != rgb.height())
+      throw Error(ExitCode::CannotWrite, target + ": cannot be read back");
+  };
+  write_atomically(target, write, verify);
 }
 
 }  // namespace polyrecon
