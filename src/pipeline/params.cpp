@@ -3,10 +3,42 @@
 #include "core/error.h"
 
 namespace polyrecon {
+namespace {
+
+void require(bool holds, const char* message) {
+  if (!holds) throw Error(ExitCode::Usage, message);
+}
+
+}  // namespace
+
+Params params_for(Quality quality) {
+  Params params;
+  if (quality == Quality::Draft) {
+    params.stages = 1;
+    params.levels = 2;
+    params.stride = 4;
+    params.max_order = 1;
+    params.first_bandwidths = {Real(0.7)};
+  } else if (quality == Quality::Best) {
+    params.stages = 3;
+    params.stride = 1;
+    params.first_bandwidths = {Real(0.35), Real(0.5), Real(0.7), Real(1)};
+    params.later_bandwidths = {Real(0.35), Real(0.5), Real(0.7), Real(1)};
+    params.guided_bandwidths = {Real(0.5), Real(1)};
+  }
+  return params;
+}
 
 void validate(const Params& params) {
-  if (params.stages < 1 || params.stages > 4) throw Error(ExitCode::Usage, "stages must be 1 to 4");
-  if (params.max_order < 0 || params.max_order > 4) throw Error(ExitCode::Usage, "the order must be 0 to 4");
+  require(params.stages >= 1 && params.stages <= 4, "the number of stages must be 1 to 4");
+  require(params.levels >= 1 && params.levels <= 5, "the number of levels must be 1 to 5");
+  require(params.radius >= 1 && params.radius <= 20, "the window radius must be 1 to 20 pixels");
+  require(params.stride >= 1 && params.stride <= params.radius, "the stride must be 1 pixel to the window radius");
+  require(params.patch_radius >= 0 && params.patch_radius <= 4, "the patch radius must be 0 to 4 pixels");
+  require(params.max_order >= 0 && params.max_order <= BasisLayout::max_order, "the order must be 0 to 4");
+  require(!params.first_bandwidths.empty() && !params.later_bandwidths.empty(), "each stage needs a bandwidth");
+  for (const auto* bandwidths : {&params.first_bandwidths, &params.later_bandwidths, &params.guided_bandwidths})
+    for (const Real h : *bandwidths) require(h > 0, "a bandwidth must be positive");
 }
 
 }  // namespace polyrecon

@@ -1,0 +1,307 @@
+#include "blend/blend_windows.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/parallel.h"
+#include "core/simd.h"
+#include "regression/least_squares.h"
+#include "regression/order_selection.h"
+#include "regression/weights.h"
+#include "regression/window.h"
+
+namespace polyrecon {
+namespace {
+
+/// Sums of equation (3) for one bandwidth, interleaved: a window touches all of them at each of its pixels.
+/// Channels: response | error 3 | variance 3 | order 1 | weight.
+class BlendSums {
+ public:
+  BlendSums(const Rect& area, int responses)
+      : area_(area), channels_(static_cast<std::size_t>(responses) + 8), sums_(area.area() * channels_, 0.0) {}
+
+  std::size_t channels() const { return channels_; }
+  double* at(int x, int y) {
+    return sums_.data() +
+           (static_cast<std::size_t>(y - area_.y0) * static_cast<std::size_t>(area_.width()) + static_cast<std::size_t>(x - area_.x0)) *
+               channels_;
+  }
+  double weight(int x, int y) { return at(x, y)[channels_ - 1]; }
+  const Rect& area() const { return area_; }
+
+ private:
+  Rect area_;
+  std::size_t channels_;
+  std::vector<double> sums_;
+};
+
+/// The same sums for the whole image, in storage precision.
+struct BlendPlane {
+  std::size_t channels;
+  int width;
+  std::vector<Real> sums;
+
+  BlendPlane(int w, int h, int responses)
+      : channels(static_cast<std::size_t>(responses) + 8),
+        width(w),
+        sums(static_cast<std::size_t>(w) * static_cast<std::size_t>(h) * channels, Real(0)) {}
+  Real* at(int x, int y) {
+    return sums.data() + (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)) * channels;
+  }
+  void add(BlendSums& block) {
+    const Rect& r = block.area();
+    for (int y = r.y0; y < r.y1; ++y) {
+      Real* out = at(r.x0, y);
+      const double* in = block.at(r.x0, y);
+      for (std::size_t k = 0; k < static_cast<std::size_t>(r.width()) * channels; ++k) out[k] += static_cast<Real>(in[k]);
+    }
+  }
+};
+
+/// What a thread needs to work through windows, allocated once.
+struct Scratch {
+  PatchDistances distances;
+  Window window;
+  NestedFactor factor;
+  std::vector<Real> weight, fit;
+  std::vector<int> center_x, center_y;
+};
+
+POLYRECON_SIMD void add_scaled(Real* y, const Real* x, Real factor, int n) {
+  for (int j = 0; j < n; ++j) y[j] += factor * x[j];
+}
+
+double weighted_sum(const Window& window, const Real* weight, const Real* values) {
+  double sum = 0;
+  for (int j = 0; j < window.count; ++j) sum += static_cast<double>(weight[j]) * static_cast<double>(values[j]);
+  return sum;
+}
+
+double weighted_energy(const Window& window, const Real* weight, const Real* values) {
+  double sum = 0;
+  for (int j = 0; j < window.count; ++j)
+    sum += static_cast<double>(weight[j]) * static_cast<double>(values[j]) * static_cast<double>(values[j]);
+  return sum;
+}
+
+std::array<ColumnStatistics, 3> column_statistics(const Scratch& s, bool first_stage) {
+  std::array<ColumnStatistics, 3> channels;
+  for (std::size_t c = 0; c < channels.size(); ++c) {
+    const std::size_t offset = c * static_cast<std::size_t>(s.window.stride);
+    const Real* y = s.window.response.data() + offset;
+    const Real* variance = s.window.noise_variance.data() + offset;
+    const Real* guess = first_stage ? y : s.window.guess.data() + offset;
+    project(s.factor, s.window, s.weight.data(), y, channels[c].z.data());
+    project_variance(s.factor, s.window, s.weight.data(), variance, channels[c].variance.data());
+    if (!first_stage) project(s.factor, s.window, s.weight.data(), guess, channels[c].guess.data());
+    channels[c].guess_energy = weighted_energy(s.window, s.weight.data(), guess);
+    channels[c].noise_energy = weighted_sum(s.window, s.weight.data(), variance);
+  }
+  return channels;
+}
+
+/// yhat of every response channel at every pixel of the window: sum_a g_a z_a q_a.
+void evaluate(Scratch& s, const OrderChoice& choice, int columns, std::size_t responses,
+              const std::array<ColumnStatistics, 3>& beauty) {
+  const auto stride = static_cast<std::size_t>(s.window.stride);
+  std::array<double, BasisLayout::max_columns> z{};
+  for (std::size_t c = 0; c < responses; ++c) {
+    Real* fit = s.fit.data() + c * stride;
+    std::fill(fit, fit + s.window.padded, Real(0));
+    if (c < 3)
+      z = beauty[c].z;
+    else
+      project(s.factor, s.window, s.weight.data(), s.window.response.data() + c * stride, z.data());
+    for (std::size_t a = 0; a < static_cast<std::size_t>(columns); ++a)
+      if (choice.factor[a] * z[a] != 0)
+        add_scaled(fit, s.factor.q.data() + a * stride, static_cast<Real>(choice.factor[a] * z[a]), s.window.padded);
+  }
+}
+
+bool all_finite(const Scratch& s, std::size_t responses) {
+  const auto stride = static_cast<std::size_t>(s.window.stride);
+  for (std::size_t c = 0; c < responses; ++c) {
+    double sum = 0;
+    for (std::size_t j = 0; j < static_cast<std::size_t>(s.window.count); ++j) sum += static_cast<double>(s.fit[c * stride + j]);
+    if (!std::isfinite(sum)) return false;
+  }
+  return true;
+}
+
+void blend(const Scratch& s, const OrderChoice& choice, std::size_t responses, BlendSums& sums) {
+  const auto stride = static_cast<std::size_t>(s.window.stride);
+  double constant[8];
+  for (std::size_t c = 0; c < 3; ++c) {
+    constant[c] = choice.error[c];
+    constant[3 + c] = choice.variance[c];
+  }
+  constant[6] = BasisLayout::order_of(choice.model);
+  constant[7] = 1;
+  for (std::size_t j = 0; j < static_cast<std::size_t>(s.window.count); ++j) {
+    const double w = static_cast<double>(s.weight[j]);
+    if (w == 0) continue;
+    double* out = sums.at(s.window.x[j], s.window.y[j]);
+    for (std::size_t c = 0; c < responses; ++c) out[c] += w * static_cast<double>(s.fit[c * stride + j]);
+    for (std::size_t k = 0; k < 8; ++k) out[responses + k] += w * constant[k];
+  }
+}
+
+/// The image sized state of one call.
+struct Blending {
+  const FitSource& source;
+  const FitParams& params;
+  BasisLayout layout;
+  FitCounters& counters;
+  std::vector<BlendPlane> planes;
+
+  std::size_t responses() const { return static_cast<std::size_t>(source.response->channels()); }
+};
+
+/// Fits the gathered window under one bandwidth and adds it to the sums.
+void fit_window(Blending& b, Scratch& s, Real bandwidth, BlendSums& sums) {
+  const bool first_stage = !b.source.guess;
+  const double weight_sum = kernel_weights(s.window, bandwidth, s.weight.data());
+  factorise(s.window, b.layout.columns(), s.weight.data(), s.factor);
+  const auto statistics = column_statistics(s, first_stage);
+  OrderChoice choice = select_order(statistics, b.layout, weight_sum, first_stage, b.params.order_tolerance);
+  evaluate(s, choice, b.layout.columns(choice.model), b.responses(), statistics);
+  ++b.counters.windows;
+  if (s.factor.rank < b.layout.columns()) ++b.counters.rank_deficient;
+  if (!all_finite(s, b.responses())) {
+    // A window whose fit overflowed says nothing; its pixels are left to the other windows and, last, to the input.
+    ++b.counters.fallen_back_to_mean;
+    return;
+  }
+  ++b.counters.per_model[static_cast<std::size_t>(choice.model)];
+  blend(s, choice, b.responses(), sums);
+}
+
+void work_block(Blending& b, const Rect& block, Scratch& s, std::vector<BlendSums>& sums) {
+  const FitParams& p = b.params;
+  s.window.reserve(p.radius, b.layout.columns(), b.source.response->channels());
+  s.weight.resize(static_cast<std::size_t>(s.window.stride));
+  s.fit.resize(static_cast<std::size_t>(s.window.stride) * b.responses());
+  s.distances.compute(*b.source.guide, *b.source.guide_variance, block, s.center_x, s.center_y, p.radius, p.patch_radius);
+  const Real widest = *std::max_element(p.bandwidths.begin(), p.bandwidths.end());
+  const WindowSource source{b.source.response, b.source.noise_variance, b.source.features, b.source.guess};
+  for (std::size_t k = 0; k < s.center_x.size(); ++k) {
+    s.distances.window_of(k, cut_exponent * widest * widest, s.window);
+    if (s.window.count == 0) continue;
+    gather(source, b.layout, s.center_x[k], s.center_y[k], p.radius, s.window);
+    for (std::size_t h = 0; h < p.bandwidths.size(); ++h) fit_window(b, s, p.bandwidths[h], sums[h]);
+  }
+}
+
+/// Works all centres for which is_center holds. Blocks of one of the four phases never touch the same pixel, and the phases
+/// follow each other: every pixel is summed in one order, whatever the threads do.
+template <typename IsCenter>
+void sweep(Blending& b, Progress& progress, const IsCenter& is_center) {
+  const Rect bounds = b.source.response->bounds();
+  const auto blocks = aligned_blocks(bounds, block_size);
+  for (int phase = 0; phase < 4; ++phase) {
+    std::vector<Rect> mine;
+    for (const Rect& r : blocks)
+      if ((r.x0 / block_size) % 2 + 2 * ((r.y0 / block_size) % 2) == phase) mine.push_back(r);
+    parallel_for(mine.size(), progress, [&](std::size_t i) {
+      thread_local Scratch scratch;
+      scratch.center_x.clear();
+      scratch.center_y.clear();
+      for (int y = mine[i].y0; y < mine[i].y1; ++y)
+        for (int x = mine[i].x0; x < mine[i].x1; ++x)
+          if (is_center(x, y)) {
+            scratch.center_x.push_back(x);
+            scratch.center_y.push_back(y);
+          }
+      if (scratch.center_x.empty()) return;
+      std::vector<BlendSums> sums(b.planes.size(), BlendSums(intersect(bounds, grow(mine[i], b.params.radius)),
+                                                             b.source.response->channels()));
+      work_block(b, mine[i], scratch, sums);
+      for (std::size_t h = 0; h < sums.size(); ++h) b.planes[h].add(sums[h]);
+    });
+  }
+}
+
+BlendedFit normalise(BlendPlane& plane, const Image& response, const std::vector<unsigned char>& active,
+                     FitCounters& counters) {
+  const int width = response.width(), height = response.height(), channels = response.channels();
+  BlendedFit out{Image(width, height, channels), Image(width, height, 3), Image(width, height, 3), Image(width, height, 1)};
+  Progress silent;
+  parallel_for(static_cast<std::size_t>(height), silent, [&](std::size_t row) {
+    const int y = static_cast<int>(row);
+    std::size_t uncovered = 0;
+    for (int x = 0; x < width; ++x) {
+      const Real* sums = plane.at(x, y);
+      const Real weight = sums[plane.channels - 1];
+      const bool covered = weight > std::numeric_limits<Real>::min();
+      for (int c = 0; c < channels; ++c) out.value.at(x, y, c) = covered ? sums[c] / weight : response.at(x, y, c);
+      if (!covered) {
+        uncovered += active[response.index(x, y)];
+        continue;
+      }
+      for (int c = 0; c < 3; ++c) {
+        out.error.at(x, y, c) = sums[channels + c] / weight;
+        out.variance.at(x, y, c) = sums[channels + 3 + c] / weight;
+      }
+      out.order.at(x, y, 0) = sums[channels + 6] / weight;
+    }
+    counters.uncovered_pixels += uncovered;
+  });
+  return out;
+}
+
+/// Grows the set of active pixels by the window's radius: the centres that some active pixel needs.
+std::vector<unsigned char> reached(const std::vector<unsigned char>& active, int width, int height, int radius) {
+  std::vector<unsigned char> rows(active.size(), 0), out(active.size(), 0);
+  const auto spread = [&](const std::vector<unsigned char>& in, std::vector<unsigned char>& to, int lines, int length,
+                          std::size_t line_step, std::size_t step) {
+    for (int l = 0; l < lines; ++l) {
+      int last = -2 * radius - 2;  // nearest active pixel before
+      const std::size_t base = static_cast<std::size_t>(l) * line_step;
+      for (int k = 0; k < length; ++k) {
+        if (in[base + static_cast<std::size_t>(k) * step]) last = k;
+        if (k - last <= radius) to[base + static_cast<std::size_t>(k) * step] = 1;
+      }
+      last = length + 2 * radius + 2;
+      for (int k = length - 1; k >= 0; --k) {
+        if (in[base + static_cast<std::size_t>(k) * step]) last = k;
+        if (last - k <= radius) to[base + static_cast<std::size_t>(k) * step] = 1;
+      }
+    }
+  };
+  spread(active, rows, height, width, static_cast<std::size_t>(width), 1);
+  spread(rows, out, width, height, 1, static_cast<std::size_t>(width));
+  return out;
+}
+
+}  // namespace
+
+int fit_halo(const FitParams& params) { return 3 * params.radius + params.patch_radius + 1; }
+
+std::vector<BlendedFit> fit_and_blend(const FitSource& source, const std::vector<unsigned char>& active,
+                                      const FitParams& params, FitCounters& counters, Progress& progress) {
+  const int width = source.response->width(), height = source.response->height();
+  Blending b{source, params, BasisLayout(source.features->channels(), params.max_order), counters, {}};
+  for (std::size_t h = 0; h < params.bandwidths.size(); ++h) b.planes.emplace_back(width, height, source.response->channels());
+  const auto needed = reached(active, width, height, params.radius);
+  const auto on_grid = [&](int x, int y) { return x % params.stride == 0 && y % params.stride == 0; };
+  sweep(b, progress, [&](int x, int y) { return on_grid(x, y) && needed[source.response->index(x, y)]; });
+  if (params.stride > 1) {
+    // Pixels that only unlike centres cover would get a bad blend: they become centres themselves.
+    const std::size_t widest = static_cast<std::size_t>(
+        std::max_element(params.bandwidths.begin(), params.bandwidths.end()) - params.bandwidths.begin());
+    std::vector<unsigned char> lonely(active.size(), 0);
+    for (int y = 0; y < height; ++y)
+      for (int x = 0; x < width; ++x) {
+        const BlendPlane& plane = b.planes[widest];
+        const std::size_t i = source.response->index(x, y);
+        lonely[i] = active[i] && !on_grid(x, y) &&
+                    static_cast<double>(plane.sums[(i + 1) * plane.channels - 1]) < params.coverage;
+      }
+    sweep(b, progress, [&](int x, int y) { return lonely[source.response->index(x, y)] != 0; });
+  }
+  std::vector<BlendedFit> out;
+  for (BlendPlane& plane : b.planes) out.push_back(normalise(plane, *source.response, active, counters));
+  return out;
+}
+
+}  // namespace polyrecon

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <vector>
+
+#include "core/image.h"
+#include "core/progress.h"
+#include "regression/basis.h"
+
+namespace polyrecon {
+
+struct FitParams {
+  int radius = 9;                    ///< Of the window Omega_c, pixels.
+  int stride = 2;                    ///< Distance of the window centres, pixels.
+  int patch_radius = 1;              ///< Of the patches whose distance weighs the window.
+  std::vector<Real> bandwidths;      ///< h of the kernel K_h; one blended image each.
+  int max_order = 2;                 ///< Highest Taylor order offered, 0..4.
+  double order_tolerance = 0;        ///< See select_order.
+  double coverage = 1;               ///< A pixel whose kernel weights sum to less becomes a centre of its own.
+};
+
+/// Everything one blended image is made from; all images of one size.
+struct FitSource {
+  const Image* response = nullptr;        ///< Beauty and AOVs of the half that is fitted.
+  const Image* noise_variance = nullptr;  ///< Of its beauty, 3 channels.
+  const Image* features = nullptr;        ///< Of the other half.
+  const Image* guide = nullptr;           ///< Colours of the other half (or of the stage before), 3 channels: the weights.
+  const Image* guide_variance = nullptr;  ///< Noise variance of guide.
+  const Image* guess = nullptr;           ///< mu as the stage before saw it, 3 channels; null in stage 1.
+};
+
+/// The windows of one bandwidth, overlapped and blended by equation (3).
+struct BlendedFit {
+  Image value;     ///< As FitSource::response.
+  Image error;     ///< Estimated error (4) of the windows, blended like the value, 3 channels; radiance squared.
+  Image variance;  ///< The variance part (6) of it, 3 channels.
+  Image order;     ///< Taylor order k, blended, 1 channel.
+};
+
+/// Counted over all windows; plain sums, so the order of the threads does not matter.
+struct FitCounters {
+  std::atomic<std::size_t> windows{0}, rank_deficient{0}, fallen_back_to_mean{0}, uncovered_pixels{0};
+  std::array<std::atomic<std::size_t>, BasisLayout::max_models> per_model{};
+};
+
+/// Centres are placed and pixels summed in blocks aligned to this many pixels; a crop that begins at a multiple of twice
+/// it is worked with the same bits as the whole.
+constexpr int block_size = 32;
+
+/// Pixels around a region that fit_and_blend looks at: window + the windows that reach a pixel + patch, and once more where
+/// a pixel may become a centre of its own.
+int fit_halo(const FitParams& params);
+
+/// Fits a window (2) around every stride-th pixel, chooses its order (7) and blends the windows (3), for every bandwidth.
+/// `active` (one byte a pixel) tells which pixels matter; windows that cover none of them are left out, pixels that no finite
+/// fit covers keep the response.
+std::vector<BlendedFit> fit_and_blend(const FitSource& source, const std::vector<unsigned char>& active,
+                                      const FitParams& params, FitCounters& counters, Progress& progress);
+
+}  // namespace polyrecon

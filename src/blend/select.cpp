@@ -1,0 +1,143 @@
+#include "blend/select.h"
+
+#include <cassert>
+#include <cmath>
+
+#include "core/gaussian.h"
+#include "core/parallel.h"
+
+namespace polyrecon {
+namespace {
+
+constexpr double brightness_sigma = 1;
+constexpr double pi = 3.14159265358979323846;
+
+void for_rows(int height, const std::function<void(int)>& body) {
+  Progress silent;
+  parallel_for(static_cast<std::size_t>(height), silent, [&](std::size_t y) { body(static_cast<int>(y)); });
+}
+
+/// 1 / (brightness^2 + epsilon), the square smoothed so that one dark pixel does not carry the risk of its neighbourhood.
+Image inverse_brightness(const Image& brightness, double epsilon) {
+  Image out = brightness;
+  for_rows(out.height(), [&](int y) {
+    for (int c = 0; c < 3; ++c)
+      for (int x = 0; x < out.width(); ++x) out.at(x, y, c) *= out.at(x, y, c);
+  });
+  out = gaussian_blur(out, brightness_sigma);
+  for_rows(out.height(), [&](int y) {
+    for (int c = 0; c < 3; ++c)
+      for (int x = 0; x < out.width(); ++x)
+        out.at(x, y, c) = static_cast<Real>(1 / (static_cast<double>(out.at(x, y, c)) + epsilon));
+  });
+  return out;
+}
+
+/// The unsmoothed risk of a candidate.
+Image raw_risk(const HalfPair& pair, const Candidate& candidate, const Image& scale) {
+  Image out(pair.width(), pair.height(), 1);
+  for_rows(out.height(), [&](int y) {
+    Real* risk = out.row(0, y);
+    for (int c = 0; c < 3; ++c) {
+      const Real *fa = candidate.half[0].row(c, y), *fb = candidate.half[1].row(c, y);
+      const Real *a = pair.color[0].row(c, y), *b = pair.color[1].row(c, y), *s = scale.row(c, y);
+      for (int x = 0; x < out.width(); ++x) {
+        const Real da = fa[x] - b[x], db = fb[x] - a[x], d = fa[x] - fb[x];
+        risk[x] += (Real(0.5) * (da * da + db * db) - Real(0.25) * d * d) * s[x] * Real(1.0 / 3);
+      }
+    }
+  });
+  return out;
+}
+
+/// exp(-D / (softness SE)) of a candidate against the best one of each pixel.
+Image share(const std::vector<Image>& raw, const std::vector<Image>& risk, const std::vector<int>& best, std::size_t k,
+            const SelectParams& params) {
+  const int width = raw[k].width(), height = raw[k].height();
+  Image moments(width, height, 2);
+  const auto best_at = [&](int x, int y) { return static_cast<std::size_t>(best[raw[k].index(x, y)]); };
+  for_rows(height, [&](int y) {
+    for (int x = 0; x < width; ++x) {
+      const Real difference = raw[k].at(x, y, 0) - raw[best_at(x, y)].at(x, y, 0);
+      moments.at(x, y, 0) = difference;
+      moments.at(x, y, 1) = difference * difference;
+    }
+  });
+  moments = gaussian_blur(moments, params.risk_sigma);
+  const double independent = 4 * pi * params.risk_sigma * params.risk_sigma;  // pixels that a Gaussian average is worth
+  Image out(width, height, 1);
+  for_rows(height, [&](int y) {
+    for (int x = 0; x < width; ++x) {
+      if (best_at(x, y) == k) {
+        out.at(x, y, 0) = 1;
+        continue;
+      }
+      const double mean = moments.at(x, y, 0), square = moments.at(x, y, 1);
+      const double error = std::sqrt(std::max(0.0, square - mean * mean) / independent);
+      const double above = static_cast<double>(risk[k].at(x, y, 0)) - static_cast<double>(risk[best_at(x, y)].at(x, y, 0));
+      out.at(x, y, 0) = static_cast<Real>(above > 0 ? std::exp(-above / (params.softness * error + 1e-30)) : 1.0);
+    }
+  });
+  return out;
+}
+
+std::vector<int> least_risk(const std::vector<Image>& risk) {
+  std::vector<int> best(risk[0].pixels(), 0);
+  for_rows(risk[0].height(), [&](int y) {
+    for (int x = 0; x < risk[0].width(); ++x) {
+      int& b = best[risk[0].index(x, y)];
+      for (int k = 1; k < static_cast<int>(risk.size()); ++k)
+        if (risk[static_cast<std::size_t>(k)].at(x, y, 0) < risk[static_cast<std::size_t>(b)].at(x, y, 0)) b = k;
+    }
+  });
+  return best;
+}
+
+void add_share(const Image& in, const Image& shares, const Image& total, Image& out) {
+  if (in.empty()) return;
+  for_rows(out.height(), [&](int y) {
+    for (int c = 0; c < out.channels(); ++c)
+      for (int x = 0; x < out.width(); ++x)
+        out.at(x, y, c) += in.at(x, y, c) * (shares.at(x, y, 0) / total.at(x, y, 0));
+  });
+}
+
+}  // namespace
+
+int select_halo(const SelectParams& params) {
+  return gaussian_reach(brightness_sigma) + gaussian_reach(params.risk_sigma) + gaussian_reach(params.map_sigma);
+}
+
+Candidate select(const HalfPair& pair, const Image& brightness, const std::vector<Candidate>& candidates,
+                 const SelectParams& params) {
+  assert(!candidates.empty());
+  const int width = pair.width(), height = pair.height();
+  const Image scale = inverse_brightness(brightness, pair.epsilon);
+  std::vector<Image> raw, risk, shares;
+  for (const Candidate& candidate : candidates) {
+    raw.push_back(raw_risk(pair, candidate, scale));
+    risk.push_back(gaussian_blur(raw.back(), params.risk_sigma));
+  }
+  const std::vector<int> best = least_risk(risk);
+  Image total(width, height, 1);
+  for (std::size_t k = 0; k < candidates.size(); ++k) {
+    shares.push_back(gaussian_blur(share(raw, risk, best, k, params), params.map_sigma));
+    for_rows(height, [&](int y) {
+      for (int x = 0; x < width; ++x) total.at(x, y, 0) += shares[k].at(x, y, 0);
+    });
+  }
+  const int channels = pair.color[0].channels();
+  Candidate out{{Image(width, height, channels), Image(width, height, channels)},
+                Image(width, height, 3),
+                Image(width, height, 3),
+                Image(width, height, 1)};
+  for (std::size_t k = 0; k < candidates.size(); ++k) {
+    for (std::size_t h = 0; h < 2; ++h) add_share(candidates[k].half[h], shares[k], total, out.half[h]);
+    add_share(candidates[k].error, shares[k], total, out.error);
+    add_share(candidates[k].variance, shares[k], total, out.variance);
+    add_share(candidates[k].order, shares[k], total, out.order);
+  }
+  return out;
+}
+
+}  // namespace polyrecon

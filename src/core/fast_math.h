@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstdint>
+#include <cstring>
+
+#include "core/real.h"
+
+namespace polyrecon {
+
+/// exp(-x) for x in [0, 80] to a relative error below 3e-7 (Cody-Waite reduction, degree 6 polynomial). Inline and free
+/// of branches so that loops over it vectorise, which std::exp prevents. Same bits on every machine that rounds alike.
+inline float exp_minus(float x) {
+  const float t = x * -1.44269504f;
+  const float shifted = t + 12582912.0f;  // 1.5 * 2^23 rounds t to the nearest integer
+  const float rounded = shifted - 12582912.0f;
+  const float r = (t - rounded) * 0.693147181f;
+  float p = 1.0f / 720;
+  p = p * r + 1.0f / 120;
+  p = p * r + 1.0f / 24;
+  p = p * r + 1.0f / 6;
+  p = p * r + 0.5f;
+  p = p * r + 1.0f;
+  p = p * r + 1.0f;
+  std::int32_t bits;
+  std::memcpy(&bits, &p, sizeof bits);
+  bits += static_cast<std::int32_t>(rounded) << 23;
+  std::memcpy(&p, &bits, sizeof p);
+  return p;
+}
+
+}  // namespace polyrecon

@@ -1,0 +1,66 @@
+#include "core/gaussian.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "core/parallel.h"
+#include "core/simd.h"
+
+namespace polyrecon {
+namespace {
+
+POLYRECON_SIMD void accumulate(const Real* in, double tap, double* sum, int n) {
+  for (int i = 0; i < n; ++i) sum[i] += tap * static_cast<double>(in[i]);
+}
+
+POLYRECON_SIMD void divide(const double* sum, const double* weight, Real* out, int n) {
+  for (int i = 0; i < n; ++i) out[i] = static_cast<Real>(sum[i] / weight[i]);
+}
+
+void blur_columns(const Image& in, const std::vector<double>& taps, int c, int y, Image& out) {
+  const int reach = static_cast<int>(taps.size()) - 1, width = in.width();
+  std::vector<double> sum(static_cast<std::size_t>(width), 0.0);
+  double weight = 0;
+  for (int k = std::max(-reach, -y); k <= std::min(reach, in.height() - 1 - y); ++k) {
+    const double tap = taps[static_cast<std::size_t>(std::abs(k))];
+    accumulate(in.row(c, y + k), tap, sum.data(), width);
+    weight += tap;
+  }
+  const std::vector<double> weights(static_cast<std::size_t>(width), weight);
+  divide(sum.data(), weights.data(), out.row(c, y), width);
+}
+
+void blur_row(const Real* in, const std::vector<double>& taps, int width, Real* out) {
+  const int reach = static_cast<int>(taps.size()) - 1;
+  std::vector<double> sum(static_cast<std::size_t>(width), 0.0), weight(static_cast<std::size_t>(width), 0.0);
+  for (int k = -reach; k <= reach; ++k) {
+    const double tap = taps[static_cast<std::size_t>(std::abs(k))];
+    const int begin = std::max(0, -k), end = std::min(width, width - k);
+    if (begin >= end) continue;
+    accumulate(in + begin + k, tap, sum.data() + begin, end - begin);
+    for (int x = begin; x < end; ++x) weight[static_cast<std::size_t>(x)] += tap;
+  }
+  divide(sum.data(), weight.data(), out, width);
+}
+
+}  // namespace
+
+int gaussian_reach(double sigma) { return static_cast<int>(std::ceil(3 * sigma)); }
+
+Image gaussian_blur(const Image& image, double sigma) {
+  std::vector<double> taps;
+  for (int k = 0; k <= gaussian_reach(sigma); ++k) taps.push_back(std::exp(-0.5 * k * k / (sigma * sigma)));
+  Image between(image.width(), image.height(), image.channels()), out = between;
+  Progress silent;
+  const auto rows = static_cast<std::size_t>(image.height());
+  for (int c = 0; c < image.channels(); ++c) {
+    parallel_for(rows, silent, [&](std::size_t y) { blur_columns(image, taps, c, static_cast<int>(y), between); });
+    parallel_for(rows, silent, [&](std::size_t y) {
+      blur_row(between.row(c, static_cast<int>(y)), taps, image.width(), out.row(c, static_cast<int>(y)));
+    });
+  }
+  return out;
+}
+
+}  // namespace polyrecon

@@ -1,0 +1,43 @@
+#include "core/resample.h"
+
+#include <algorithm>
+
+#include "core/parallel.h"
+
+namespace polyrecon {
+
+Image half_resolution(const Image& image) {
+  Image out((image.width() + 1) / 2, (image.height() + 1) / 2, image.channels());
+  Progress silent;
+  parallel_for(static_cast<std::size_t>(out.height()), silent, [&](std::size_t row) {
+    const int y = static_cast<int>(row), y1 = std::min(2 * y + 1, image.height() - 1);
+    for (int c = 0; c < image.channels(); ++c)
+      for (int x = 0; x < out.width(); ++x) {
+        // At an odd border the one pixel or row that is there counts twice, which is its mean.
+        const int x1 = std::min(2 * x + 1, image.width() - 1);
+        out.at(x, y, c) = Real(0.25) * (image.at(2 * x, 2 * y, c) + image.at(x1, 2 * y, c) + image.at(2 * x, y1, c) +
+                                        image.at(x1, y1, c));
+      }
+  });
+  return out;
+}
+
+Image double_resolution(const Image& image, int width, int height) {
+  Image out(width, height, image.channels());
+  Progress silent;
+  parallel_for(static_cast<std::size_t>(height), silent, [&](std::size_t row) {
+    const int y = static_cast<int>(row);
+    // The centre of fine pixel y stands at coarse coordinate y/2 - 1/4: 3/4 of its own coarse pixel, 1/4 of the next one.
+    const int y0 = y / 2, y1 = std::clamp(y % 2 == 0 ? y0 - 1 : y0 + 1, 0, image.height() - 1);
+    for (int c = 0; c < image.channels(); ++c)
+      for (int x = 0; x < width; ++x) {
+        const int x0 = x / 2, x1 = std::clamp(x % 2 == 0 ? x0 - 1 : x0 + 1, 0, image.width() - 1);
+        const Real near = Real(0.75) * image.at(x0, y0, c) + Real(0.25) * image.at(x1, y0, c);
+        const Real far = Real(0.75) * image.at(x0, y1, c) + Real(0.25) * image.at(x1, y1, c);
+        out.at(x, y, c) = Real(0.75) * near + Real(0.25) * far;
+      }
+  });
+  return out;
+}
+
+}  // namespace polyrecon

@@ -1,0 +1,17 @@
+#include "core/tiles.h"
+
+#include <cmath>
+
+namespace polyrecon {
+
+std::vector<Tile> make_tiles(const Rect& bounds, int halo, int alignment, std::size_t max_pixels) {
+  if (bounds.area() <= max_pixels) return {{bounds, bounds}};
+  const int margin = (halo + alignment - 1) / alignment * alignment;
+  const int side = static_cast<int>(std::sqrt(static_cast<double>(max_pixels)));
+  const int core = std::max((side - 2 * margin) / alignment * alignment, alignment);
+  std::vector<Tile> tiles;
+  for (const Rect& r : aligned_blocks(bounds, core)) tiles.push_back({r, intersect(grow(r, margin), bounds)});
+  return tiles;
+}
+
+}  // namespace polyrecon

@@ -1,0 +1,152 @@
+#include "pipeline/stage.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "core/gaussian.h"
+#include "core/parallel.h"
+#include "core/tiles.h"
+
+namespace polyrecon {
+namespace {
+
+/// Pixels that carry noise: where the halves are equal and no variance is known there is nothing to do.
+std::vector<unsigned char> noisy_pixels(const HalfPair& pair) {
+  std::vector<unsigned char> noisy(pair.variance.pixels(), 0);
+  for (int c = 0; c < pair.color[0].channels(); ++c) {
+    const Real *a = pair.color[0].plane(c), *b = pair.color[1].plane(c), *v = c < 3 ? pair.variance.plane(c) : nullptr;
+    for (std::size_t i = 0; i < noisy.size(); ++i)
+      if (a[i] != b[i] || (v && v[i] > 0)) noisy[i] = 1;
+  }
+  return noisy;
+}
+
+/// Colours that the weights of a window are measured on, and their noise.
+struct Guide {
+  std::array<const Image*, 2> color;  ///< For the fit of half h: color[h].
+  const Image* variance;
+  const std::vector<Real>* bandwidths;
+};
+
+/// Every bandwidth of one guide as a candidate. Half h is fitted with weights and features of the other half.
+void add_candidates(const HalfPair& pair, const Guide& guide, const Candidate* before,
+                    const std::vector<unsigned char>& noisy, const Params& params, FitCounters& counters,
+                    Progress& progress, std::vector<Candidate>& candidates) {
+  if (guide.bandwidths->empty()) return;
+  std::array<std::vector<BlendedFit>, 2> fits;
+  for (std::size_t h = 0; h < 2; ++h) {
+    const std::size_t other = 1 - h;
+    const FitSource source{&pair.color[h],  &pair.variance, &pair.features[other], guide.color[h],
+                           guide.variance, before ? &before->half[other] : nullptr};
+    fits[h] = fit_and_blend(source, noisy, params.fit(*guide.bandwidths), counters, progress);
+  }
+  const auto mean = [](Image a, const Image& b) {
+    for (int c = 0; c < a.channels(); ++c) {
+      Real* p = a.plane(c);
+      const Real* q = b.plane(c);
+      for (std::size_t i = 0; i < a.pixels(); ++i) p[i] = Real(0.5) * (p[i] + q[i]);
+    }
+    return a;
+  };
+  for (std::size_t k = 0; k < guide.bandwidths->size(); ++k)
+    candidates.push_back({{std::move(fits[0][k].value), std::move(fits[1][k].value)},
+                          mean(std::move(fits[0][k].error), fits[1][k].error),
+                          mean(std::move(fits[0][k].variance), fits[1][k].variance),
+                          mean(std::move(fits[0][k].order), fits[1][k].order)});
+}
+
+/// The noisy halves themselves: what a pixel keeps where no fit does better. Their error is the noise.
+Candidate take_as_it_is(const HalfPair& pair) {
+  Image noise = pair.variance;
+  for (int c = 0; c < 3; ++c)
+    for (std::size_t i = 0; i < noise.pixels(); ++i) noise.plane(c)[i] *= Real(0.5);  // of the mean of the halves
+  return {{pair.color[0], pair.color[1]}, noise, noise, Image(pair.width(), pair.height(), 1)};
+}
+
+Image mean_of_halves(const Candidate& candidate) {
+  Image out(candidate.half[0].width(), candidate.half[0].height(), 3);
+  for (int c = 0; c < 3; ++c)
+    for (std::size_t i = 0; i < out.pixels(); ++i)
+      out.plane(c)[i] = Real(0.5) * (candidate.half[0].plane(c)[i] + candidate.half[1].plane(c)[i]);
+  return out;
+}
+
+/// Noise left in a stage's result, from the difference of its halves.
+Image residual_variance(const Candidate& candidate) {
+  Image out(candidate.half[0].width(), candidate.half[0].height(), 3);
+  for (int c = 0; c < 3; ++c)
+    for (std::size_t i = 0; i < out.pixels(); ++i) {
+      const Real difference = candidate.half[0].plane(c)[i] - candidate.half[1].plane(c)[i];
+      out.plane(c)[i] = difference * difference;
+    }
+  return gaussian_blur(out, 1);
+}
+
+Candidate stage_of_tile(const HalfPair& pair, const Candidate* before, const Params& params, FitCounters& counters,
+                        Progress& progress) {
+  const auto noisy = noisy_pixels(pair);
+  std::vector<Candidate> candidates;
+  const Guide raw{{&pair.color[1], &pair.color[0]}, &pair.variance, before ? &params.later_bandwidths : &params.first_bandwidths};
+  add_candidates(pair, raw, before, noisy, params, counters, progress, candidates);
+  Image brightness;
+  if (before) {
+    brightness = mean_of_halves(*before);
+    const Image variance = residual_variance(*before);
+    const Guide guided{{&brightness, &brightness}, &variance, &params.guided_bandwidths};
+    add_candidates(pair, guided, before, noisy, params, counters, progress, candidates);
+  } else {
+    brightness = mean_of_halves(candidates.back());
+  }
+  candidates.push_back(take_as_it_is(pair));
+  return select(pair, brightness, candidates, params.selection);
+}
+
+Candidate crop_candidate(const Candidate& candidate, const Rect& r) {
+  return {{crop(candidate.half[0], r), crop(candidate.half[1], r)},
+          crop(candidate.error, r),
+          crop(candidate.variance, r),
+          crop(candidate.order, r)};
+}
+
+void paste_candidate(const Candidate& part, const Tile& tile, Candidate& whole) {
+  const Rect& core = tile.core;
+  const Rect from{core.x0 - tile.padded.x0, core.y0 - tile.padded.y0, core.x1 - tile.padded.x0, core.y1 - tile.padded.y0};
+  for (std::size_t h = 0; h < 2; ++h) paste(part.half[h], from, whole.half[h], core.x0, core.y0);
+  paste(part.error, from, whole.error, core.x0, core.y0);
+  paste(part.variance, from, whole.variance, core.x0, core.y0);
+  paste(part.order, from, whole.order, core.x0, core.y0);
+}
+
+}  // namespace
+
+std::size_t stage_bytes_per_pixel(const HalfPair& pair, const Params& params) {
+  const auto channels = static_cast<std::size_t>(pair.color[0].channels());
+  const std::size_t fits = std::max(params.first_bandwidths.size(), params.later_bandwidths.size() + params.guided_bandwidths.size());
+  const std::size_t candidate = 2 * channels + 7, sums = channels + 8;
+  const std::size_t inputs = 2 * channels + 3 + 2 * static_cast<std::size_t>(pair.features[0].channels());
+  return sizeof(Real) * (inputs + candidate * (fits + 3) + sums * fits + 4 * fits + 24);
+}
+
+Candidate run_stage(const HalfPair& pair, const Candidate* before, const Params& params, std::size_t max_bytes,
+                    FitCounters& counters, Progress& progress) {
+  // Every candidate is final fit_halo pixels inside a tile, the choice select_halo further in.
+  const int halo = fit_halo(params.fit(params.first_bandwidths)) + select_halo(params.selection);
+  const auto tiles = make_tiles({0, 0, pair.width(), pair.height()}, halo, 2 * block_size,
+                                max_bytes / stage_bytes_per_pixel(pair, params));
+  if (tiles.size() == 1) return stage_of_tile(pair, before, params, counters, progress);
+  const int channels = pair.color[0].channels();
+  const auto image = [&](int n) { return Image(pair.width(), pair.height(), n); };
+  Candidate whole{{image(channels), image(channels)}, image(3), image(3), image(1)};
+  for (const Tile& tile : tiles) {
+    const HalfPair part = crop(pair, tile.padded);
+    if (before) {
+      const Candidate before_part = crop_candidate(*before, tile.padded);
+      paste_candidate(stage_of_tile(part, &before_part, params, counters, progress), tile, whole);
+    } else {
+      paste_candidate(stage_of_tile(part, nullptr, params, counters, progress), tile, whole);
+    }
+  }
+  return whole;
+}
+
+}  // namespace polyrecon

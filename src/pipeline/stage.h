@@ -1,0 +1,20 @@
+#pragma once
+
+#include "blend/blend_windows.h"
+#include "blend/select.h"
+#include "core/progress.h"
+#include "features/half_pair.h"
+#include "pipeline/params.h"
+
+namespace polyrecon {
+
+/// One stage of equations (8) and (9) on one level: windows of every bandwidth, blended, and the best chosen pixel by pixel by
+/// cross-validation. before: the result of the stage before, whose halves are the guess of mu; null in stage 1.
+/// Works in tiles so that the memory beside pair and result stays within max_bytes; the tiles do not show in the result.
+Candidate run_stage(const HalfPair& pair, const Candidate* before, const Params& params, std::size_t max_bytes,
+                    FitCounters& counters, Progress& progress);
+
+/// Bytes that run_stage works with per pixel of a tile.
+std::size_t stage_bytes_per_pixel(const HalfPair& pair, const Params& params);
+
+}  // namespace polyrecon

@@ -1,0 +1,77 @@
+#include "regression/order_selection.h"
+
+#include <algorithm>
+#include <cassert>
+
+namespace polyrecon {
+namespace {
+
+using Channels = std::array<ColumnStatistics, 3>;
+
+/// The error of the empty model, whose bias is all of mu: |S mu|^2 as the stage guesses it.
+double error_of_nothing(const ColumnStatistics& channel, bool first_stage) {
+  return first_stage ? channel.guess_energy - channel.noise_energy : channel.guess_energy;
+}
+
+/// Estimated error of every model, summed over the channels: one pass over the columns.
+std::array<double, BasisLayout::max_models> nested_errors(const Channels& channels, const BasisLayout& layout,
+                                                          const double* factor, bool first_stage) {
+  std::array<double, BasisLayout::max_models> errors{};
+  double error = 0;
+  for (const ColumnStatistics& channel : channels) error += error_of_nothing(channel, first_stage);
+  int column = 0;
+  for (int model = 0; model < layout.models(); ++model) {
+    for (; column < layout.columns(model); ++column)
+      for (const ColumnStatistics& channel : channels) error += error_change(channel, column, factor[column], first_stage);
+    errors[static_cast<std::size_t>(model)] = error;
+  }
+  return errors;
+}
+
+}  // namespace
+
+double error_change(const ColumnStatistics& channel, int column, double g, bool first_stage) {
+  const auto a = static_cast<std::size_t>(column);
+  const double n = channel.variance[a];
+  if (first_stage) return 2 * g * n - (2 * g - g * g) * channel.z[a] * channel.z[a];
+  return g * g * n - (2 * g - g * g) * channel.guess[a] * channel.guess[a];
+}
+
+double shrinkage_factor(const Channels& channels, int column, bool first_stage) {
+  if (column == 0) return 1;
+  const auto a = static_cast<std::size_t>(column);
+  double energy = 0, noise = 0;
+  for (const ColumnStatistics& channel : channels) {
+    energy += first_stage ? channel.z[a] * channel.z[a] : channel.guess[a] * channel.guess[a];
+    noise += channel.variance[a];
+  }
+  if (!(energy > 0)) return 0;
+  return first_stage ? std::max(0.0, 1 - noise / energy) : energy / (energy + noise);
+}
+
+OrderChoice select_order(const Channels& channels, const BasisLayout& layout, double weight_sum, bool first_stage,
+                         double tolerance) {
+  assert(weight_sum > 0);
+  OrderChoice choice;
+  for (int a = 0; a < layout.columns(); ++a)
+    choice.factor[static_cast<std::size_t>(a)] = shrinkage_factor(channels, a, first_stage);
+  const auto errors = nested_errors(channels, layout, choice.factor.data(), first_stage);
+  const double least = *std::min_element(errors.begin(), errors.begin() + layout.models());
+  while (errors[static_cast<std::size_t>(choice.model)] > least + tolerance * std::max(least, 0.0)) ++choice.model;
+
+  const int columns = layout.columns(choice.model);
+  std::fill(choice.factor.begin() + columns, choice.factor.end(), 0.0);
+  for (std::size_t c = 0; c < channels.size(); ++c) {
+    double error = error_of_nothing(channels[c], first_stage), variance = 0;
+    for (int a = 0; a < columns; ++a) {
+      const double g = choice.factor[static_cast<std::size_t>(a)];
+      error += error_change(channels[c], a, g, first_stage);
+      variance += g * g * channels[c].variance[static_cast<std::size_t>(a)];
+    }
+    choice.variance[c] = variance / weight_sum;
+    choice.error[c] = std::max(error, variance) / weight_sum;  // bias^2 is not negative, its estimate may be
+  }
+  return choice;
+}
+
+}  // namespace polyrecon

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <array>
+
+#include "regression/basis.h"
+
+namespace polyrecon {
+
+/// What one channel of a window knows of each column a of its factorisation (least_squares.h).
+struct ColumnStatistics {
+  using Columns = std::array<double, BasisLayout::max_columns>;
+  Columns z{};               ///< Coefficient of the noisy response.
+  Columns variance{};        ///< s_a^2, variance of z_a: the terms of equations (6) and (9).
+  Columns guess{};           ///< Coefficient of the guess of mu of the stage before; unused in stage 1.
+  double guess_energy = 0;   ///< |S m|^2 = sum_i w_i m(i)^2 for the stage's guess m of mu (stage 1: of y).
+  double noise_energy = 0;   ///< sum_i w_i sigma^2(i).
+};
+
+/// The model that a window settles on, and its estimated error.
+struct OrderChoice {
+  int model = 0;                                          ///< Index into BasisLayout's models.
+  std::array<double, BasisLayout::max_columns> factor{};  ///< g_a: column a enters the fit as g_a z_a q_a.
+  std::array<double, 3> error{};     ///< Equation (4) per channel: weighted mean of bias^2 + variance; >= 0.
+  std::array<double, 3> variance{};  ///< Equation (6) per channel, its part of error.
+};
+
+/// Change of the window's estimated error, per channel, when a column enters with factor g. With e = z^2, n = s^2:
+///     stage 1 (mu guessed by y, the noise inside it subtracted):   2 g n - (2g - g^2) e
+///     later   (mu guessed by the result of the stage before):      g^2 n - (2g - g^2) guess^2
+/// For g = 1 this is the identity of Mallows' Cp: all nested models from one factorisation.
+double error_change(const ColumnStatistics& channel, int column, double g, bool first_stage);
+
+/// Factor that minimises the summed error_change of a column over the channels: the positive-part James-Stein factor
+/// max(0, 1 - n/e) in stage 1, Wiener's guess^2 / (guess^2 + n) later. The constant always enters whole.
+/// Departure from Moon et al. 2016, who let a column in whole or not at all.
+double shrinkage_factor(const std::array<ColumnStatistics, 3>& channels, int column, bool first_stage);
+
+/// Equation (7), k_opt = argmin_k of bias^2 + variance, over the nested models of layout, the error summed over channels.
+/// Of models whose error differs by less than tolerance (relative) the one of lowest order is taken. weight_sum is
+/// sum_i w_i > 0.
+OrderChoice select_order(const std::array<ColumnStatistics, 3>& channels, const BasisLayout& layout, double weight_sum,
+                         bool first_stage, double tolerance);
+
+}  // namespace polyrecon

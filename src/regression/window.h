@@ -1,0 +1,45 @@
+#pragma once
+
+#include <vector>
+
+#include "core/image.h"
+#include "regression/basis.h"
+
+namespace polyrecon {
+
+/// The pixels of one window Omega_c that may carry weight, gathered from the images into contiguous columns. Reused from
+/// centre to centre, so that the inner loops neither allocate nor jump through memory.
+/// Rows beyond count (up to padded) repeat the centre and always have weight 0.
+struct Window {
+  static constexpr int lanes = 16;  ///< Columns are padded to a multiple of this, for the vector units.
+
+  int count = 0;   ///< Pixels in the window.
+  int padded = 0;  ///< count rounded up to a multiple of lanes.
+  int stride = 0;  ///< Distance between columns; at least padded.
+
+  std::vector<int> x, y;             ///< Position of each pixel in the image.
+  std::vector<Real> distance;        ///< Patch distance of each pixel to the centre, >= 0.
+  std::vector<Real> design;          ///< Columns of the model at each pixel, layout.columns() x stride.
+  std::vector<Real> response;        ///< y at each pixel, channels x stride.
+  std::vector<Real> noise_variance;  ///< sigma^2 at each pixel, 3 x stride.
+  std::vector<Real> guess;           ///< The guess of mu of the stage before, 3 x stride; unused in stage 1.
+
+  /// Makes room for windows of the given radius.
+  void reserve(int radius, int columns, int channels);
+};
+
+/// What a window is gathered from; all images of one size.
+struct WindowSource {
+  const Image* response = nullptr;        ///< Beauty and AOVs of one half, 3 channels each.
+  const Image* noise_variance = nullptr;  ///< Variance of the half's beauty, 3 channels.
+  const Image* features = nullptr;        ///< Features of the other half.
+  const Image* guess = nullptr;           ///< mu as the stage before saw it, 3 channels; null in stage 1.
+};
+
+/// Fills design, response, noise_variance and guess for the pixels already listed in window.x, window.y (count of them).
+/// Features enter minus their value at the centre, positions as (i - c) / radius, both of order 1 or below: the columns
+/// of equation (2) but for scale.
+void gather(const WindowSource& source, const BasisLayout& layout, int center_x, int center_y, int radius,
+            Window& window);
+
+}  // namespace polyrecon
