@@ -291,7 +291,8 @@ class Merger {
         if (l < 0) continue;
         const Layer& layer = render.layers[static_cast<std::size_t>(l)];
         const double scale = is_sample_fraction(layer) ? metadata : 1;
-        const std::vector<float>& counts = ChannelReader(render.file, layer.part, layer.channels).read(y0, y1);
+        ChannelReader reader(render.file, layer.part, layer.channels);
+        const std::vector<float>& counts = reader.read(y0, y1);
         for (std::size_t i = 0; i < pixels; ++i) n[i] = std::isfinite(counts[i]) && counts[i] > 0 ? counts[i] * scale : 0;
       }
     }
