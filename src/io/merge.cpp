@@ -15,6 +15,7 @@
 #include <filesystem>
 #include <limits>
 #include <map>
+#include <optional>
 #include <set>
 #include <system_error>
 
@@ -150,7 +151,7 @@ struct ChannelSums {
 
 class Merger {
  public:
-  explicit Merger(std::vector<Render> renders) : renders_(std::move(renders)) {
+  Merger(std::vector<Render> renders, double samples) : renders_(std::move(renders)), samples_(samples) {
     choose_window();
     for (std::size_t l = 0; l < first().layers.size(); ++l) sort_layer(l);
     find_weights();
@@ -255,6 +256,12 @@ class Merger {
     return best;
   }
 
+  /// What the user says goes before what the file says.
+  std::optional<double> samples_of(const Render& render, const std::string& view_layer) const {
+    if (samples_ > 0) return samples_ / static_cast<double>(renders_.size());
+    return samples_in_metadata(render.file, view_layer);
+  }
+
   void find_weights() {
     std::set<std::string> view_layers;
     for (const std::size_t l : merged_) view_layers.insert(first().layers[l].view_layer);
@@ -264,7 +271,7 @@ class Merger {
       double total = 0;
       bool known = true;
       for (const Render& render : renders_) {
-        const auto samples = samples_in_metadata(render.file, view_layer);
+        const auto samples = samples_of(render, view_layer);
         known = known && samples.has_value();
         total += samples.value_or(0);
       }
@@ -285,7 +292,7 @@ class Merger {
       const int l = count_layer(view_layer);
       for (std::size_t k = 0; k < renders_.size(); ++k) {
         const Render& render = renders_[k];
-        const double metadata = samples_in_metadata(render.file, view_layer).value_or(0);
+        const double metadata = samples_of(render, view_layer).value_or(0);
         std::vector<double>& n = weights[k][view_layer];
         n.assign(pixels, metadata);
         if (l < 0) continue;
@@ -437,6 +444,7 @@ class Merger {
   }
 
   std::vector<Render> renders_;
+  double samples_;  ///< Of all renders together; 0: as the files say.
   Rect window_;
   std::vector<std::size_t> merged_, kept_;  ///< Indices of layers.
   std::vector<std::string> counted_;        ///< View layers whose sample counts are known.
@@ -449,8 +457,8 @@ class Merger {
 
 }  // namespace
 
-MergeResult merge(const std::vector<std::string>& paths, const std::string& target, const ReadLimits& limits) {
-  Merger merger(open_renders(paths, limits));
+MergeResult merge(const std::vector<std::string>& paths, const std::string& target, const MergeOptions& options) {
+  Merger merger(open_renders(paths, options.limits), options.samples);
   write_single_part(target, merger.header(), [&](NativeBand& band) { merger.make(band); },
                     merger.lines_per_band());
   return merger.report();

@@ -7,6 +7,13 @@
 
 namespace polyrecon {
 
+struct MergeOptions {
+  /// Samples per pixel of all renders together; 0: as the files say. Subsets of one sequence by Blender 5 need it: each
+  /// claims the samples of the whole sequence.
+  double samples = 0;
+  ReadLimits limits;
+};
+
 struct MergeResult {
   int files = 0;
   double samples = 0;                ///< Samples per pixel of the result, mean over the frame; 0 where the files do not tell.
@@ -26,6 +33,6 @@ struct MergeResult {
 /// file, bit for bit. Writes one part of scanlines with ZIP, merged layers as float; memory is bounded by one band of lines.
 /// Throws Error{Usage} for fewer than two files or one given twice, Error{BadInput} naming the first file that does not fit
 /// the first one, Error{Missing}, and what write_atomically throws.
-MergeResult merge(const std::vector<std::string>& paths, const std::string& target, const ReadLimits& limits = {});
+MergeResult merge(const std::vector<std::string>& paths, const std::string& target, const MergeOptions& options = {});
 
 }  // namespace polyrecon
