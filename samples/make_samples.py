@@ -47,7 +47,7 @@ def run(command, quiet=False):
 def channels(file):
     info = subprocess.run(["oiiotool", "--info", "-v", str(file)], check=True, capture_output=True, text=True).stdout
     line = next(line for line in info.splitlines() if "channel list:" in line)
-    return [name.strip() for name in line.split(":", 1)[1].split(",")]
+    return [name.strip().partition(" (")[0] for name in line.split(":", 1)[1].split(",")]  # "NAME (half)" where types are mixed
 
 
 def ship_halves(merged, target):
