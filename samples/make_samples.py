@@ -12,7 +12,7 @@ import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
 RENDER = HERE / "scenes" / "render.py"
-REFERENCE_RENDERS, REFERENCE_SPP = 16, 128
+REFERENCE_RENDERS = 16  # with different seeds
 
 
 class Tools:
@@ -47,7 +47,8 @@ def run(command, quiet=False):
 def channels(file):
     info = subprocess.run(["oiiotool", "--info", "-v", str(file)], check=True, capture_output=True, text=True).stdout
     line = next(line for line in info.splitlines() if "channel list:" in line)
-    return [name.strip().partition(" (")[0] for name in line.split(":", 1)[1].split(",")]  # "NAME (half)" where types are mixed
+    names = line.split(":", 1)[1].split(",")
+    return [name.strip().partition(" (")[0] for name in names]  # "NAME (half)" where types are mixed
 
 
 def ship_halves(merged, target):
@@ -67,36 +68,47 @@ def ship_reference(merged, target):
     run(["oiiotool", str(merged), "--ch", ",".join(keep), "--compression", "zip", "-o", str(target)])
 
 
-def reference(tools, version, scene):
-    parts = tools.render(version, scene, f"{scene}_ref", REFERENCE_RENDERS, spp=REFERENCE_SPP, seeds=True,
-                         **{"single-part": True})
-    merged = tools.merge(parts, f"{scene}_ref.exr", REFERENCE_RENDERS * REFERENCE_SPP)
+def reference(tools, version, scene, spp):
+    parts = tools.render(
+        version,
+        scene,
+        f"{scene}_ref",
+        REFERENCE_RENDERS,
+        spp=spp // REFERENCE_RENDERS,
+        seeds=True,
+        **{"single-part": True},
+    )
+    merged = tools.merge(parts, f"{scene}_ref.exr", spp)
     ship_reference(merged, HERE / f"{scene}_ref.exr")
 
 
 def study(tools):
-    """Blender 5: eight subsets merged; four small ones as they left Blender; one picture with Blender's own denoising."""
+    """Blender 5: eight subsets merged; four small ones as they left Blender; one with Blender's own denoiser."""
     parts = tools.render(5, "study", "study_part", 8, passes="denoising,samples")
     ship_halves(tools.merge(parts, "study_16.exr", 16), HERE / "study_16.exr")
-    for part in tools.render(5, "study", "study_small", 4, size="160x90", passes="denoising,samples,light-groups", depth=16):
+    for part in tools.render(
+        5, "study", "study_small", 4, size="160x90", passes="denoising,samples,light-groups", depth=16
+    ):
         copy(part, HERE / part.name)
     for file in tools.render(5, "study", "study_denoised_16", passes="denoising", depth=16, denoise=True):
         copy(file, HERE / file.name)
-    reference(tools, 5, "study")
+    reference(tools, 5, "study", 2048)
 
 
 def glass(tools):
     """Blender 3.4: eight subsets merged, with Shadow and Cryptomatte."""
     parts = tools.render(3, "glass", "glass_part", 8, passes="denoising,samples,shadow,cryptomatte")
     ship_halves(tools.merge(parts, "glass_16.exr", 16), HERE / "glass_16.exr")
-    reference(tools, 3, "glass")
+    reference(tools, 3, "glass", 4096)
 
 
 def lighthouse(tools):
     """Blender 5: one ordinary render, without variance or half buffers."""
-    for file in tools.render(5, "lighthouse", "lighthouse_16", passes="denoising,samples,cryptomatte,ao,depth", depth=16):
+    for file in tools.render(
+        5, "lighthouse", "lighthouse_16", passes="denoising,samples,cryptomatte,ao,depth", depth=16
+    ):
         copy(file, HERE / file.name)
-    reference(tools, 5, "lighthouse")
+    reference(tools, 5, "lighthouse", 2048)
 
 
 def copy(source, target):

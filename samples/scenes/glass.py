@@ -7,8 +7,13 @@ import kit
 def build():
     scene = kit.empty_scene()
     kit.plane((0, 0, 0), (14, 14), kit.checker("Table", (0.70, 0.66, 0.58), (0.07, 0.10, 0.14), 2.2, roughness=0.22))
-    wall = kit.ramped("Wall", "ShaderNodeTexNoise", {"Scale": 1.6, "Detail": 5.0},
-                      [(0.35, (0.20, 0.07, 0.05)), (0.65, (0.36, 0.15, 0.09))], roughness=0.8)
+    wall = kit.ramped(
+        "Wall",
+        "ShaderNodeTexNoise",
+        {"Scale": 1.6, "Detail": 5.0},
+        [(0.35, (0.20, 0.07, 0.05)), (0.65, (0.36, 0.15, 0.09))],
+        roughness=0.8,
+    )
     kit.box((-7, 4.5, -1), (7, 4.6, 5), wall)
     clear = kit.glass("Clear glass")
     kit.sphere((-0.55, 0.15, 0.55), 0.55, clear, 96)

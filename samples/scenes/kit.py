@@ -150,16 +150,26 @@ def sphere(centre, radius, made, segments=64):
 
 def torus(centre, major, minor, made, rotation=(0, 0, 0)):
     bpy.ops.mesh.primitive_torus_add(
-        major_radius=major, minor_radius=minor, major_segments=96, minor_segments=32, location=centre,
-        rotation=[math.radians(a) for a in rotation])
+        major_radius=major,
+        minor_radius=minor,
+        major_segments=96,
+        minor_segments=32,
+        location=centre,
+        rotation=[math.radians(a) for a in rotation],
+    )
     return _finish(bpy.context.object, made, smooth=True)
 
 
 def cone(bottom, radius_bottom, radius_top, height, made, caps=True):
     """A truncated cone standing on `bottom`; equal radii make a cylinder."""
     bpy.ops.mesh.primitive_cone_add(
-        vertices=64, radius1=radius_bottom, radius2=radius_top, depth=height,
-        end_fill_type="NGON" if caps else "NOTHING", location=Vector(bottom) + Vector((0, 0, height / 2)))
+        vertices=64,
+        radius1=radius_bottom,
+        radius2=radius_top,
+        depth=height,
+        end_fill_type="NGON" if caps else "NOTHING",
+        location=Vector(bottom) + Vector((0, 0, height / 2)),
+    )
     obj = bpy.context.object
     _finish(obj, made)
     for face in obj.data.polygons:

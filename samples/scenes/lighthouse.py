@@ -11,13 +11,25 @@ def build():
     sea = kit.plain("Sea", (0.012, 0.05, 0.07), 0.06)
     kit.bumpy(sea, 1.4, 0.5, 0.25, stretch=(1, 2.2, 1), detail=6.0)
     kit.plane((0, 380, 0), (1600, 800), sea)
-    stone = kit.ramped("Stone", "ShaderNodeTexNoise", {"Scale": 2.2, "Detail": 8.0},
-                       [(0.35, (0.09, 0.08, 0.07)), (0.65, (0.34, 0.31, 0.27))], roughness=0.85)
-    grass = kit.ramped("Grass", "ShaderNodeTexNoise", {"Scale": 3.0, "Detail": 8.0},
-                       [(0.35, (0.05, 0.10, 0.02)), (0.65, (0.16, 0.20, 0.05))], roughness=0.9)
+    stone = kit.ramped(
+        "Stone",
+        "ShaderNodeTexNoise",
+        {"Scale": 2.2, "Detail": 8.0},
+        [(0.35, (0.09, 0.08, 0.07)), (0.65, (0.34, 0.31, 0.27))],
+        roughness=0.85,
+    )
+    grass = kit.ramped(
+        "Grass",
+        "ShaderNodeTexNoise",
+        {"Scale": 3.0, "Detail": 8.0},
+        [(0.35, (0.05, 0.10, 0.02)), (0.65, (0.16, 0.20, 0.05))],
+        roughness=0.9,
+    )
     kit.rock((4.5, 24, -0.8), (9.0, 6.5, 2.6), stone, 1)
     kit.rock((4.8, 24.5, 0.4), (6.0, 4.2, 1.75), grass, 2, rough=0.2)
-    for i, (x, y, s) in enumerate(((-4.8, 19, 1.3), (-8.2, 24, 1.7), (-2.3, 15.5, 0.7), (12.5, 17, 1.4), (1.6, 15.8, 0.8))):
+    for i, (x, y, s) in enumerate(
+        ((-4.8, 19, 1.3), (-8.2, 24, 1.7), (-2.3, 15.5, 0.7), (12.5, 17, 1.4), (1.6, 15.8, 0.8))
+    ):
         kit.rock((x, y, 0), (s, s * 0.9, s * 0.75), stone, 3 + i)
     _tower(6.0, 24.5, 1.7)
     _house(2.4, 24.0, 1.5)
@@ -50,8 +62,11 @@ def _house(x, y, z):
     kit.box((x - 1.3, y - 0.8, z - 1.0), (x + 1.3, y + 0.8, z + 1.1), wall)
     vertices = [(-1.5, -1.0, 1.1), (1.5, -1.0, 1.1), (1.5, 1.0, 1.1), (-1.5, 1.0, 1.1), (-1.5, 0, 2.0), (1.5, 0, 2.0)]
     mesh = bpy.data.meshes.new("Roof")
-    mesh.from_pydata([(x + a, y + b, z + c) for a, b, c in vertices], [],
-                     [(0, 1, 5, 4), (2, 3, 4, 5), (1, 2, 5), (3, 0, 4), (0, 3, 2, 1)])
+    mesh.from_pydata(
+        [(x + a, y + b, z + c) for a, b, c in vertices],
+        [],
+        [(0, 1, 5, 4), (2, 3, 4, 5), (1, 2, 5), (3, 0, 4), (0, 3, 2, 1)],
+    )
     mesh.materials.append(roof)
     bpy.context.scene.collection.objects.link(bpy.data.objects.new("Roof", mesh))
     window = kit.plain("Window", (0.03, 0.04, 0.05), 0.1)

@@ -3,8 +3,8 @@
   with the bpy module:  python3 render.py SCENE OUT.exr [options]
   with Blender itself:  blender -b -Y --factory-startup --python-exit-code 7 -P render.py -- SCENE OUT.exr [options]
 
-OUT.exr becomes OUT_0.exr, OUT_1.exr, ... where --parts is over 1: consecutive pieces of ONE sample sequence, so that their
-mean is the ordinary render of --spp samples, or with --seeds renders of --spp samples each with seeds 1, 2, ...
+OUT.exr becomes OUT_0.exr, OUT_1.exr, ... where --parts is over 1: consecutive pieces of ONE sample sequence, so that
+their mean is the ordinary render of --spp samples, or with --seeds renders of --spp samples each with seeds 1, 2, ...
 """
 
 import argparse
@@ -18,7 +18,7 @@ import bpy  # noqa: E402  (exists only inside Blender)
 
 
 def arguments():
-    words = sys.argv[sys.argv.index("--") + 1:] if "--" in sys.argv else sys.argv[1:]
+    words = sys.argv[sys.argv.index("--") + 1 :] if "--" in sys.argv else sys.argv[1:]
     parser = argparse.ArgumentParser(prog="render.py")
     parser.add_argument("scene", choices=("study", "glass", "lighthouse"))
     parser.add_argument("out")
@@ -26,7 +26,9 @@ def arguments():
     parser.add_argument("--spp", type=int, default=16)
     parser.add_argument("--parts", type=int, default=1)
     parser.add_argument("--seeds", action="store_true")
-    parser.add_argument("--passes", default="", help="of: denoising, samples, light-groups, shadow, ao, cryptomatte, depth")
+    parser.add_argument(
+        "--passes", default="", help="of: denoising, samples, light-groups, shadow, ao, cryptomatte, depth"
+    )
     parser.add_argument("--depth", default="32", choices=("16", "32"), help="bits of a stored value")
     parser.add_argument("--codec", default="ZIP")
     parser.add_argument("--denoise", action="store_true", help="also store Blender's own denoised picture (Blender 5)")

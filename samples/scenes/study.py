@@ -30,18 +30,34 @@ def build():
 
 def _room():
     """4 m x 6 m x 2.7 m; the left wall has two window openings."""
-    wood = kit.ramped("Planks", "ShaderNodeTexNoise", {"Scale": 1.0, "Detail": 6.0},
-                      [(0.3, (0.12, 0.055, 0.025)), (0.7, (0.34, 0.17, 0.075))], roughness=0.12, scale=(9, 0.7, 1))
-    paper = kit.ramped("Wallpaper", "ShaderNodeTexVoronoi", {"Scale": 7.0},
-                       [(0.1, (0.30, 0.42, 0.40)), (0.5, (0.52, 0.60, 0.52))], roughness=0.8)
+    wood = kit.ramped(
+        "Planks",
+        "ShaderNodeTexNoise",
+        {"Scale": 1.0, "Detail": 6.0},
+        [(0.3, (0.12, 0.055, 0.025)), (0.7, (0.34, 0.17, 0.075))],
+        roughness=0.12,
+        scale=(9, 0.7, 1),
+    )
+    paper = kit.ramped(
+        "Wallpaper",
+        "ShaderNodeTexVoronoi",
+        {"Scale": 7.0},
+        [(0.1, (0.30, 0.42, 0.40)), (0.5, (0.52, 0.60, 0.52))],
+        roughness=0.8,
+    )
     white = kit.plain("Plaster", (0.78, 0.76, 0.72), 0.9)
     kit.plane((0, 1, 0), (4, 6), wood)
     kit.box((-2, -2, 2.7), (2, 4, 2.8), white)
     kit.box((-2, 4, 0), (2, 4.1, 2.7), paper)
     kit.box((-2, -2.1, 0), (2, -2, 2.7), white)
     kit.box((2, -2, 0), (2.1, 4, 2.7), paper)
-    for low, high in (((-2.2, -2, 0), (-2, 4, 0.8)), ((-2.2, -2, 2.3), (-2, 4, 2.7)), ((-2.2, -2, 0.8), (-2, 0.6, 2.3)),
-                      ((-2.2, 1.6, 0.8), (-2, 2.1, 2.3)), ((-2.2, 3.1, 0.8), (-2, 4, 2.3))):
+    for low, high in (
+        ((-2.2, -2, 0), (-2, 4, 0.8)),
+        ((-2.2, -2, 2.3), (-2, 4, 2.7)),
+        ((-2.2, -2, 0.8), (-2, 0.6, 2.3)),
+        ((-2.2, 1.6, 0.8), (-2, 2.1, 2.3)),
+        ((-2.2, 3.1, 0.8), (-2, 4, 2.3)),
+    ):
         kit.box(low, high, white)
     for y in (1.1, 2.6):
         kit.box((-2.12, y - 0.02, 0.8), (-2.08, y + 0.02, 2.3), white)
@@ -52,9 +68,20 @@ def _room():
 
 def _bookcase(rng):
     frame = kit.plain("Oak", (0.22, 0.12, 0.06), 0.35)
-    covers = [kit.plain(f"Cover {i}", colour, rng.uniform(0.3, 0.7)) for i, colour in enumerate((
-        (0.45, 0.05, 0.04), (0.05, 0.12, 0.30), (0.06, 0.22, 0.10), (0.55, 0.38, 0.10), (0.60, 0.55, 0.45),
-        (0.10, 0.08, 0.08), (0.32, 0.14, 0.30)))]
+    covers = [
+        kit.plain(f"Cover {i}", colour, rng.uniform(0.3, 0.7))
+        for i, colour in enumerate(
+            (
+                (0.45, 0.05, 0.04),
+                (0.05, 0.12, 0.30),
+                (0.06, 0.22, 0.10),
+                (0.55, 0.38, 0.10),
+                (0.60, 0.55, 0.45),
+                (0.10, 0.08, 0.08),
+                (0.32, 0.14, 0.30),
+            )
+        )
+    ]
     left, right, back, front = -1.75, -0.25, 3.97, 3.67
     for x in (left, right):
         kit.box((x - 0.02, front, 0), (x + 0.02, back, 2.1), frame)
@@ -89,9 +116,17 @@ def _desk():
     kit.box((1.0, 3.3, 0.76), (1.25, 3.48, 0.79), kit.plain("Red book", (0.45, 0.05, 0.04)), turn=15)
     kit.box((1.01, 3.31, 0.79), (1.22, 3.47, 0.815), kit.plain("Cream book", (0.6, 0.52, 0.4)), turn=-8)
     kit.box((0.55, 3.96, 1.35), (1.35, 4.0, 1.95), kit.plain("Frame", (0.55, 0.38, 0.12), 0.3, 1.0))
-    kit.box((0.61, 3.95, 1.41), (1.29, 3.97, 1.89), kit.ramped(
-        "Painting", "ShaderNodeTexNoise", {"Scale": 2.5, "Detail": 3.0, "Distortion": 1.2},
-        [(0.3, (0.06, 0.16, 0.35)), (0.5, (0.75, 0.62, 0.35)), (0.65, (0.55, 0.12, 0.05))], roughness=0.6))
+    kit.box(
+        (0.61, 3.95, 1.41),
+        (1.29, 3.97, 1.89),
+        kit.ramped(
+            "Painting",
+            "ShaderNodeTexNoise",
+            {"Scale": 2.5, "Detail": 3.0, "Distortion": 1.2},
+            [(0.3, (0.06, 0.16, 0.35)), (0.5, (0.75, 0.62, 0.35)), (0.65, (0.55, 0.12, 0.05))],
+            roughness=0.6,
+        ),
+    )
     return bulb
 
 

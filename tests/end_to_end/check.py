@@ -1,7 +1,7 @@
 """What the end-to-end cases share: running the program, reading EXR files with OpenImageIO, scoring, asserting.
 
-A case prints one line per assertion: "ok WHAT" or "FAILED WHAT: FOUND". `expected` holds what it must print, so a case that
-ends early fails too.
+A case prints one line per assertion: "ok WHAT" or "FAILED WHAT: FOUND". `expected` holds what it must print, so a case
+that ends early fails too.
 """
 
 import os
@@ -35,7 +35,16 @@ class Part:
         self.spec = spec
         self.name = spec.get_string_attribute("oiio:subimagename")
         self.types = [str(t) for t in spec.channelformats] or [str(spec.format)] * spec.nchannels
-        self.window = (spec.x, spec.y, spec.width, spec.height, spec.full_x, spec.full_y, spec.full_width, spec.full_height)
+        self.window = (
+            spec.x,
+            spec.y,
+            spec.width,
+            spec.height,
+            spec.full_x,
+            spec.full_y,
+            spec.full_width,
+            spec.full_height,
+        )
         self.channels = {name: pixels[..., i] for i, name in enumerate(spec.channelnames)}
         self.attributes = {a.name: a.value for a in spec.extra_attribs}
 
@@ -79,4 +88,6 @@ def relative_mse(image, reference_path):
 
 def same_bits(a, b):
     """Equal as bit patterns, so that NaNs and signs of zero count."""
-    return a.shape == b.shape and np.array_equal(np.ascontiguousarray(a).view(np.uint32), np.ascontiguousarray(b).view(np.uint32))
+    return a.shape == b.shape and np.array_equal(
+        np.ascontiguousarray(a).view(np.uint32), np.ascontiguousarray(b).view(np.uint32)
+    )

@@ -16,11 +16,20 @@ def main():
     case, program, samples, work = (pathlib.Path(word).resolve() for word in sys.argv[1:])
     shutil.rmtree(work, ignore_errors=True)
     work.mkdir(parents=True)
-    environment = dict(os.environ, POLYRECON=str(program), POLYRECON_SAMPLES=str(samples), PYTHONPATH=str(case.parent),
-                       PYTHONDONTWRITEBYTECODE="1")
-    done = subprocess.run([sys.executable, str(case / "run")], cwd=work, env=environment, capture_output=True, text=True)
+    environment = dict(
+        os.environ,
+        POLYRECON=str(program),
+        POLYRECON_SAMPLES=str(samples),
+        PYTHONPATH=str(case.parent),
+        PYTHONDONTWRITEBYTECODE="1",
+    )
+    done = subprocess.run(
+        [sys.executable, str(case / "run")], cwd=work, env=environment, capture_output=True, text=True
+    )
     expected = (case / "expected").read_text()
-    difference = list(difflib.unified_diff(expected.splitlines(), done.stdout.splitlines(), "expected", "found", lineterm=""))
+    difference = list(
+        difflib.unified_diff(expected.splitlines(), done.stdout.splitlines(), "expected", "found", lineterm="")
+    )
     print("\n".join(difference) if difference else done.stdout, end="\n")
     print(done.stderr, end="")
     if done.returncode or difference:
