@@ -29,7 +29,8 @@ class Tools:
         """Renders unless it is there already; returns the files."""
         files = [self.work / (f"{name}_{i}.exr" if parts > 1 else f"{name}.exr") for i in range(parts)]
         if not all(file.exists() for file in files):
-            words = [f"--{key}" if value is True else f"--{key}={value}" for key, value in options.items()]
+            named = {"--" + key.replace("_", "-"): value for key, value in options.items()}
+            words = [name if value is True else f"{name}={value}" for name, value in named.items()]
             run(self.blender[version] + [scene, str(self.work / f"{name}.exr"), f"--parts={parts}", *words], quiet=True)
         return files
 
@@ -69,15 +70,8 @@ def ship_reference(merged, target):
 
 
 def reference(tools, version, scene, spp):
-    parts = tools.render(
-        version,
-        scene,
-        f"{scene}_ref",
-        REFERENCE_RENDERS,
-        spp=spp // REFERENCE_RENDERS,
-        seeds=True,
-        **{"single-part": True},
-    )
+    each = spp // REFERENCE_RENDERS
+    parts = tools.render(version, scene, f"{scene}_ref", REFERENCE_RENDERS, spp=each, seeds=True, single_part=True)
     merged = tools.merge(parts, f"{scene}_ref.exr", spp)
     ship_reference(merged, HERE / f"{scene}_ref.exr")
 
