@@ -5,19 +5,14 @@
 #include <string>
 #include <vector>
 
+#include "core/decision.h"
+
 namespace polyrecon {
 
 /// Wall-clock seconds of one stage of the pipeline.
 struct StageTime {
   std::string stage;
   double seconds = 0;
-};
-
-/// Whether an effect of the pipeline was run on this frame, and why (or why not).
-struct Decision {
-  std::string effect;
-  bool run = false;
-  std::string reason;
 };
 
 /// What a reconstruction did. Everything here is counted or measured, nothing is assumed.

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <array>
+
+#include "core/image.h"
+#include "core/progress.h"
+
+namespace polyrecon {
+
+struct PrefilterParams {
+  int search_radius = 5;
+  int patch_radius = 3;
+  double bandwidth = 0.5;
+};
+
+/// Cleans the two halves of one feature pass by cross-filtered non-local means (Rousselle et al. 2013): each half is averaged
+/// with weights measured on the other one, so that the noise left in it is not the noise it was weighed by.
+/// variance: of one half; a pixel is taken to be at least as noisy as its 3 x 3 neighbourhood.
+std::array<Image, 2> prefilter(const std::array<Image, 2>& halves, const Image& variance, const PrefilterParams& params,
+                               Progress& progress);
+
+}  // namespace polyrecon

@@ -1,0 +1,282 @@
+#include "features/prepare.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/error.h"
+#include "core/parallel.h"
+#include "core/sanitise.h"
+#include "features/fission.h"
+#include "features/prefilter.h"
+
+namespace polyrecon {
+namespace {
+
+constexpr int mend_reach = 8;          // pixels; deeper holes carry no information for their middle anyway
+constexpr double sky_depth = 1e9;      // renderers write 1e10 or larger for a ray that hits nothing
+constexpr double noise_floor = 1e-5;   // noise below this part of a feature's own variance is not worth cleaning
+
+/// Mean over the usable, non-negative part of the beauty.
+double mean_brightness(const Image& beauty) {
+  const double sum = ordered_sum(static_cast<std::size_t>(beauty.height()), [&](std::size_t y) {
+    double row = 0;
+    for (int c = 0; c < 3; ++c) {
+      const Real* values = beauty.row(c, static_cast<int>(y));
+      for (int x = 0; x < beauty.width(); ++x)
+        if (usable(values[x]) && values[x] > 0) row += static_cast<double>(values[x]);
+    }
+    return row;
+  });
+  return sum / (3.0 * static_cast<double>(beauty.pixels()));
+}
+
+/// What a feature's values and noise look like over the frame.
+struct FeatureLook {
+  double low = std::numeric_limits<double>::max(), high = std::numeric_limits<double>::lowest();
+  double variance = 0;     ///< Of its values over the frame, mean over the channels.
+  double noise = 0;        ///< Mean of its own noise variance.
+  std::size_t usable_pixels = 0;
+};
+
+FeatureLook look_at_feature(const Feature& feature) {
+  FeatureLook look;
+  const Image& mean = feature.pass.mean;
+  for (int c = 0; c < mean.channels(); ++c) {
+    const Real* values = mean.plane(c);
+    double sum = 0, square = 0, noise = 0;
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < mean.pixels(); ++i) {
+      const auto v = static_cast<double>(values[i]);
+      if (!usable(values[i]) || (feature.kind == FeatureKind::Depth && v >= sky_depth)) continue;
+      ++count;
+      sum += v;
+      square += v * v;
+      look.low = std::min(look.low, v);
+      look.high = std::max(look.high, v);
+      if (!feature.pass.variance.empty() && usable(feature.pass.variance.plane(c)[i]))
+        noise += static_cast<double>(feature.pass.variance.plane(c)[i]);
+      else if (feature.pass.has_halves()) {
+        const double d = static_cast<double>(feature.pass.half_a.plane(c)[i]) - static_cast<double>(feature.pass.half_b.plane(c)[i]);
+        if (std::isfinite(d)) noise += d * d / 4;
+      }
+    }
+    if (count == 0) continue;
+    const double n = static_cast<double>(count), m = sum / n;
+    look.variance += std::max(0.0, square / n - m * m) / mean.channels();
+    look.noise += noise / n / mean.channels();
+    look.usable_pixels = std::max(look.usable_pixels, count);
+  }
+  return look;
+}
+
+double median_depth(const Image& depth) {
+  std::vector<Real> values;
+  for (std::size_t i = 0; i < depth.pixels(); ++i) {
+    const Real z = depth.plane(0)[i];
+    if (usable(z) && z > 0 && static_cast<double>(z) < sky_depth) values.push_back(z);
+  }
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return static_cast<double>(*middle);
+}
+
+/// Why a feature is left out, or an empty string.
+std::string reason_to_drop(const FeatureLook& look, const Feature& feature) {
+  if (look.usable_pixels == 0) return "no finite value";
+  const bool has_sky = feature.kind == FeatureKind::Depth && look.usable_pixels < feature.pass.mean.pixels();
+  if (look.high - look.low <= 1e-6 * std::max(std::abs(look.high), std::abs(look.low)) && !has_sky) return "constant";
+  if (look.noise > 0.9 * look.variance) return "nothing but noise";
+  return {};
+}
+
+const char* kind_name(FeatureKind kind) {
+  switch (kind) {
+    case FeatureKind::Normal: return "normal";
+    case FeatureKind::Albedo: return "albedo";
+    case FeatureKind::Depth: return "depth";
+    case FeatureKind::Visibility: return "visibility";
+  }
+  return "";
+}
+
+void transform(const FeatureUse& use, Image& image) {
+  for (int c = 0; c < image.channels(); ++c) {
+    Real* values = image.plane(c);
+    for (std::size_t i = 0; i < image.pixels(); ++i) {
+      const auto v = static_cast<double>(values[i]);
+      values[i] = static_cast<Real>(use.half_depth > 0 ? std::max(v, 0.0) / (std::max(v, 0.0) + use.half_depth) : v * use.scale);
+    }
+  }
+}
+
+/// Noise variance after transform(): times the squared slope of the transformation.
+void transform_variance(const FeatureUse& use, const Image& mean, Image& variance) {
+  for (int c = 0; c < variance.channels(); ++c) {
+    Real* values = variance.plane(c);
+    for (std::size_t i = 0; i < variance.pixels(); ++i) {
+      const double z = std::max(static_cast<double>(mean.plane(c)[i]), 0.0) + use.half_depth;
+      const double slope = use.half_depth > 0 ? use.half_depth / (z * z) : use.scale;
+      values[i] = static_cast<Real>(std::min(static_cast<double>(values[i]) * slope * slope, 1.0));
+    }
+  }
+}
+
+void make_non_negative(Image& variance) {
+  for (int c = 0; c < variance.channels(); ++c)
+    for (std::size_t i = 0; i < variance.pixels(); ++i) variance.plane(c)[i] = std::max(variance.plane(c)[i], Real(0));
+}
+
+/// Both halves of a pass, mended; split from the mean where the file has none. half_variance: of one half; may be empty.
+std::array<Image, 2> halves_of(const Pass& pass, const Image& half_variance, std::uint64_t stream, std::size_t& mended) {
+  if (pass.has_halves()) {
+    std::array<Image, 2> halves{pass.half_a, pass.half_b};
+    for (Image& half : halves) mended += mend(half, mend_reach);
+    return halves;
+  }
+  Image mean = pass.mean;
+  mended += mend(mean, mend_reach);
+  if (half_variance.empty()) return {mean, mean};
+  Image variance = half_variance;
+  for (int c = 0; c < variance.channels(); ++c)
+    for (std::size_t i = 0; i < variance.pixels(); ++i) variance.plane(c)[i] *= Real(0.5);
+  return split_halves(mean, variance, stream);
+}
+
+/// Noise variance of one half of a feature; empty where nothing is known of it.
+Image feature_half_variance(const Pass& pass, std::size_t& mended) {
+  if (!pass.variance.empty()) {
+    Image variance = pass.variance;
+    mended += mend(variance, mend_reach);
+    make_non_negative(variance);
+    for (int c = 0; c < variance.channels(); ++c)
+      for (std::size_t i = 0; i < variance.pixels(); ++i) variance.plane(c)[i] *= 2;
+    return variance;
+  }
+  if (!pass.has_halves()) return {};
+  Image variance = pass.half_a;
+  for (int c = 0; c < variance.channels(); ++c)
+    for (std::size_t i = 0; i < variance.pixels(); ++i) {
+      const Real d = pass.half_a.plane(c)[i] - pass.half_b.plane(c)[i];
+      variance.plane(c)[i] = d * d / 2;
+    }
+  mended += mend(variance, mend_reach);
+  return variance;
+}
+
+/// Halves of a colour pass that has none: it takes its share, pass / beauty, of what sets the beauty's halves apart. Passes that
+/// add up to the beauty have halves that add up to its halves.
+std::array<Image, 2> split_like(const std::array<Image, 2>& beauty, const Pass& pass, std::size_t& mended) {
+  Image mean = pass.mean;
+  mended += mend(mean, mend_reach);
+  std::array<Image, 2> halves{mean, mean};
+  for (int c = 0; c < 3; ++c)
+    for (std::size_t i = 0; i < mean.pixels(); ++i) {
+      const Real a = beauty[0].plane(c)[i], b = beauty[1].plane(c)[i], sum = a + b;
+      if (!(std::abs(sum) > std::numeric_limits<Real>::min())) continue;
+      const Real offset = mean.plane(c)[i] * ((a - b) / sum);
+      halves[0].plane(c)[i] += offset;
+      halves[1].plane(c)[i] -= offset;
+    }
+  return halves;
+}
+
+void append_channels(const Image& from, Image& to, int& channel) {
+  for (int c = 0; c < from.channels(); ++c, ++channel) std::copy(from.plane(c), from.plane(c) + from.pixels(), to.plane(channel));
+}
+
+std::array<Image, 2> prepared_feature(const Feature& feature, const FeatureUse& use, std::size_t stream, std::size_t& mended,
+                                      Progress& progress) {
+  Image variance = feature_half_variance(feature.pass, mended);
+  auto halves = halves_of(feature.pass, variance, stream, mended);
+  if (use.clean && !variance.empty()) {
+    Image mean = feature.pass.mean;
+    mend(mean, mend_reach);
+    transform_variance(use, mean, variance);
+    for (Image& half : halves) transform(use, half);
+    return prefilter(halves, variance, PrefilterParams{}, progress);
+  }
+  for (Image& half : halves) transform(use, half);
+  return halves;
+}
+
+}  // namespace
+
+Preparation look_at(const Frame& frame) {
+  Preparation out;
+  if (count_unusable(frame.beauty.mean) == frame.beauty.mean.pixels())
+    throw Error(ExitCode::CheckFailed, "layer '" + frame.beauty.name + "': no finite pixel; render the frame again");
+  const double brightness = mean_brightness(frame.beauty.mean);
+  out.epsilon = brightness > 0 ? 0.09 * brightness * brightness : 1;
+  for (std::size_t i = 0; i < frame.features.size(); ++i) {
+    const Feature& feature = frame.features[i];
+    const std::string effect = std::string("feature ") + kind_name(feature.kind);
+    const FeatureLook look = look_at_feature(feature);
+    const std::string reason = reason_to_drop(look, feature);
+    if (!reason.empty()) {
+      out.decisions.push_back({effect, false, reason});
+      continue;
+    }
+    FeatureUse use;
+    use.index = i;
+    use.clean = look.noise > noise_floor * look.variance;
+    use.scale = std::exp2(-std::ilogb(std::max(std::abs(look.low), std::abs(look.high))));
+    if (feature.kind == FeatureKind::Depth) use.half_depth = median_depth(feature.pass.mean);
+    out.features.push_back(use);
+    out.decisions.push_back({effect, true, "varies over the frame"});
+    out.decisions.push_back({effect + " cleaning", use.clean, use.clean ? "the pass is noisy" : "the pass is clean"});
+  }
+  return out;
+}
+
+Prepared prepare(const Frame& frame, const Preparation& preparation, const Image& variance, bool with_alpha,
+                 Progress& progress) {
+  Prepared out;
+  HalfPair& pair = out.pair;
+  pair.epsilon = preparation.epsilon;
+  out.independent_halves = frame.beauty.has_halves();
+  pair.variance = variance;
+  mend(pair.variance, mend_reach);
+  make_non_negative(pair.variance);
+  for (int c = 0; c < 3; ++c)
+    for (std::size_t i = 0; i < pair.variance.pixels(); ++i) {
+      pair.variance.plane(c)[i] *= 2;  // of a half, from that of the mean
+      if (frame.beauty.mean.plane(c)[i] < 0) out.negative_pixels += c == 0 || !(frame.beauty.mean.plane(c - 1)[i] < 0);
+    }
+
+  const bool alpha = with_alpha && !frame.alpha.empty();
+  const int channels = 3 + 3 * static_cast<int>(frame.aovs.size()) + (alpha ? 1 : 0);
+  for (Image& color : pair.color) color = Image(frame.width(), frame.height(), channels);
+  int begin = 0;
+  const auto append = [&](const std::array<Image, 2>& halves) {
+    int end = begin;
+    for (std::size_t h = 0; h < 2; ++h) {
+      end = begin;
+      append_channels(halves[h], pair.color[h], end);
+    }
+    begin = end;
+  };
+  const auto beauty = halves_of(frame.beauty, pair.variance, 0, out.mended_pixels);
+  append(beauty);
+  for (const Pass& aov : frame.aovs)
+    append(aov.has_halves() ? halves_of(aov, {}, 0, out.mended_pixels) : split_like(beauty, aov, out.mended_pixels));
+  if (alpha) append(halves_of(Pass{"alpha", frame.alpha, {}, {}, {}}, {}, 0, out.mended_pixels));
+
+  int feature_channels = 0;
+  for (const FeatureUse& use : preparation.features) feature_channels += frame.features[use.index].pass.mean.channels();
+  for (Image& features : pair.features) features = Image(frame.width(), frame.height(), feature_channels);
+  int channel = 0;
+  for (const FeatureUse& use : preparation.features) {
+    const auto halves = prepared_feature(frame.features[use.index], use, use.index + 1, out.mended_pixels, progress);
+    int end = channel;
+    for (std::size_t h = 0; h < 2; ++h) {
+      end = channel;
+      append_channels(halves[h], pair.features[h], end);
+    }
+    channel = end;
+  }
+  return out;
+}
+
+}  // namespace polyrecon

@@ -1,0 +1,109 @@
+#include "outliers/remove.h"
+
+#include <algorithm>
+#include <array>
+
+#include "core/parallel.h"
+
+namespace polyrecon {
+namespace {
+
+Real brightness(const Image& color, std::size_t i) {
+  return (color.plane(0)[i] + color.plane(1)[i] + color.plane(2)[i]) * Real(1.0 / 3);
+}
+
+/// Where the value of an outlier comes from; index -1 where the pixel is none.
+struct Replacement {
+  std::vector<std::ptrdiff_t> source;
+  std::vector<int> count_above;  ///< Summed-area table of outliers, (width + 1) x (height + 1).
+};
+
+/// Index of the pixel of median brightness around (x, y) if the pixel of half h is an outlier, else -1.
+std::ptrdiff_t replacement_of(const HalfPair& pair, std::size_t h, int x, int y, bool independent, const OutlierParams& p) {
+  const Image &own = pair.color[h], &other = pair.color[1 - h];
+  const std::size_t center = own.index(x, y);
+  const Real value = brightness(own, center);
+  const Rect around = intersect(grow({x, y, x + 1, y + 1}, p.neighbourhood), own.bounds());
+  std::vector<Real> witnesses;
+  std::vector<std::pair<Real, std::ptrdiff_t>> neighbours;
+  for (int v = around.y0; v < around.y1; ++v)
+    for (int u = around.x0; u < around.x1; ++u) {
+      const std::size_t i = own.index(u, v);
+      if (i != center || independent) witnesses.push_back(brightness(other, i));
+      if (i == center) continue;
+      witnesses.push_back(brightness(own, i));
+      neighbours.emplace_back(witnesses.back(), static_cast<std::ptrdiff_t>(i));
+    }
+  if (neighbours.size() < 3) return -1;
+  // The third brightest witness: one spike beside this one, in either half, must not hide it.
+  const std::size_t third = witnesses.size() - 3;
+  std::nth_element(witnesses.begin(), witnesses.begin() + static_cast<std::ptrdiff_t>(third), witnesses.end());
+  const Real top = witnesses[third];
+  if (!(value > top)) return -1;
+  const auto middle = witnesses.begin() + static_cast<std::ptrdiff_t>(witnesses.size() / 2);
+  std::nth_element(witnesses.begin(), middle, witnesses.end());
+  const Real median = *middle;
+  const double excess = static_cast<double>(value) - static_cast<double>(median);
+  if (!(excess > p.height * (static_cast<double>(top) - static_cast<double>(median)))) return -1;
+  double variance = 0;
+  for (int c = 0; c < 3; ++c) variance += static_cast<double>(pair.variance.plane(c)[center]) / 3;
+  if (!(excess * excess < p.reliability * p.reliability * variance)) return -1;
+  const auto half = neighbours.begin() + static_cast<std::ptrdiff_t>(neighbours.size() / 2);
+  std::nth_element(neighbours.begin(), half, neighbours.end());
+  return half->second;
+}
+
+Replacement find(const HalfPair& pair, std::size_t h, bool independent, const OutlierParams& p, Progress& progress) {
+  const int width = pair.width(), height = pair.height();
+  Replacement out;
+  out.source.assign(pair.variance.pixels(), -1);
+  parallel_for(static_cast<std::size_t>(height), progress, [&](std::size_t y) {
+    for (int x = 0; x < width; ++x)
+      out.source[pair.variance.index(x, static_cast<int>(y))] = replacement_of(pair, h, x, static_cast<int>(y), independent, p);
+  });
+  const auto row = static_cast<std::size_t>(width) + 1;
+  out.count_above.assign(row * (static_cast<std::size_t>(height) + 1), 0);
+  for (std::size_t y = 0; y < static_cast<std::size_t>(height); ++y)
+    for (std::size_t x = 0; x < static_cast<std::size_t>(width); ++x)
+      out.count_above[(y + 1) * row + x + 1] = (out.source[y * static_cast<std::size_t>(width) + x] >= 0) + out.count_above[y * row + x + 1] +
+                                               out.count_above[(y + 1) * row + x] - out.count_above[y * row + x];
+  return out;
+}
+
+bool rare(const Replacement& found, int width, int height, int x, int y, const OutlierParams& p) {
+  const Rect r = intersect(grow({x, y, x + 1, y + 1}, p.density_radius), {0, 0, width, height});
+  const auto sum = [&](int u, int v) {
+    return found.count_above[static_cast<std::size_t>(v) * (static_cast<std::size_t>(width) + 1) + static_cast<std::size_t>(u)];
+  };
+  const int count = sum(r.x1, r.y1) - sum(r.x0, r.y1) - sum(r.x1, r.y0) + sum(r.x0, r.y0);
+  return count <= 1 + p.density * static_cast<double>(r.area());
+}
+
+}  // namespace
+
+std::vector<Outlier> remove_outliers(HalfPair& pair, bool independent_halves, const OutlierParams& params, Progress& progress) {
+  const int width = pair.width(), height = pair.height(), channels = pair.color[0].channels();
+  const std::array<Replacement, 2> found{find(pair, 0, independent_halves, params, progress),
+                                         find(pair, 1, independent_halves, params, progress)};
+  // Sources are read from the untouched images: an outlier may stand beside another.
+  const HalfPair before = pair;
+  std::vector<Outlier> outliers;
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x)
+      for (std::size_t h = 0; h < 2; ++h) {
+        const std::size_t i = pair.variance.index(x, y);
+        if (found[h].source[i] < 0 || !rare(found[h], width, height, x, y, params)) continue;
+        const auto from = static_cast<std::size_t>(found[h].source[i]);
+        Outlier outlier{x, y, {}};
+        for (int c = 0; c < channels; ++c) {
+          const Real taken = before.color[h].plane(c)[i] - before.color[h].plane(c)[from];
+          pair.color[h].plane(c)[i] = before.color[h].plane(c)[from];
+          outlier.energy.push_back(0.5 * static_cast<double>(taken));
+        }
+        for (int c = 0; c < 3; ++c) pair.variance.plane(c)[i] = before.variance.plane(c)[from];
+        outliers.push_back(std::move(outlier));
+      }
+  return outliers;
+}
+
+}  // namespace polyrecon
