@@ -106,10 +106,10 @@ MapWindows windows_of(const ReadResult& in, const std::string& layer_name) {
 
 std::vector<Replacement> replacements(const ReadResult& in, const Result& result, const std::string& picture,
                                       bool with_alpha) {
-  std::vector<Replacement> list{{picture, result.beauty}};
-  for (std::size_t i = 0; i < result.aovs.size(); ++i) list.push_back({in.frame.aovs[i].name, result.aovs[i]});
-  if (with_alpha && !result.alpha.empty() && !in.source.alpha_channel.empty())
-    list.push_back({in.source.alpha_channel, result.alpha});
+  std::vector<Replacement> list{{picture, result.beauty, false}};
+  for (std::size_t i = 0; i < result.aovs.size(); ++i) list.push_back({in.frame.aovs[i].name, result.aovs[i], false});
+  if (with_alpha && !result.alpha.empty() && !in.source.alpha_layer.empty())
+    list.push_back({in.source.alpha_layer, result.alpha, true});
   return list;
 }
 
