@@ -15,7 +15,8 @@ namespace fs = std::filesystem;
 bool same_file(const std::string& a, const std::string& b) {
   std::error_code error;
   if (fs::equivalent(a, b, error) && !error) return true;
-  const fs::path first = fs::weakly_canonical(a, error), second = fs::weakly_canonical(b, error);
+  const fs::path first = fs::weakly_canonical(fs::absolute(a, error), error);
+  const fs::path second = fs::weakly_canonical(fs::absolute(b, error), error);
   return !error && first == second;
 }
 
@@ -31,9 +32,10 @@ void require_readable(const std::string& path) {
 void require_outputs(const std::vector<std::string>& inputs, const std::vector<NamedPath>& outputs) {
   for (std::size_t i = 0; i < outputs.size(); ++i) {
     const NamedPath& output = outputs[i];
+    if (output.path.empty() && output.option == "-o") throw Error(ExitCode::Usage, "-o needs the name of a file");
     if (output.path.empty()) continue;
     for (const std::string& input : inputs)
-      if (same_file(output.path, input))
+      if (!input.empty() && same_file(output.path, input))
         throw Error(ExitCode::Usage, output.path + ": is the input too, give " + output.option + " another name");
     for (std::size_t j = 0; j < i; ++j)
       if (!outputs[j].path.empty() && same_file(output.path, outputs[j].path))

@@ -7,6 +7,7 @@
 #include <iterator>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,7 +32,10 @@ struct DenoiseOptions {
   std::string input, output, error_map, order_map, sample_map, report;
   std::vector<std::string> roles;  ///< "role=LAYER"
   ReadOptions read;
-  Params params;
+  Quality quality = Quality::Standard;
+  std::optional<int> stages, order;  ///< In place of what the quality says.
+  std::optional<std::size_t> max_memory;
+  bool alpha = false;
   SampleMapOptions sampling;
   bool sampling_given = false;
   bool keep_noisy = false, quiet = false;
@@ -59,12 +63,21 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
+Params params_of(const DenoiseOptions& o) {
+  Params params = params_for(o.quality);
+  if (o.stages) params.stages = *o.stages;
+  if (o.order) params.max_order = *o.order;
+  if (o.max_memory) params.max_memory = *o.max_memory;
+  params.reconstruct_alpha = o.alpha;
+  return params;
+}
+
 /// What the result depends on, in the words of the command line; goes into the file and the report.
 std::string settings_text(const DenoiseOptions& o) {
-  std::string text =
-      fmt::format("--quality {} --stages {} --order {} --variance-kind {}", key_of(qualities, o.params.quality),
-                  o.params.stages, o.params.max_order, key_of(variance_kinds, o.read.variance_kind));
-  if (o.params.reconstruct_alpha) text += " --alpha";
+  const Params params = params_of(o);
+  std::string text = fmt::format("--quality {} --stages {} --order {} --variance-kind {}", key_of(qualities, o.quality),
+                                 params.stages, params.max_order, key_of(variance_kinds, o.read.variance_kind));
+  if (params.reconstruct_alpha) text += " --alpha";
   if (!o.read.view_layer.empty()) text += " --view-layer '" + o.read.view_layer + "'";
   for (const std::string& aov : o.read.aovs) text += " --aov '" + aov + "'";
   for (const std::string& role : o.roles) text += " --map '" + role + "'";
@@ -73,7 +86,7 @@ std::string settings_text(const DenoiseOptions& o) {
 
 /// Everything that can be refused without reading the input.
 void check(const DenoiseOptions& o) {
-  validate(o.params);
+  validate(params_of(o));
   if (o.sample_map.empty() && o.sampling_given)
     throw Error(ExitCode::Usage, "--budget, --target, --export and the like need --sample-map");
   if (!o.sample_map.empty()) check_sample_map_options(o.sampling);
@@ -125,7 +138,7 @@ std::vector<std::string> write_all(const DenoiseOptions& o, const ReadResult& in
   options.keep_noisy = o.keep_noisy;
   options.provenance = {settings_text(o), identity(in.source), result.report.estimated_relative_mse};
   std::vector<std::string> notes =
-      write_result(in.source, replacements(in, result, picture, o.params.reconstruct_alpha), o.output, options);
+      write_result(in.source, replacements(in, result, picture, o.alpha), o.output, options);
   const MapWindows windows = windows_of(in, picture);
   if (!o.error_map.empty()) write_error_map(o.error_map, result.error, in.frame.sample_count, windows);
   if (!o.order_map.empty()) write_order_map(o.order_map, result.order, windows);
@@ -163,7 +176,8 @@ void run(DenoiseOptions o) {
   check(o);
   set_thread_limit(o.threads);
   if (o.read.samples > 0) o.sampling.params.assumed_samples = o.read.samples;
-  o.read.limits.max_bytes = o.params.max_memory;
+  const Params params = params_of(o);
+  o.read.limits.max_bytes = params.max_memory;
   const auto progress = make_progress(o.quiet ? ProgressStyle::None : o.progress);
 
   const ReadResult in = read_frame(o.input, o.read);
@@ -171,7 +185,7 @@ void run(DenoiseOptions o) {
   report.read_seconds = seconds_since(start);
   print(o.quiet, input_text(in));
 
-  const Result result = reconstruct(in.frame, o.params, *progress);
+  const Result result = reconstruct(in.frame, params, *progress);
   const auto written = std::chrono::steady_clock::now();
   report.notes = in.notes;
   const std::vector<std::string> notes = write_all(o, in, result, *progress);
@@ -185,6 +199,7 @@ void run(DenoiseOptions o) {
   report.seconds = seconds_since(start);
   report.peak_memory = peak_memory();
   report.reconstruction = result.report;
+  report.calibration = result.error.calibration;
   if (!o.report.empty()) write_text(o.report, report_json(report, in.source).dump(2) + "\n");
   print(o.quiet, report_text(report));
 }
@@ -223,14 +238,12 @@ void add_input_options(CLI::App& app, DenoiseOptions& o) {
 
 void add_method_options(CLI::App& app, DenoiseOptions& o) {
   const std::string group = "Reconstruction";
-  add_choice(app, "--quality", o.params.quality, qualities, "draft, standard or best")->group(group);
-  app.add_option("--stages", o.params.stages, "Rounds of error estimation, 1 to 4")
-      ->capture_default_str()
+  add_choice(app, "--quality", o.quality, qualities, "draft, standard or best")->group(group);
+  app.add_option("--stages", o.stages, "Rounds of error estimation, 1 to 4, in place of what the quality takes")
       ->group(group);
-  app.add_option("--order", o.params.max_order, "Highest polynomial order, 0 to 4")
-      ->capture_default_str()
+  app.add_option("--order", o.order, "Highest polynomial order, 0 to 4, in place of what the quality takes")
       ->group(group);
-  app.add_flag("--alpha", o.params.reconstruct_alpha, "Denoise alpha too, in place of keeping it")->group(group);
+  app.add_flag("--alpha", o.alpha, "Denoise alpha too, in place of keeping it")->group(group);
   app.add_flag("--keep-noisy", o.keep_noisy, "Keep what is replaced, under '<layer> Noisy'")->group(group);
 }
 
@@ -240,7 +253,7 @@ void add_run_options(CLI::App& app, DenoiseOptions& o) {
       ->check(CLI::Range(0, 4096))
       ->capture_default_str()
       ->group(group);
-  app.add_option("--max-memory", o.params.max_memory, "Memory to stay within, in bytes or as 512M, 4G")
+  app.add_option("--max-memory", o.max_memory, "Memory to stay within, in bytes or as 512M, 4G")
       ->transform(CLI::AsSizeValue(false).description(""))
       ->type_name("SIZE")
       ->group(group);

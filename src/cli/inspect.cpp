@@ -11,6 +11,7 @@
 #include "cli/checks.h"
 #include "cli/commands.h"
 #include "cli/report_output.h"
+#include "features/prepare.h"
 
 namespace polyrecon {
 namespace {
@@ -67,8 +68,16 @@ const LayerStatistics* statistics_of(const Inspection& found, const std::string&
   return at == found.statistics.end() ? nullptr : &*at;
 }
 
-Json json_of(const Inspection& found) {
-  Json files = Json::array(), layers = Json::array();
+/// Which effects denoise would run; none to tell of a file without a beauty. Outliers show only in the work itself.
+std::vector<Decision> effects_of(const InspectOptions& o, const Inspection& found) {
+  const auto& chosen = found.source.chosen;
+  if (std::none_of(chosen.begin(), chosen.end(), [](const RoleChoice& c) { return c.role == Role::Beauty; })) return {};
+  return look_at(read_frame(o.input, o.read).frame).decisions;
+}
+
+Json json_of(const Inspection& found, const std::vector<Decision>& decisions) {
+  Json files = Json::array(), layers = Json::array(), effects = Json::array();
+  for (const Decision& d : decisions) effects.push_back({{"effect", d.effect}, {"run", d.run}, {"reason", d.reason}});
   for (const FileInfo& file : found.source.files) {
     Json parts = Json::array();
     for (const PartInfo& part : file.parts) parts.push_back(json_of(part));
@@ -82,6 +91,7 @@ Json json_of(const Inspection& found) {
           {"missing", found.missing},
           {"samples", found.samples > 0 ? Json(found.samples) : Json()},
           {"noise_level", found.noise_level >= 0 ? Json(found.noise_level) : Json()},
+          {"effects", effects},
           {"notes", found.notes}};
 }
 
@@ -94,7 +104,7 @@ std::string text_of(const PartInfo& part, std::size_t index) {
 }
 
 std::string text_of(const Layer& layer, const LayerStatistics* s) {
-  std::string line = fmt::format("  {:<38} {:<12} {:<16}", layer.name.empty() ? "(no name)" : layer.name,
+  std::string line = fmt::format("  {:<38} {:<12} {:<20}", layer.name.empty() ? "(no name)" : layer.name,
                                  name_of(layer.role), name_of(layer.companion));
   if (s) {
     line += fmt::format(" {:>11.4g} .. {:<11.4g} mean {:<10.4g}", s->minimum, s->maximum, s->mean);
@@ -105,19 +115,21 @@ std::string text_of(const Layer& layer, const LayerStatistics* s) {
   return line + "\n";
 }
 
-std::string text_of(const Inspection& found) {
+std::string text_of(const Inspection& found, const std::vector<Decision>& decisions) {
   std::string text;
   for (const FileInfo& file : found.source.files) {
     text += fmt::format("{}: {}, {} bytes\n", file.path, file.format, file.bytes);
     for (std::size_t i = 0; i < file.parts.size(); ++i) text += text_of(file.parts[i], i);
   }
-  text += fmt::format("  {:<38} {:<12} {:<16} {}\n", "layer", "role", "holds", "values");
+  text += fmt::format("  {:<38} {:<12} {:<20} {}\n", "layer", "role", "holds", "values");
   for (const Layer& layer : found.source.layers) text += text_of(layer, statistics_of(found, layer.name));
   text += roles_text(found.source);
   if (!found.missing.empty()) text += fmt::format("missing: {}\n", fmt::join(found.missing, ", "));
   if (found.samples > 0) text += fmt::format("samples per pixel: {:g}\n", found.samples);
   if (found.noise_level >= 0)
     text += fmt::format("noise level (variance / (mean^2 + 0.01)): {:.4g}\n", found.noise_level);
+  for (const Decision& d : decisions)
+    text += fmt::format("effect: {}: {}, {}\n", d.effect, d.run ? "yes" : "no", d.reason);
   for (const std::string& note : found.notes) text += fmt::format("note: {}\n", note);
   return text;
 }
@@ -125,7 +137,8 @@ std::string text_of(const Inspection& found) {
 void run(const InspectOptions& o) {
   require_readable(o.input);
   const Inspection found = inspect(o.input, o.read);
-  std::fputs((o.json ? json_of(found).dump(2) + "\n" : text_of(found)).c_str(), stdout);
+  const std::vector<Decision> effects = effects_of(o, found);
+  std::fputs((o.json ? json_of(found, effects).dump(2) + "\n" : text_of(found, effects)).c_str(), stdout);
 }
 
 }  // namespace

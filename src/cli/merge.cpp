@@ -31,6 +31,8 @@ void run(const MergeCommandOptions& o) {
   if (result.samples > 0) text += fmt::format(", {:g} samples per pixel", result.samples);
   text += fmt::format("\n  mean, variance and halves: {}\n", fmt::join(result.merged, ", "));
   if (!result.kept.empty()) text += fmt::format("  from the first file:       {}\n", fmt::join(result.kept, ", "));
+  if (!result.dropped.empty())
+    text += fmt::format("  left out:                  {}\n", fmt::join(result.dropped, ", "));
   for (const std::string& note : result.notes) text += fmt::format("  note: {}\n", note);
   std::fputs(text.c_str(), stdout);
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <csignal>
@@ -53,7 +54,8 @@ class ShownProgress : public SignalProgress {
   virtual void show(Event event) = 0;
 
   const std::string& stage() const { return stage_; }
-  std::size_t done() const { return done_; }
+  /// Totals are estimates: never more than all.
+  std::size_t done() const { return std::min<std::size_t>(done_, total_); }
   std::size_t total() const { return total_; }
   double seconds() const { return std::chrono::duration<double>(Clock::now() - begun_).count(); }
 
@@ -74,9 +76,9 @@ class BarProgress final : public ShownProgress {
     constexpr std::size_t width = 30;
     const bool finished = event == Event::End;
     const double part = finished ? 1.0 : total() ? static_cast<double>(done()) / static_cast<double>(total()) : 0.0;
-    const auto filled = static_cast<std::size_t>(std::min(part, 1.0) * width);
-    const std::string line = fmt::format("{:<24} [{:<30}] {:3.0f} %  {:6.1f} s", stage(), std::string(filled, '#'),
-                                         100 * std::min(part, 1.0), seconds());
+    const auto filled = static_cast<std::size_t>(part * width);
+    const std::string line =
+        fmt::format("{:<24} [{:<30}] {:3.0f} %  {:6.1f} s", stage(), std::string(filled, '#'), 100 * part, seconds());
     std::fputs(fmt::format("{}{}{}", terminal_ ? "\r" : "", line, finished ? "\n" : "").c_str(), stderr);
     std::fflush(stderr);
   }

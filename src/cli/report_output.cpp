@@ -46,7 +46,7 @@ std::string windows_text(const Report& r) {
   std::string orders;
   for (std::size_t k = 0; k < r.windows_per_order.size(); ++k)
     if (r.windows_per_order[k])
-      orders += fmt::format(", {} {}", k == 0 ? std::string("mean") : fmt::format("order {}:", k - 1),
+      orders += fmt::format(", {} {}", k == 0 ? std::string("mean:") : fmt::format("order {}:", k - 1),
                             r.windows_per_order[k]);
   return fmt::format("{}{}", r.windows, orders);
 }
@@ -107,7 +107,8 @@ std::string report_text(const RunReport& run) {
   text += line("outliers", fmt::format("{}, energy moved {}", r.outliers, rgb_text(r.outlier_energy)));
   text += line("energy (mean RGB)", fmt::format("{} -> {} ({:+.3f} %)", rgb_text(r.energy_before),
                                                 rgb_text(r.energy_after), 100 * energy_change(r)));
-  text += line("estimated relMSE", fmt::format("{:.5g}", r.estimated_relative_mse));
+  text += line("estimated relMSE", fmt::format("{:.5g} (the windows' own estimate times {:.3g})",
+                                               r.estimated_relative_mse, run.calibration));
   for (const std::string& note : run.notes) text += line("note", note);
   return text;
 }
@@ -146,6 +147,7 @@ Json report_json(const RunReport& run, const FrameSource& source) {
             {"after", rgb(r.energy_after)},
             {"relative_change", number(energy_change(r))}}},
           {"estimated_relmse", number(r.estimated_relative_mse)},
+          {"error_calibration", number(run.calibration)},
           {"notes", run.notes}};
 }
 

@@ -17,6 +17,7 @@ struct RunReport {
   double seconds = 0;              ///< From start to the last file written.
   double read_seconds = 0, write_seconds = 0;
   std::size_t peak_memory = 0;  ///< Bytes, of the process.
+  double calibration = 1;       ///< Of the error map: the factor that brought it to the cross-validated error.
   Report reconstruction;
 };
 

@@ -49,11 +49,11 @@ class HeaderWalk {
       ++position_;
       if (c == '\0') return text;
     }
-    fail(path_, "damaged header (a name longer than 255 bytes)");
+    fail(path_, "incomplete or damaged header (a name longer than 255 bytes)");
   }
 
   void skip(std::uint32_t size, const std::string& attribute) {
-    if (size > bytes_ - position_) fail(path_, fmt::format("damaged header (attribute {} claims {} bytes)", attribute, size));
+    if (size > bytes_ - position_) fail(path_, fmt::format("incomplete or damaged header (attribute {} claims {} bytes)", attribute, size));
     position_ += size;
     stream_.seekg(static_cast<std::streamoff>(position_));
   }
@@ -120,14 +120,6 @@ bool is_tiled_part(const Imf::Header& header) {
   return header.hasType() ? Imf::isTiled(header.type()) : header.hasTileDescription();
 }
 
-std::uint64_t chunk_count(const Imf::Header& header) {
-  const auto& window = header.dataWindow();
-  const std::uint64_t width = side(window.min.x, window.max.x), height = side(window.min.y, window.max.y);
-  if (is_tiled_part(header)) return tile_count(header.tileDescription(), width, height);
-  const bool deep = header.hasType() && Imf::isDeepData(header.type());
-  return ceil_divide(height, deep ? 1 : lines_per_chunk(header.compression()));
-}
-
 std::string part_title(const Imf::Header& header, std::size_t index) {
   return header.hasName() ? fmt::format("part {} \"{}\"", index, header.name()) : fmt::format("part {}", index);
 }
@@ -140,6 +132,14 @@ std::uint64_t bytes_per_pixel(const Imf::Header& header) {
 }
 
 }  // namespace
+
+std::uint64_t chunk_count(const Imf::Header& header) {
+  const auto& window = header.dataWindow();
+  const std::uint64_t width = side(window.min.x, window.max.x), height = side(window.min.y, window.max.y);
+  if (is_tiled_part(header)) return tile_count(header.tileDescription(), width, height);
+  const bool deep = header.hasType() && Imf::isDeepData(header.type());
+  return ceil_divide(height, deep ? 1 : lines_per_chunk(header.compression()));
+}
 
 std::uint64_t check_attribute_sizes(const std::string& path, std::uint64_t file_bytes) {
   HeaderWalk walk(path, file_bytes);

@@ -1,9 +1,10 @@
 #pragma once
 
+#include <OpenEXR/ImfHeader.h>
+
+#include <cstdint>
 #include <string>
 #include <vector>
-
-#include <OpenEXR/ImfHeader.h>
 
 #include "io/exr_file.h"
 
@@ -13,6 +14,9 @@ namespace polyrecon {
 /// begin there). OpenEXR allocates what an attribute's size field says before it reads, so a hostile size has to be
 /// refused first. Throws Error{BadInput}.
 std::uint64_t check_attribute_sizes(const std::string& path, std::uint64_t file_bytes);
+
+/// Chunks of a part: blocks of scanlines, or tiles of all levels.
+std::uint64_t chunk_count(const Imf::Header& header);
 
 /// Compares windows, tiles, channels and chunk counts of headers that were parsed with limits and with the length of the
 /// file: pixels cannot be packed more than 65536 to one, and every chunk has 8 bytes in the table and 8 of its own.

@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <filesystem>
+#include <memory>
 
 #include "core/error.h"
 #include "io/exr_attributes.h"
@@ -26,8 +28,12 @@ bool is_known_extension(const std::string& path) {
   return std::find(known.begin(), known.end(), extension) != known.end();
 }
 
-/// Rows of a PFM run bottom-up, and OpenImageIO does not turn them.
-bool is_bottom_up(const FileInfo& file) { return file.format == "pnm"; }
+/// Rows of a PFM run bottom-up; some versions of OpenImageIO turn them only on request.
+std::unique_ptr<OIIO::ImageInput> open_image(const std::string& path) {
+  OIIO::ImageSpec hints;
+  hints.attribute("pnm:pfmflip", 1);
+  return OIIO::ImageInput::open(path, &hints);
+}
 
 SampleType to_sample_type(const OIIO::TypeDesc& type) {
   if (type.basetype == OIIO::TypeDesc::HALF) return SampleType::Half;
@@ -38,7 +44,7 @@ SampleType to_sample_type(const OIIO::TypeDesc& type) {
 
 void describe_plain_image(FileInfo& file, const ReadLimits& limits) {
   if (!is_known_extension(file.path)) fail(file.path, "not an OpenEXR file");
-  const auto input = OIIO::ImageInput::open(file.path);
+  const auto input = open_image(file.path);
   if (!input) fail(file.path, fmt::format("cannot be read ({})", first_line(OIIO::geterror())));
   const OIIO::ImageSpec& spec = input->spec();
   if (spec.width <= 0 || spec.height <= 0 || spec.nchannels <= 0 || spec.image_pixels() > limits.max_pixels ||
@@ -47,7 +53,8 @@ void describe_plain_image(FileInfo& file, const ReadLimits& limits) {
                                 spec.nchannels));
   file.format = input->format_name();
   const std::uint64_t raw = spec.image_bytes(true);
-  if (is_bottom_up(file) ? raw > file.bytes : raw / 1024 > file.bytes)
+  const bool packed = file.format != "pnm";
+  if (packed ? raw / 1024 > file.bytes : raw > file.bytes)
     fail(file.path, fmt::format("incomplete: {} bytes of pixels in a file of {} bytes", raw, file.bytes));
   PartInfo part;
   part.data_window = {spec.x, spec.y, spec.x + spec.width, spec.y + spec.height};
@@ -61,11 +68,9 @@ void describe_plain_image(FileInfo& file, const ReadLimits& limits) {
 
 Image read_plain_image(const FileInfo& file, const std::vector<std::string>& channels) {
   const PartInfo& part = file.parts.front();
-  const auto width = static_cast<std::size_t>(part.data_window.width());
-  const auto height = static_cast<std::size_t>(part.data_window.height());
   const std::size_t stride = part.channels.size();
-  std::vector<float> pixels(width * height * stride);
-  const auto input = OIIO::ImageInput::open(file.path);
+  std::vector<float> pixels(part.data_window.area() * stride);
+  const auto input = open_image(file.path);
   if (!input || !input->read_image(0, 0, 0, static_cast<int>(stride), OIIO::TypeDesc::FLOAT, pixels.data()))
     fail(file.path, fmt::format("incomplete or damaged ({})", first_line(input ? input->geterror() : OIIO::geterror())));
   Image image(part.data_window.width(), part.data_window.height(), static_cast<int>(channels.size()));
@@ -73,11 +78,8 @@ Image read_plain_image(const FileInfo& file, const std::vector<std::string>& cha
     const auto found = std::find_if(part.channels.begin(), part.channels.end(),
                                     [&](const ChannelInfo& channel) { return channel.name == channels[c]; });
     const auto source = static_cast<std::size_t>(found - part.channels.begin());
-    for (std::size_t y = 0; y < height; ++y) {
-      const std::size_t row = is_bottom_up(file) ? height - 1 - y : y;
-      for (std::size_t x = 0; x < width; ++x)
-        image.plane(static_cast<int>(c))[y * width + x] = static_cast<Real>(pixels[(row * width + x) * stride + source]);
-    }
+    for (std::size_t i = 0; i < image.pixels(); ++i)
+      image.plane(static_cast<int>(c))[i] = static_cast<Real>(pixels[i * stride + source]);
   }
   return image;
 }

@@ -191,6 +191,7 @@ class Rewrite {
   }
 
   void verify(const std::string& path) {
+    input_.flushPartCache();  // a part stays what it was first opened as, and copying opens tiled ones as such
     Imf::MultiPartInputFile written(path.c_str(), Imf::globalThreadCount(), false);
     for (int p = 0; p < static_cast<int>(parts_.size()); ++p) {
       const PartPlan& part = parts_[static_cast<std::size_t>(p)];

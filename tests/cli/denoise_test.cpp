@@ -24,7 +24,7 @@ class Denoise : public ProgramTest {
   }
 };
 
-std::vector<std::string> channels_of(const std::string& path) { return OIIO::ImageBuf(path).spec().channelnames; }
+std::vector<std::string> channels_of(const std::string& path) { return load(path).spec().channelnames; }
 
 TEST_F(Denoise, RefusesContradictionsBeforeAnyWork) {
   write_render(path("in.exr"));
@@ -123,7 +123,7 @@ TEST_F(Denoise, WritesTheImageAndAllMaps) {
   EXPECT_THAT(channels_of(path("samples.exr")), UnorderedElementsAre("samples.Y", "importance.Y"));
   EXPECT_THAT(channels_of(path("error.exr")),
               ::testing::IsSupersetOf({"mse.R", "mse.G", "mse.B", "relmse.Y", "relvariance.Y"}));
-  const OIIO::ImageBuf samples(path("samples.exr"));
+  const OIIO::ImageBuf samples = load(path("samples.exr"));
   EXPECT_EQ(samples.spec().get_float_attribute("budget"), 16);
   EXPECT_EQ(samples.spec().get_float_attribute("frame"), 7);
   EXPECT_EQ(samples.spec().get_float_attribute("seed"), 3);

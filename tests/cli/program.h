@@ -1,6 +1,7 @@
 #pragma once
 
 #include <OpenImageIO/imagebuf.h>
+#include <OpenImageIO/imageio.h>
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -13,6 +14,7 @@
 #include <fstream>
 #include <iterator>
 #include <random>
+#include <stdexcept>
 #include <string>
 #include <thread>
 #include <vector>
@@ -22,6 +24,18 @@ namespace polyrecon::testing {
 inline std::string read_text(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// A file as it is now: an ImageBuf that names its file would look into OpenImageIO's cache.
+inline OIIO::ImageBuf load(const std::string& path) {
+  const auto input = OIIO::ImageInput::open(path);
+  if (!input) throw std::runtime_error(path + ": " + OIIO::geterror());
+  OIIO::ImageSpec spec = input->spec();
+  spec.set_format(OIIO::TypeDesc::FLOAT);
+  OIIO::ImageBuf buffer(spec);
+  if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, buffer.localpixels()))
+    throw std::runtime_error(path + ": " + input->geterror());
+  return buffer;
 }
 
 /// What a run of the program left.

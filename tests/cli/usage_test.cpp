@@ -69,8 +69,7 @@ TEST_F(Usage, DamagedFilesAreBadInput) {
   for (const std::string name : {"cut.exr", "empty.exr", "text.exr"}) {
     for (const std::vector<std::string>& arguments : {std::vector<std::string>{"denoise", "-i", name, "-o", "out.exr"},
                                                       {"preview", name, "-o", "out.png"},
-                                                      {"compare", name, "whole.exr"},
-                                                      {"samplemap", "-e", name, "--budget", "1", "-o", "out.exr"}}) {
+                                                      {"compare", name, "whole.exr"}}) {
       const Outcome o = run(arguments);
       EXPECT_EQ(o.code, 3) << arguments[0] << " " << name << ": " << o.err;
       EXPECT_TRUE(is_one_error_line(o.err));
