@@ -2,7 +2,7 @@
 """Renders the shipped samples anew: scenes/ -> parts -> `polyrecon merge` -> the files beside this script.
 
 Needs Blender 3.4 (Debian: apt-get install blender), a Python that has the Blender 5 module (pip install bpy==5.0.1),
-oiiotool, and polyrecon built. About 25 minutes on two cores, nearly all of it for the references.
+oiiotool, and polyrecon built. Under an hour on two cores, nearly all of it for the references.
 """
 
 import argparse
