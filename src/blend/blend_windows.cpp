@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/parallel.h"
 #include "core/simd.h"
@@ -71,31 +72,33 @@ POLYRECON_SIMD void add_scaled(Real* y, const Real* x, Real factor, int n) {
   for (int j = 0; j < n; ++j) y[j] += factor * x[j];
 }
 
-double weighted_sum(const Window& window, const Real* weight, const Real* values) {
-  double sum = 0;
-  for (int j = 0; j < window.count; ++j) sum += static_cast<double>(weight[j]) * static_cast<double>(values[j]);
-  return sum;
-}
-
-double weighted_energy(const Window& window, const Real* weight, const Real* values) {
-  double sum = 0;
-  for (int j = 0; j < window.count; ++j)
-    sum += static_cast<double>(weight[j]) * static_cast<double>(values[j]) * static_cast<double>(values[j]);
-  return sum;
+POLYRECON_SIMD void energies(const Real* weight, const Real* guess, const Real* variance, int n, double* guess_energy,
+                             double* noise_energy) {
+  double guess_sum = 0, noise_sum = 0;
+#pragma omp simd reduction(+ : guess_sum, noise_sum)
+  for (int j = 0; j < n; ++j) {
+    const double w = weight[j], m = guess[j];
+    guess_sum += w * m * m;
+    noise_sum += w * static_cast<double>(variance[j]);
+  }
+  *guess_energy = guess_sum;
+  *noise_energy = noise_sum;
 }
 
 std::array<ColumnStatistics, 3> column_statistics(const Scratch& s, bool first_stage) {
   std::array<ColumnStatistics, 3> channels;
-  for (std::size_t c = 0; c < channels.size(); ++c) {
+  double *z[3], *guess_z[3], *variance[3];
+  for (std::size_t c = 0; c < 3; ++c) {
+    z[c] = channels[c].z.data();
+    guess_z[c] = channels[c].guess.data();
+    variance[c] = channels[c].variance.data();
+  }
+  project_beauty(s.factor, s.window, s.weight.data(), z, guess_z, variance);
+  for (std::size_t c = 0; c < 3; ++c) {
     const std::size_t offset = c * static_cast<std::size_t>(s.window.stride);
-    const Real* y = s.window.response.data() + offset;
-    const Real* variance = s.window.noise_variance.data() + offset;
-    const Real* guess = first_stage ? y : s.window.guess.data() + offset;
-    project(s.factor, s.window, s.weight.data(), y, channels[c].z.data());
-    project_variance(s.factor, s.window, s.weight.data(), variance, channels[c].variance.data());
-    if (!first_stage) project(s.factor, s.window, s.weight.data(), guess, channels[c].guess.data());
-    channels[c].guess_energy = weighted_energy(s.window, s.weight.data(), guess);
-    channels[c].noise_energy = weighted_sum(s.window, s.weight.data(), variance);
+    const Real* guess = (first_stage ? s.window.response : s.window.guess).data() + offset;
+    energies(s.weight.data(), guess, s.window.noise_variance.data() + offset, s.window.padded, &channels[c].guess_energy,
+             &channels[c].noise_energy);
   }
   return channels;
 }
@@ -283,21 +286,22 @@ std::vector<BlendedFit> fit_and_blend(const FitSource& source, const std::vector
   Blending b{source, params, BasisLayout(source.features->channels(), params.max_order), counters, {}};
   for (std::size_t h = 0; h < params.bandwidths.size(); ++h) b.planes.emplace_back(width, height, source.response->channels());
   const auto needed = reached(active, width, height, params.radius);
-  const auto on_grid = [&](int x, int y) { return x % params.stride == 0 && y % params.stride == 0; };
-  sweep(b, progress, [&](int x, int y) { return on_grid(x, y) && needed[source.response->index(x, y)]; });
-  if (params.stride > 1) {
-    // Pixels that only unlike centres cover would get a bad blend: they become centres themselves.
-    const std::size_t widest = static_cast<std::size_t>(
-        std::max_element(params.bandwidths.begin(), params.bandwidths.end()) - params.bandwidths.begin());
-    std::vector<unsigned char> lonely(active.size(), 0);
+  const std::size_t widest = static_cast<std::size_t>(
+      std::max_element(params.bandwidths.begin(), params.bandwidths.end()) - params.bandwidths.begin());
+  // A coarse lattice of centres first; then, on ever finer ones, pixels that only unlike centres cover so far: they would get
+  // a bad blend, and become centres themselves.
+  std::vector<unsigned char> is_center(active.size(), 0), done(active.size(), 0);
+  for (int step = params.stride; step >= 1; step /= 2) {
+    const BlendPlane& plane = b.planes[widest];
     for (int y = 0; y < height; ++y)
       for (int x = 0; x < width; ++x) {
-        const BlendPlane& plane = b.planes[widest];
         const std::size_t i = source.response->index(x, y);
-        lonely[i] = active[i] && !on_grid(x, y) &&
-                    static_cast<double>(plane.sums[(i + 1) * plane.channels - 1]) < params.coverage;
+        const bool on_lattice = x % step == 0 && y % step == 0;
+        const bool lonely = static_cast<double>(plane.sums[(i + 1) * plane.channels - 1]) < params.coverage;
+        is_center[i] = on_lattice && !done[i] && (step == params.stride ? needed[i] : active[i] && lonely);
+        done[i] |= is_center[i];
       }
-    sweep(b, progress, [&](int x, int y) { return lonely[source.response->index(x, y)] != 0; });
+    sweep(b, progress, [&](int x, int y) { return is_center[source.response->index(x, y)] != 0; });
   }
   std::vector<BlendedFit> out;
   for (BlendPlane& plane : b.planes) out.push_back(normalise(plane, *source.response, active, counters));

@@ -130,6 +130,16 @@ std::string identity(const FrameSource& source) {
   return fmt::format("{}, {} bytes", std::filesystem::path(source.path).filename().string(), source.files[0].bytes);
 }
 
+/// Samples per pixel: of the file's layer, else the number that the command line or the metadata tell; empty where
+/// unknown.
+Image sample_counts(const DenoiseOptions& o, const ReadResult& in) {
+  if (!in.frame.sample_count.empty()) return in.frame.sample_count;
+  const double everywhere = o.read.samples > 0
+                                ? o.read.samples
+                                : samples_in_metadata(in.source.files.front(), in.source.view_layer).value_or(0);
+  return everywhere > 0 ? Image(in.frame.width(), in.frame.height(), 1, static_cast<Real>(everywhere)) : Image();
+}
+
 /// Writes the picture and the maps; returns notes.
 std::vector<std::string> write_all(const DenoiseOptions& o, const ReadResult& in, const Result& result,
                                    Progress& progress) {
@@ -140,11 +150,12 @@ std::vector<std::string> write_all(const DenoiseOptions& o, const ReadResult& in
   std::vector<std::string> notes =
       write_result(in.source, replacements(in, result, picture, o.alpha), o.output, options);
   const MapWindows windows = windows_of(in, picture);
-  if (!o.error_map.empty()) write_error_map(o.error_map, result.error, in.frame.sample_count, windows);
+  const Image samples = sample_counts(o, in);
+  if (!o.error_map.empty()) write_error_map(o.error_map, result.error, samples, windows);
   if (!o.order_map.empty()) write_order_map(o.order_map, result.order, windows);
   if (!o.sample_map.empty())
-    notes.push_back("sample map: " + make_and_write_sample_map(o.sample_map, result.error, in.frame.sample_count,
-                                                               windows, o.sampling, progress));
+    notes.push_back("sample map: " +
+                    make_and_write_sample_map(o.sample_map, result.error, samples, windows, o.sampling, progress));
   return notes;
 }
 
@@ -175,7 +186,6 @@ void run(DenoiseOptions o) {
   for (const std::string& role : o.roles) o.read.map.push_back(parse_mapping(role));
   check(o);
   set_thread_limit(o.threads);
-  if (o.read.samples > 0) o.sampling.params.assumed_samples = o.read.samples;
   const Params params = params_of(o);
   o.read.limits.max_bytes = params.max_memory;
   const auto progress = make_progress(o.quiet ? ProgressStyle::None : o.progress);

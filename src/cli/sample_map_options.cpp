@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <map>
 
 #include "cli/checks.h"
@@ -74,9 +76,9 @@ void add_sample_map_options(CLI::App& app, SampleMapOptions& o) {
 }
 
 bool any_sample_map_option(const CLI::App& app) {
-  for (const char* name : {"--budget", "--target", "--max-samples", "--cost", "--frame", "--seed", "--export"})
-    if (app.count(name) > 0) return true;
-  return false;
+  constexpr std::array<const char*, 7> names{"--budget", "--target", "--max-samples", "--cost",
+                                             "--frame",  "--seed",   "--export"};
+  return std::any_of(names.begin(), names.end(), [&](const char* name) { return app.count(name) > 0; });
 }
 
 void check_sample_map_options(const SampleMapOptions& options) {

@@ -16,6 +16,7 @@ namespace {
 struct SamplemapOptions {
   std::string error_map, output;
   SampleMapOptions map;
+  double samples = 0;  ///< 0: as the error map tells.
   bool quiet = false;
 };
 
@@ -23,7 +24,10 @@ void run(const SamplemapOptions& o) {
   check_sample_map_options(o.map);
   require_readable(o.error_map);
   require_outputs({o.error_map, o.map.cost}, {{"-o", o.output}});
-  const ErrorMapFile error = read_error_map(o.error_map);
+  ErrorMapFile error = read_error_map(o.error_map);
+  const Image& map = error.map.relative_mse;
+  if (error.sample_count.empty() && o.samples > 0)
+    error.sample_count = Image(map.width(), map.height(), 1, static_cast<Real>(o.samples));
   const auto progress = make_progress(ProgressStyle::None);
   const std::string text =
       make_and_write_sample_map(o.output, error.map, error.sample_count, error.windows, o.map, *progress);
@@ -37,10 +41,8 @@ void setup_samplemap(CLI::App& app, Command& chosen) {
   CLI::App* sub = app.add_subcommand("samplemap", "Tells from an error map where the next samples go");
   sub->add_option("-e,--error-map", o->error_map, "Error map that denoise wrote")->required()->type_name("FILE");
   sub->add_option("-o,--output", o->output, "Sample map to write")->required()->type_name("FILE");
-  sub->add_option("--samples", o->map.params.assumed_samples,
-                  "Samples per pixel already taken, where the error map does not tell")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
+  sub->add_option("--samples", o->samples, "Samples per pixel already taken, where the error map does not tell")
+      ->check(CLI::PositiveNumber);
   sub->add_flag("-q,--quiet", o->quiet, "Print nothing but errors");
   add_sample_map_options(*sub, o->map);
   sub->footer(

@@ -49,7 +49,7 @@ double sum_pixels(const Plane& p, Term term) {
 }
 
 std::vector<double> gaussian(int radius) {
-  std::vector<double> k(static_cast<std::size_t>(2 * radius + 1), 1.0);
+  std::vector<double> k(2 * static_cast<std::size_t>(radius) + 1, 1.0);
   const double sigma = radius / 2.0;
   for (int d = -radius; d <= radius && radius > 0; ++d)
     k[static_cast<std::size_t>(d + radius)] = std::exp(-d * d / (2 * sigma * sigma));
@@ -131,7 +131,7 @@ Parts split_error(const ErrorMap& error) {
     variance_sum += parts.variance.v[i];
     bias2_sum += parts.bias2.v[i];
   }
-  const double known = static_cast<double>(count - unknown.size());
+  const auto known = static_cast<double>(count - unknown.size());
   for (const std::size_t i : unknown) {
     parts.variance.v[i] = known > 0 ? variance_sum / known : 1.0;
     parts.bias2.v[i] = known > 0 ? bias2_sum / known : 0.0;
@@ -254,7 +254,7 @@ SampleMap make_sample_map(const ErrorMap& error, const Image& sample_count, cons
   validate(params);
   check_shapes(error, sample_count, cost);
   const int width = error.relative_mse.width(), height = error.relative_mse.height();
-  const double pixels = static_cast<double>(error.relative_mse.pixels());
+  const auto pixels = static_cast<double>(error.relative_mse.pixels());
   SampleMap map;
   map.samples = map.importance = Image(width, height, 1);
 

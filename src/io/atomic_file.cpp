@@ -24,11 +24,12 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kTemporaryMark = ".polyrecon-";
-constexpr std::size_t kLongestStem = 200;  ///< Of 255 bytes that a name may have.
+constexpr std::size_t kLongestStem = 200;     ///< Of 255 bytes that a name may have.
 constexpr std::chrono::minutes kStaleAge{1};  ///< Younger ones may belong to a run that has not locked its file yet.
 
 [[noreturn]] void fail(const std::string& target, const std::string& doing, int error) {
-  throw Error(ExitCode::CannotWrite, fmt::format("{}: cannot be written ({}: {})", target, doing, std::strerror(error)));
+  throw Error(ExitCode::CannotWrite,
+              fmt::format("{}: cannot be written ({}: {})", target, doing, std::strerror(error)));
 }
 
 fs::path folder_of(const std::string& target) {
@@ -47,7 +48,8 @@ class Temporary {
   explicit Temporary(const std::string& target) : target_(target) {
     std::random_device random;
     for (int attempt = 0; attempt < 100 && descriptor_ < 0; ++attempt) {
-      path_ = (folder_of(target) / fmt::format("{}{:08x}{:08x}", temporary_prefix(target), random(), random())).string();
+      path_ =
+          (folder_of(target) / fmt::format("{}{:08x}{:08x}", temporary_prefix(target), random(), random())).string();
       descriptor_ = ::open(path_.c_str(), O_CREAT | O_EXCL | O_RDWR | O_CLOEXEC, 0666);
       if (descriptor_ < 0 && errno != EEXIST) break;
     }
@@ -104,8 +106,10 @@ bool is_abandoned(const fs::path& path) {
 void remove_abandoned(const std::string& target) {
   const std::string prefix = temporary_prefix(target);
   std::error_code failure;
-  for (fs::directory_iterator entry(folder_of(target), failure), end; !failure && entry != end; entry.increment(failure)) {
-    if (entry->path().filename().string().compare(0, prefix.size(), prefix) != 0 || !is_abandoned(entry->path())) continue;
+  for (fs::directory_iterator entry(folder_of(target), failure), end; !failure && entry != end;
+       entry.increment(failure)) {
+    if (entry->path().filename().string().compare(0, prefix.size(), prefix) != 0 || !is_abandoned(entry->path()))
+      continue;
     std::error_code ignored;
     fs::remove(entry->path(), ignored);
   }
@@ -141,8 +145,7 @@ void write_atomically(const std::string& target, const std::function<void(const 
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception& problem) {
-    throw Error(ExitCode::CannotWrite,
-                fmt::format("{}: cannot be written ({})", target, first_line(problem.what())));
+    throw Error(ExitCode::CannotWrite, fmt::format("{}: cannot be written ({})", target, first_line(problem.what())));
   }
   temporary.take_name_of_target();
   flush_folder(target);

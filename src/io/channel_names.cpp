@@ -233,7 +233,8 @@ std::vector<Layer> group_channels(const FileInfo& file) {
 }
 
 bool all_uint(const std::vector<FileInfo>& files, const Layer& layer) {
-  const auto& channels = files[static_cast<std::size_t>(layer.file)].parts[static_cast<std::size_t>(layer.part)].channels;
+  const auto& channels =
+      files[static_cast<std::size_t>(layer.file)].parts[static_cast<std::size_t>(layer.part)].channels;
   return std::all_of(layer.channels.begin(), layer.channels.end(), [&](const std::string& name) {
     return std::any_of(channels.begin(), channels.end(),
                        [&](const ChannelInfo& c) { return c.name == name && c.type == SampleType::Uint; });
@@ -260,7 +261,9 @@ bool fits(Role role, const Layer& layer) {
   }
 }
 
-bool is_color(const Layer& layer) { return layer.channels.size() == 3 && channel_order(channel_suffix(layer.channels[0])) == 0; }
+bool is_color(const Layer& layer) {
+  return layer.channels.size() == 3 && channel_order(channel_suffix(layer.channels[0])) == 0;
+}
 
 void assign_role(const std::vector<FileInfo>& files, Layer& layer) {
   const auto known = classify_pass(layer.pass);
@@ -271,16 +274,14 @@ void assign_role(const std::vector<FileInfo>& files, Layer& layer) {
     return;
   }
   const std::string name = normalised(layer.pass);
-  const bool data = std::any_of(kDataPrefixes.begin(), kDataPrefixes.end(),
-                                [&](std::string_view p) { return starts_with(name, p); });
+  const bool data =
+      std::any_of(kDataPrefixes.begin(), kDataPrefixes.end(), [&](std::string_view p) { return starts_with(name, p); });
   const bool color = !data && is_color(layer) && !all_uint(files, layer);
   layer.role = color ? Role::Color : Role::Other;
   layer.why = color ? "a colour pass" : "data";
 }
 
-bool same_place(const Layer& a, const Layer& b) {
-  return a.view_layer == b.view_layer && a.view == b.view;
-}
+bool same_place(const Layer& a, const Layer& b) { return a.view_layer == b.view_layer && a.view == b.view; }
 
 const Layer* find_pass(const std::vector<Layer>& layers, const Layer& beside, std::string_view pass) {
   const auto found = std::find_if(layers.begin(), layers.end(),
@@ -310,7 +311,8 @@ void make_companion(Layer& layer, const Layer& mean, Companion companion, std::s
 bool is_half(Companion companion) { return companion == Companion::HalfA || companion == Companion::HalfB; }
 
 /// Halves count only where the other half is there: "Light A" alone is a light group.
-bool other_half_exists(const std::vector<Layer>& layers, const Layer& layer, std::string_view base, const Affix& affix) {
+bool other_half_exists(const std::vector<Layer>& layers, const Layer& layer, std::string_view base,
+                       const Affix& affix) {
   return std::any_of(kAffixes.begin(), kAffixes.end(), [&](const Affix& other) {
     return other.who == affix.who && is_half(other.companion) && other.companion != affix.companion &&
            find_pass(layers, layer, std::string(base).append(other.text)) != nullptr;
@@ -321,9 +323,11 @@ void find_companions(std::vector<Layer>& layers) {
   for (Layer& layer : layers) {
     for (const Affix& affix : kAffixes) {
       const std::string& full = affix.prefix ? layer.name : layer.pass;
-      if (full.size() <= affix.text.size() || !(affix.prefix ? starts_with(full, affix.text) : ends_with(full, affix.text)))
+      if (full.size() <= affix.text.size() ||
+          !(affix.prefix ? starts_with(full, affix.text) : ends_with(full, affix.text)))
         continue;
-      const std::string base = affix.prefix ? full.substr(affix.text.size()) : full.substr(0, full.size() - affix.text.size());
+      const std::string base =
+          affix.prefix ? full.substr(affix.text.size()) : full.substr(0, full.size() - affix.text.size());
       const Layer* mean = affix.prefix ? find_whole_name(layers, layer, base) : find_pass(layers, layer, base);
       if (!mean || mean == &layer || !same_channels(*mean, layer)) continue;
       if (is_half(affix.companion) && !other_half_exists(layers, layer, base, affix)) continue;
@@ -375,16 +379,18 @@ void find_denoised(std::vector<Layer>& layers) {
   }
 }
 
-/// Mitsuba's moment integrator gives the image itself no second moment, but the nested integrator that makes it: a layer
-/// with alpha and with the same channels as the beauty.
+/// Mitsuba's moment integrator gives the image itself no second moment, but the nested integrator that makes it: a
+/// layer with alpha and with the same channels as the beauty.
 void find_nested_moment(std::vector<Layer>& layers) {
-  const auto beauty = std::find_if(layers.begin(), layers.end(), [](const Layer& l) { return is_beauty_mean(l) && l.pass == "RGBA"; });
+  const auto beauty =
+      std::find_if(layers.begin(), layers.end(), [](const Layer& l) { return is_beauty_mean(l) && l.pass == "RGBA"; });
   if (beauty == layers.end()) return;
   for (Layer& moment : layers) {
     if (moment.companion != Companion::SecondMoment) continue;
     const Layer* nested = find_whole_name(layers, moment, moment.of);
     if (nested && nested->role == Role::Color && !nested->alpha.empty() && !moment.alpha.empty()) {
-      make_companion(moment, *beauty, Companion::SecondMoment, fmt::format("Mitsuba's nested integrator {}", nested->name));
+      make_companion(moment, *beauty, Companion::SecondMoment,
+                     fmt::format("Mitsuba's nested integrator {}", nested->name));
       return;
     }
   }
@@ -408,8 +414,8 @@ constexpr std::array kRoleNames{"beauty", "prior",      "alpha",        "albedo"
 const char* name_of(Role role) { return kRoleNames[static_cast<std::size_t>(role)]; }
 
 const char* name_of(Companion companion) {
-  static constexpr std::array names{"mean",          "variance of the mean", "variance of one sample",
-                                    "second moment", "half A",               "half B"};
+  static constexpr std::array names{
+      "mean", "variance of the mean", "variance of one sample", "second moment", "half A", "half B"};
   return names[static_cast<std::size_t>(companion)];
 }
 
@@ -421,7 +427,8 @@ std::optional<Role> role_from(const std::string& name) {
 
 std::optional<PassClass> classify_pass(const std::string& pass) {
   const std::string name = normalised(pass);
-  const auto known = std::find_if(kKnownPasses.begin(), kKnownPasses.end(), [&](const KnownPass& k) { return k.name == name; });
+  const auto known =
+      std::find_if(kKnownPasses.begin(), kKnownPasses.end(), [&](const KnownPass& k) { return k.name == name; });
   if (known == kKnownPasses.end()) return std::nullopt;
   return PassClass{known->role, known->rank, std::string(known->who)};
 }
@@ -443,8 +450,8 @@ void classify_layers(const std::vector<FileInfo>& files, std::vector<Layer>& lay
 bool is_sample_fraction(const Layer& layer) { return normalised(layer.pass) == "debugsamplecount"; }
 
 std::optional<double> samples_in_metadata(const FileInfo& file, const std::string& view_layer) {
-  for (const std::string& name : {fmt::format("polyrecon/{}/samples", view_layer), fmt::format("cycles.{}.samples", view_layer),
-                                  std::string("samplesPerPixel")})
+  for (const std::string& name : {fmt::format("polyrecon/{}/samples", view_layer),
+                                  fmt::format("cycles.{}.samples", view_layer), std::string("samplesPerPixel")})
     if (const auto value = number_in(file, name)) return value;
   return std::nullopt;
 }

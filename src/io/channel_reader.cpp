@@ -71,7 +71,8 @@ const std::vector<float>& ChannelReader::read(int y0, int y1) {
     for (std::size_t c = 0; c < channels_.size(); ++c)
       std::transform(source_->pixels.row(static_cast<int>(c), y0 - window.y0),
                      source_->pixels.row(static_cast<int>(c), y0 - window.y0) + plane,
-                     band_.begin() + static_cast<std::ptrdiff_t>(plane * c), [](Real v) { return static_cast<float>(v); });
+                     band_.begin() + static_cast<std::ptrdiff_t>(plane * c),
+                     [](Real v) { return static_cast<float>(v); });
     return band_;
   }
   Imf::FrameBuffer buffer;
@@ -87,8 +88,9 @@ const std::vector<float>& ChannelReader::read(int y0, int y1) {
       for (; bad < y1; ++bad) source_->input->readPixels(bad);
     } catch (const Iex::BaseExc&) {
     }
-    fail(file_, part_, fmt::format("cannot be read at scanline {}: incomplete or damaged ({})", std::min(bad, y1 - 1),
-                                   first_line(problem.what())));
+    fail(file_, part_,
+         fmt::format("cannot be read at scanline {}: incomplete or damaged ({})", std::min(bad, y1 - 1),
+                     first_line(problem.what())));
   }
   return band_;
 }

@@ -136,7 +136,9 @@ void apply_map(FrameSource& source, const ReadOptions& options) {
 /// (Mitsuba's nested integrators); then by rank, then in file order. Parts that cannot be read are passed over.
 int find_mean(const FrameSource& source, Role role, bool readable = true) {
   int best = -1;
-  const auto key = [&](const Layer& l) { return std::make_tuple(l.rank != kByHand, l.view_layer != source.view_layer, l.rank); };
+  const auto key = [&](const Layer& l) {
+    return std::make_tuple(l.rank != kByHand, l.view_layer != source.view_layer, l.rank);
+  };
   for (std::size_t i = 0; i < source.layers.size(); ++i) {
     const Layer& layer = source.layers[i];
     if (layer.role != role || layer.companion != Companion::Mean || layer.view != source.view) continue;
@@ -178,7 +180,8 @@ PassChoice with_companions(const FrameSource& source, Role role, int mean) {
 [[noreturn]] void no_beauty(const FrameSource& source) {
   if (find_mean(source, Role::Beauty, false) >= 0)
     throw Error(ExitCode::BadInput,
-                fmt::format("{}: the beauty is deep, mip-mapped or subsampled (luminance-chroma), which is unsupported", source.path));
+                fmt::format("{}: the beauty is deep, mip-mapped or subsampled (luminance-chroma), which is unsupported",
+                            source.path));
   std::vector<std::string> names;
   for (const Layer& layer : source.layers) names.push_back(layer.name);
   throw Error(ExitCode::Missing, fmt::format("{}: no beauty among the layers {}; name it with --map beauty=LAYER",
@@ -245,10 +248,11 @@ RoleMapping parse_mapping(const std::string& text) {
   }
   const auto role = role_from(word);
   if (equals == std::string::npos || equals + 1 == text.size() || !role || *role == Role::Color || *role == Role::Other)
-    throw Error(ExitCode::Usage,
-                fmt::format("--map {}: expected ROLE=LAYER with a role of beauty, prior, alpha, albedo, normal, depth, "
-                            "visibility, sample-count, variance, half-a, half-b or ROLE-variance, ROLE-half-a, ROLE-half-b",
-                            text));
+    throw Error(
+        ExitCode::Usage,
+        fmt::format("--map {}: expected ROLE=LAYER with a role of beauty, prior, alpha, albedo, normal, depth, "
+                    "visibility, sample-count, variance, half-a, half-b or ROLE-variance, ROLE-half-a, ROLE-half-b",
+                    text));
   mapping.role = *role;
   mapping.layer = text.substr(equals + 1);
   return mapping;
@@ -264,7 +268,8 @@ LayerChoice choose_layers(const std::string& path, const ReadOptions& options) {
   if (beauty < 0) no_beauty(source);
   choice.passes.push_back(with_companions(source, Role::Beauty, beauty));
   drop_misfits(choice, choice.passes.front());
-  for (const Role role : {Role::Normal, Role::Albedo, Role::Depth, Role::Visibility, Role::Prior, Role::SampleCount, Role::Alpha}) {
+  for (const Role role :
+       {Role::Normal, Role::Albedo, Role::Depth, Role::Visibility, Role::Prior, Role::SampleCount, Role::Alpha}) {
     const int mean = find_mean(source, role);
     if (mean < 0) continue;
     PassChoice pass = with_companions(source, role, mean);

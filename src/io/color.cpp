@@ -64,7 +64,7 @@ std::string view_of(const ocio::Config& config, const std::string& display, cons
   if (wanted.empty()) return config.getDefaultView(display.c_str());
   std::string known;
   for (int i = 0; i < config.getNumViews(display.c_str()); ++i) {
-    const std::string view = config.getView(display.c_str(), i);
+    std::string view = config.getView(display.c_str(), i);
     if (view == wanted) return view;
     known += (i ? ", " : "") + view;
   }

@@ -10,7 +10,9 @@
 namespace polyrecon {
 namespace {
 
-bool is_tiled(const Imf::Header& header) { return header.hasType() ? Imf::isTiled(header.type()) : header.hasTileDescription(); }
+bool is_tiled(const Imf::Header& header) {
+  return header.hasType() ? Imf::isTiled(header.type()) : header.hasTileDescription();
+}
 
 }  // namespace
 
@@ -27,7 +29,8 @@ NativeBand::NativeBand(const Imf::Header& header, int first, int last_excluded)
 }
 
 NativeChannel* NativeBand::find(const std::string& name) {
-  const auto found = std::find_if(channels.begin(), channels.end(), [&](const NativeChannel& c) { return c.name == name; });
+  const auto found =
+      std::find_if(channels.begin(), channels.end(), [&](const NativeChannel& c) { return c.name == name; });
   return found == channels.end() ? nullptr : &*found;
 }
 
@@ -35,9 +38,8 @@ Imf::FrameBuffer NativeBand::buffer() {
   Imf::FrameBuffer buffer;
   for (NativeChannel& channel : channels) {
     const std::size_t size = size_of(channel.type);
-    buffer.insert(channel.name,
-                  Imf::Slice::Make(channel.type, channel.samples.data(), Imath::V2i(x0, y0), width, y1 - y0, size,
-                                   size * static_cast<std::size_t>(width)));
+    buffer.insert(channel.name, Imf::Slice::Make(channel.type, channel.samples.data(), Imath::V2i(x0, y0), width,
+                                                 y1 - y0, size, size * static_cast<std::size_t>(width)));
   }
   return buffer;
 }
@@ -56,8 +58,7 @@ void read_band(Imf::InputPart& input, NativeBand& band) {
   input.readPixels(band.y0, band.y1 - 1);
 }
 
-void write_bands(Imf::MultiPartOutputFile& output, int part, const std::function<void(NativeBand&)>& make,
-                 int lines) {
+void write_bands(Imf::MultiPartOutputFile& output, int part, const std::function<void(NativeBand&)>& make, int lines) {
   const Imf::Header& header = output.header(part);
   if (is_tiled(header)) {
     Imf::TiledOutputPart tiles(output, part);

@@ -51,8 +51,7 @@ PartInfo describe_part(const Imf::Header& header) {
   part.tiled = header.hasType() ? Imf::isTiled(header.type()) : header.hasTileDescription();
   part.mipmapped = part.tiled && header.tileDescription().mode != Imf::ONE_LEVEL;
   for (auto c = header.channels().begin(); c != header.channels().end(); ++c)
-    part.channels.push_back(
-        {c.name(), to_sample_type(c.channel().type), c.channel().xSampling, c.channel().ySampling});
+    part.channels.push_back({c.name(), to_sample_type(c.channel().type), c.channel().xSampling, c.channel().ySampling});
   if (Imf::hasMultiView(header)) part.views = Imf::multiView(header);
   for (auto a = header.begin(); a != header.end(); ++a)
     part.attributes.push_back({a.name(), a.attribute().typeName(), attribute_text(a.attribute())});
@@ -94,8 +93,9 @@ void describe_exr(FileInfo& file, const ReadLimits& limits) {
 }  // namespace
 
 bool PartInfo::readable() const {
-  return !deep && !mipmapped && std::all_of(channels.begin(), channels.end(),
-                              [](const ChannelInfo& c) { return c.x_sampling == 1 && c.y_sampling == 1; });
+  return !deep && !mipmapped && std::all_of(channels.begin(), channels.end(), [](const ChannelInfo& c) {
+    return c.x_sampling == 1 && c.y_sampling == 1;
+  });
 }
 
 const char* name_of(SampleType type) {

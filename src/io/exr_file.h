@@ -15,7 +15,7 @@ struct ReadLimits {
   std::size_t max_pixels = std::size_t{1} << 28;  ///< Pixels of one part's data window: 16384 x 16384.
   std::size_t max_channels = 4096;                ///< Channels of all parts together.
   std::size_t max_parts = 1024;
-  std::size_t max_bytes = std::size_t{16} << 30;   ///< Decoded samples held at once.
+  std::size_t max_bytes = std::size_t{16} << 30;  ///< Decoded samples held at once.
 };
 
 enum class SampleType { Uint, Half, Float };
@@ -58,14 +58,15 @@ const char* name_of(SampleType type);
 /// Threads that decode and encode chunks in this process; 0: in the calling thread.
 void set_codec_threads(int threads);
 
-/// Reads the headers only. Throws Error{Missing} where there is no such file, and Error{BadInput} where it is empty or has
-/// no chunk written ("not yet rendered"), is cut ("incomplete"), is damaged, or claims more than limits or its own length allow.
+/// Reads the headers only. Throws Error{Missing} where there is no such file, and Error{BadInput} where it is empty or
+/// has no chunk written ("not yet rendered"), is cut ("incomplete"), is damaged, or claims more than limits or its own
+/// length allow.
 FileInfo describe_file(const std::string& path, const ReadLimits& limits = {});
 
-/// Decodes whole channels of one part: channels[c] becomes plane c, pixel (0, 0) is the data window's upper left corner.
-/// Half and float values are kept as they are, NaN and Inf too; uint is converted. Reads every scanline or tile.
-/// Throws Error{BadInput} naming the part and the first scanline or tile that cannot be read, Error{OutOfMemory} where
-/// the image would be larger than limits.max_bytes.
+/// Decodes whole channels of one part: channels[c] becomes plane c, pixel (0, 0) is the data window's upper left
+/// corner. Half and float values are kept as they are, NaN and Inf too; uint is converted. Reads every scanline or
+/// tile. Throws Error{BadInput} naming the part and the first scanline or tile that cannot be read, Error{OutOfMemory}
+/// where the image would be larger than limits.max_bytes.
 Image read_channels(const FileInfo& file, int part, const std::vector<std::string>& channels,
                     const ReadLimits& limits = {});
 

@@ -18,9 +18,9 @@ std::uint64_t check_attribute_sizes(const std::string& path, std::uint64_t file_
 /// Chunks of a part: blocks of scanlines, or tiles of all levels.
 std::uint64_t chunk_count(const Imf::Header& header);
 
-/// Compares windows, tiles, channels and chunk counts of headers that were parsed with limits and with the length of the
-/// file: pixels cannot be packed more than 65536 to one, and every chunk has 8 bytes in the table and 8 of its own.
-/// Throws Error{BadInput}: too large, or "incomplete".
+/// Compares windows, tiles, channels and chunk counts of headers that were parsed with limits and with the length of
+/// the file: pixels cannot be packed more tightly than their compression allows, and every chunk has 8 bytes in the
+/// table and 8 of its own. Throws Error{BadInput}: too large, or "incomplete".
 void check_claims(const std::string& path, std::uint64_t file_bytes, const std::vector<Imf::Header>& headers,
                   const ReadLimits& limits);
 

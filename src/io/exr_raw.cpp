@@ -39,7 +39,7 @@ class RawPart {
   /// A chunk as it stands in the file, from its coordinates on.
   std::vector<char> chunk(std::size_t index) {
     const std::uint64_t begin = offsets_[index] + (several_parts_ ? 4 : 0);  // the part's number
-    const std::uint64_t sizes = begin + (tiled_ ? 16 : 4);                    // tile and level, or scanline
+    const std::uint64_t sizes = begin + (tiled_ ? 16 : 4);                   // tile and level, or scanline
     stream_.seekg(static_cast<std::streamoff>(sizes));
     std::uint64_t end = 0;
     if (deep_) {

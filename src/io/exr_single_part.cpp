@@ -19,8 +19,8 @@ std::size_t hash_of(const NativeChannel& channel) {
 
 }  // namespace
 
-void write_single_part(const std::string& target, const Imf::Header& header, const std::function<void(NativeBand&)>& make,
-                       int lines) {
+void write_single_part(const std::string& target, const Imf::Header& header,
+                       const std::function<void(NativeBand&)>& make, int lines) {
   std::vector<std::size_t> hashes;
   const auto write = [&](const std::string& path) {
     Imf::MultiPartOutputFile output(path.c_str(), &header, 1, true);

@@ -1,8 +1,8 @@
 #include "io/inspect.h"
 
 #include <algorithm>
-#include <cstddef>
 #include <cmath>
+#include <cstddef>
 
 #include "core/error.h"
 #include "io/channel_reader.h"
@@ -53,7 +53,8 @@ std::vector<LayerTally> tally_part(const FileInfo& file, int part, const std::ve
     tally.statistics.layer = layer->name;
     tally.statistics.pixels = window.area();
     for (const std::string& name : layer->channels)
-      tally.planes.push_back(static_cast<std::size_t>(std::find(channels.begin(), channels.end(), name) - channels.begin()));
+      tally.planes.push_back(
+          static_cast<std::size_t>(std::find(channels.begin(), channels.end(), name) - channels.begin()));
     tallies.push_back(std::move(tally));
   }
   ChannelReader reader(file, part, channels);
@@ -83,8 +84,8 @@ std::vector<LayerStatistics> statistics_of(const FrameSource& source) {
   return statistics;
 }
 
-/// Mean of variance / (mean^2 + 0.01) over all finite samples; from half buffers where there is no variance: the mean of A
-/// and B has the variance E[(A - B)^2] / 4.
+/// Mean of variance / (mean^2 + 0.01) over all finite samples; from half buffers where there is no variance: the mean
+/// of A and B has the variance E[(A - B)^2] / 4.
 double noise_level(const Pass& beauty) {
   if (beauty.variance.empty() && !beauty.has_halves()) return -1;
   double sum = 0;

@@ -21,11 +21,12 @@ struct Inspection {
   std::vector<LayerStatistics> statistics;  ///< By file and part; layers of unreadable parts are left out.
   std::vector<std::string> missing;         ///< Roles that no layer plays: "variance", "albedo", ...
   double samples = 0;                       ///< Samples per pixel where known, else 0.
-  double noise_level = -1;                  ///< Mean over pixels of variance / (mean^2 + 0.01) of the beauty; -1 where unknown.
+  double noise_level = -1;  ///< Mean over pixels of variance / (mean^2 + 0.01) of the beauty; -1 where unknown.
   std::vector<std::string> notes;
 };
 
-/// Reads the whole file and tells what is in it. Throws like read_frame, except that a file without beauty is described too.
+/// Reads the whole file and tells what is in it. Throws like read_frame, except that a file without beauty is described
+/// too.
 Inspection inspect(const std::string& path, const ReadOptions& options = {});
 
 }  // namespace polyrecon

@@ -15,7 +15,6 @@
 #include <filesystem>
 #include <limits>
 #include <map>
-#include <optional>
 #include <set>
 #include <system_error>
 
@@ -48,7 +47,8 @@ const PartInfo& part_of(const Render& render, const Layer& layer) {
 void check_fits(Render& render, const Render& first) {
   std::vector<Layer> ordered;
   for (const Layer& layer : first.layers) {
-    const auto same = std::find_if(render.layers.begin(), render.layers.end(), [&](const Layer& l) { return l.name == layer.name; });
+    const auto same =
+        std::find_if(render.layers.begin(), render.layers.end(), [&](const Layer& l) { return l.name == layer.name; });
     if (same == render.layers.end()) misfit(render, first, fmt::format("no layer {}", layer.name));
     if (same->channels.size() != layer.channels.size() || same->alpha.empty() != layer.alpha.empty())
       misfit(render, first, fmt::format("other channels in layer {}", layer.name));
@@ -70,7 +70,8 @@ std::vector<Render> open_renders(const std::vector<std::string>& paths, const Re
   for (const std::string& path : paths) {
     Render render;
     render.file = describe_file(path, limits);
-    if (render.file.format != "openexr") throw Error(ExitCode::BadInput, fmt::format("{}: merge needs OpenEXR files", path));
+    if (render.file.format != "openexr")
+      throw Error(ExitCode::BadInput, fmt::format("{}: merge needs OpenEXR files", path));
     render.layers = find_layers(render.file);
     std::error_code failure;
     for (const Render& other : renders)
@@ -113,7 +114,8 @@ Fate fate_of(const Render& first, const Layer& layer) {
 }
 
 /// The name of a channel in the one part of the output.
-std::string output_name(const Render& first, const Layer& layer, const std::string& channel, const std::string& companion = {}) {
+std::string output_name(const Render& first, const Layer& layer, const std::string& channel,
+                        const std::string& companion = {}) {
   const bool single = first.file.parts.size() == 1;
   if (single && companion.empty()) return channel;
   const auto dot = channel.rfind('.');
@@ -151,7 +153,7 @@ struct ChannelSums {
 
 class Merger {
  public:
-  Merger(std::vector<Render> renders, double samples) : renders_(std::move(renders)), samples_(samples) {
+  explicit Merger(std::vector<Render> renders) : renders_(std::move(renders)) {
     choose_window();
     for (std::size_t l = 0; l < first().layers.size(); ++l) sort_layer(l);
     find_weights();
@@ -175,7 +177,8 @@ class Merger {
     for (const auto& [view_layer, samples] : metadata_samples_) {
       header.insert(fmt::format("polyrecon/{}/samples", view_layer), Imf::FloatAttribute(static_cast<float>(samples)));
       const std::string cycles = fmt::format("cycles.{}.samples", view_layer);
-      if (header.find(cycles) != header.end()) header.insert(cycles, Imf::StringAttribute(fmt::format("{:.0f}", samples)));
+      if (header.find(cycles) != header.end())
+        header.insert(cycles, Imf::StringAttribute(fmt::format("{:.0f}", samples)));
     }
     header.insert("polyrecon/version", Imf::StringAttribute(POLYRECON_VERSION));
     return header;
@@ -188,16 +191,19 @@ class Merger {
     for (const std::string& view_layer : counted_) write_counts(view_layer, weights, band);
   }
 
-  /// Lines merged at once, so that the sums take some 200 MB at most (and one chunk of the tallest usual kind at least).
+  /// Lines merged at once, so that the sums take some 200 MB at most (and one chunk of the tallest usual kind at
+  /// least).
   int lines_per_band() const {
     std::size_t channels = 0;
     for (const std::size_t l : merged_) channels += all_channels(first().layers[l]).size();
     const std::size_t line = std::max<std::size_t>(1, channels * static_cast<std::size_t>(window_.width()));
-    return std::max(kChunkLines, static_cast<int>(std::min<std::size_t>(kSumsAtOnce / line, kBandLines)) / kChunkLines * kChunkLines);
+    return std::max(kChunkLines, static_cast<int>(std::min<std::size_t>(kSumsAtOnce / line, kBandLines)) / kChunkLines *
+                                     kChunkLines);
   }
 
   MergeResult report() {
-    if (left_out_ > 0) report_.notes.push_back(fmt::format("{} samples that are not finite were left out of the means", left_out_));
+    if (left_out_ > 0)
+      report_.notes.push_back(fmt::format("{} samples that are not finite were left out of the means", left_out_));
     if (!merged_.empty() && !any_spread_)
       report_.notes.emplace_back("the renders are equal in every pixel: were they made with the same seed or offset?");
     const double pixels = static_cast<double>(window_.area());
@@ -224,8 +230,9 @@ class Merger {
     const PartInfo& part = part_of(first(), layer);
     if (!part.readable() || !(part.data_window == window_)) {
       report_.dropped.push_back(layer.name);
-      report_.notes.push_back(fmt::format("{} is left out: {}", layer.name,
-                                          part.readable() ? "its data window is not the beauty's" : "its part is no plain image"));
+      report_.notes.push_back(
+          fmt::format("{} is left out: {}", layer.name,
+                      part.readable() ? "its data window is not the beauty's" : "its part is no plain image"));
       return;
     }
     switch (fate_of(first(), layer)) {
@@ -256,12 +263,6 @@ class Merger {
     return best;
   }
 
-  /// What the user says goes before what the file says.
-  std::optional<double> samples_of(const Render& render, const std::string& view_layer) const {
-    if (samples_ > 0) return samples_ / static_cast<double>(renders_.size());
-    return samples_in_metadata(render.file, view_layer);
-  }
-
   void find_weights() {
     std::set<std::string> view_layers;
     for (const std::size_t l : merged_) view_layers.insert(first().layers[l].view_layer);
@@ -271,7 +272,7 @@ class Merger {
       double total = 0;
       bool known = true;
       for (const Render& render : renders_) {
-        const auto samples = samples_of(render, view_layer);
+        const auto samples = samples_in_metadata(render.file, view_layer);
         known = known && samples.has_value();
         total += samples.value_or(0);
       }
@@ -292,7 +293,7 @@ class Merger {
       const int l = count_layer(view_layer);
       for (std::size_t k = 0; k < renders_.size(); ++k) {
         const Render& render = renders_[k];
-        const double metadata = samples_of(render, view_layer).value_or(0);
+        const double metadata = samples_in_metadata(render.file, view_layer).value_or(0);
         std::vector<double>& n = weights[k][view_layer];
         n.assign(pixels, metadata);
         if (l < 0) continue;
@@ -300,14 +301,16 @@ class Merger {
         const double scale = is_sample_fraction(layer) ? metadata : 1;
         ChannelReader reader(render.file, layer.part, layer.channels);
         const std::vector<float>& counts = reader.read(y0, y1);
-        for (std::size_t i = 0; i < pixels; ++i) n[i] = std::isfinite(counts[i]) && counts[i] > 0 ? counts[i] * scale : 0;
+        for (std::size_t i = 0; i < pixels; ++i)
+          n[i] = std::isfinite(counts[i]) && counts[i] > 0 ? counts[i] * scale : 0;
       }
     }
     return weights;
   }
 
   /// Adds all merged layers of one render to the sums; every part is decoded once.
-  void add_render(std::size_t k, const Weights& weights, const NativeBand& band, std::vector<std::vector<ChannelSums>>& sums) {
+  void add_render(std::size_t k, const Weights& weights, const NativeBand& band,
+                  std::vector<std::vector<ChannelSums>>& sums) {
     const Render& render = renders_[k];
     const std::size_t pixels = static_cast<std::size_t>(band.width) * static_cast<std::size_t>(band.y1 - band.y0);
     const std::vector<double> alike(pixels, 1);
@@ -428,7 +431,9 @@ class Merger {
       for (const ChannelInfo& channel : part_of(first(), layer).channels) {
         const auto mine = all_channels(layer);
         if (std::find(mine.begin(), mine.end(), channel.name) == mine.end()) continue;
-        const auto type = channel.type == SampleType::Half ? Imf::HALF : channel.type == SampleType::Uint ? Imf::UINT : Imf::FLOAT;
+        const auto type = channel.type == SampleType::Half   ? Imf::HALF
+                          : channel.type == SampleType::Uint ? Imf::UINT
+                                                             : Imf::FLOAT;
         list.insert(output_name(first(), layer, channel.name), Imf::Channel(type));
       }
     }
@@ -439,12 +444,12 @@ class Merger {
   Imf::StringVector stereo_views() const {
     Imf::StringVector views;
     for (const Layer& layer : first().layers)
-      if (!layer.view.empty() && std::find(views.begin(), views.end(), layer.view) == views.end()) views.push_back(layer.view);
+      if (!layer.view.empty() && std::find(views.begin(), views.end(), layer.view) == views.end())
+        views.push_back(layer.view);
     return views;
   }
 
   std::vector<Render> renders_;
-  double samples_;  ///< Of all renders together; 0: as the files say.
   Rect window_;
   std::vector<std::size_t> merged_, kept_;  ///< Indices of layers.
   std::vector<std::string> counted_;        ///< View layers whose sample counts are known.
@@ -457,10 +462,10 @@ class Merger {
 
 }  // namespace
 
-MergeResult merge(const std::vector<std::string>& paths, const std::string& target, const MergeOptions& options) {
-  Merger merger(open_renders(paths, options.limits), options.samples);
-  write_single_part(target, merger.header(), [&](NativeBand& band) { merger.make(band); },
-                    merger.lines_per_band());
+MergeResult merge(const std::vector<std::string>& paths, const std::string& target, const ReadLimits& limits) {
+  Merger merger(open_renders(paths, limits));
+  write_single_part(
+      target, merger.header(), [&](NativeBand& band) { merger.make(band); }, merger.lines_per_band());
   return merger.report();
 }
 

@@ -7,19 +7,13 @@
 
 namespace polyrecon {
 
-struct MergeOptions {
-  /// Samples per pixel of all renders together; 0: as the files say. Subsets of one sequence by Blender 5 need it: each
-  /// claims the samples of the whole sequence.
-  double samples = 0;
-  ReadLimits limits;
-};
-
 struct MergeResult {
   int files = 0;
-  double samples = 0;                ///< Samples per pixel of the result, mean over the frame; 0 where the files do not tell.
-  std::vector<std::string> merged;   ///< Layers with mean, variance and halves.
-  std::vector<std::string> kept;     ///< Layers taken from the first file.
-  std::vector<std::string> dropped;  ///< Layers that say nothing of the whole: companions and sample counts of the inputs.
+  double samples = 0;  ///< Samples per pixel of the result, mean over the frame; 0 where the files do not tell.
+  std::vector<std::string> merged;  ///< Layers with mean, variance and halves.
+  std::vector<std::string> kept;    ///< Layers taken from the first file.
+  std::vector<std::string>
+      dropped;  ///< Layers that say nothing of the whole: companions and sample counts of the inputs.
   std::vector<std::string> notes;
 };
 
@@ -28,11 +22,11 @@ struct MergeResult {
 ///     mean        m = sum n_k x_k / sum n_k
 ///     ` Variance` of m: sum n_k (x_k - m)^2 / ((K - 1) sum n_k), NaN where only one render has samples
 ///     ` A`, ` B`  the same mean over the renders with even and odd index, m where a half has no samples
-/// n_k comes from a sample-count pass, else from metadata, else all renders count alike. Samples that are not finite are
-/// left out and counted in a note. The sum of n_k is kept in `<view layer>.Sample Count.X`, other layers come from the first
-/// file, bit for bit. Writes one part of scanlines with ZIP, merged layers as float; memory is bounded by one band of lines.
-/// Throws Error{Usage} for fewer than two files or one given twice, Error{BadInput} naming the first file that does not fit
-/// the first one, Error{Missing}, and what write_atomically throws.
-MergeResult merge(const std::vector<std::string>& paths, const std::string& target, const MergeOptions& options = {});
+/// n_k comes from a sample-count pass, else from metadata, else all renders count alike. Samples that are not finite
+/// are left out and counted in a note. The sum of n_k is kept in `<view layer>.Sample Count.X`, other layers come from
+/// the first file, bit for bit. Writes one part of scanlines with ZIP, merged layers as float; memory is bounded by one
+/// band of lines. Throws Error{Usage} for fewer than two files or one given twice, Error{BadInput} naming the first
+/// file that does not fit the first one, Error{Missing}, and what write_atomically throws.
+MergeResult merge(const std::vector<std::string>& paths, const std::string& target, const ReadLimits& limits = {});
 
 }  // namespace polyrecon

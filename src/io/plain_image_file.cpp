@@ -49,8 +49,8 @@ void describe_plain_image(FileInfo& file, const ReadLimits& limits) {
   const OIIO::ImageSpec& spec = input->spec();
   if (spec.width <= 0 || spec.height <= 0 || spec.nchannels <= 0 || spec.image_pixels() > limits.max_pixels ||
       static_cast<std::size_t>(spec.nchannels) > limits.max_channels)
-    fail(file.path, fmt::format("{} x {} pixels of {} channels are beyond the limits", spec.width, spec.height,
-                                spec.nchannels));
+    fail(file.path,
+         fmt::format("{} x {} pixels of {} channels are beyond the limits", spec.width, spec.height, spec.nchannels));
   file.format = input->format_name();
   const std::uint64_t raw = spec.image_bytes(true);
   const bool packed = file.format != "pnm";
@@ -72,7 +72,8 @@ Image read_plain_image(const FileInfo& file, const std::vector<std::string>& cha
   std::vector<float> pixels(part.data_window.area() * stride);
   const auto input = open_image(file.path);
   if (!input || !input->read_image(0, 0, 0, static_cast<int>(stride), OIIO::TypeDesc::FLOAT, pixels.data()))
-    fail(file.path, fmt::format("incomplete or damaged ({})", first_line(input ? input->geterror() : OIIO::geterror())));
+    fail(file.path,
+         fmt::format("incomplete or damaged ({})", first_line(input ? input->geterror() : OIIO::geterror())));
   Image image(part.data_window.width(), part.data_window.height(), static_cast<int>(channels.size()));
   for (std::size_t c = 0; c < channels.size(); ++c) {
     const auto found = std::find_if(part.channels.begin(), part.channels.end(),

@@ -80,12 +80,12 @@ Layout lay_out(const std::vector<Panel>& panels) {
     if (!p.caption.empty()) l.captions = strip_height;
     legends = legends || p.range.high > 0;
   }
-  const bool bare = panels.size() == 1 && !l.captions && !legends;
+  const bool bare = panels.size() == 1 && l.captions == 0 && !legends;
   l.margin = bare ? 0 : gap;
   std::size_t width = static_cast<std::size_t>(l.margin) * (panels.size() + 1);
   for (const Panel& p : panels) width += static_cast<std::size_t>(p.rgb.width());
-  const std::size_t height = static_cast<std::size_t>(l.pictures + l.captions + 2 * l.margin +
-                                                      (legends ? legend_height + strip_height + gap : 0));
+  const int below = l.captions + (legends ? legend_height + strip_height + gap : 0);
+  const auto height = static_cast<std::size_t>(l.pictures) + static_cast<std::size_t>(below + 2 * l.margin);
   if (width * height > std::size_t{1} << 28)
     throw Error(ExitCode::OutOfMemory,
                 fmt::format("the preview would be {} x {} pixels: give fewer files", width, height));

@@ -24,8 +24,8 @@ class PartReader {
     const Rect window = window_of(layer);
     samples_ += window.area() * channels.size();
     if (samples_ > limits_.max_bytes / sizeof(Real))
-      throw Error(ExitCode::OutOfMemory,
-                  fmt::format("{}: the passes in use need more than the limit of {} MB", source_.path, limits_.max_bytes >> 20));
+      throw Error(ExitCode::OutOfMemory, fmt::format("{}: the passes in use need more than the limit of {} MB",
+                                                     source_.path, limits_.max_bytes >> 20));
     auto& wanted = parts_[{layer.file, layer.part}];
     wanted.push_back({channels, std::make_unique<Image>()});
     return wanted.back().image.get();
@@ -95,8 +95,8 @@ Image repeated(const Image& gray, int channels) {
   return out;
 }
 
-/// Mean of the channels. A variance is averaged as if the channels' noise were one and the same, as it is for gray shadows:
-/// the square of the mean standard deviation.
+/// Mean of the channels. A variance is averaged as if the channels' noise were one and the same, as it is for gray
+/// shadows: the square of the mean standard deviation.
 Image averaged(const Image& image, bool is_variance) {
   Image out(image.width(), image.height(), 1);
   for (std::size_t i = 0; i < image.pixels(); ++i) {
@@ -184,7 +184,9 @@ class FrameBuilder {
   const Layer& layer(int index) const { return result_.source.layers[static_cast<std::size_t>(index)]; }
 
   void plan() {
-    const auto image = [&](int index) { return index < 0 ? nullptr : reader_.plan(layer(index), layer(index).channels); };
+    const auto image = [&](int index) {
+      return index < 0 ? nullptr : reader_.plan(layer(index), layer(index).channels);
+    };
     for (const PassChoice& p : passes_)
       planned_.push_back({p, image(p.mean), image(p.variance), image(p.half_a), image(p.half_b)});
     const Layer& beauty = layer(passes_.front().mean);
@@ -205,8 +207,9 @@ class FrameBuilder {
       Image counts = take(pass.mean, pass.choice.mean, 1);
       if (is_sample_fraction(layer(pass.choice.mean))) {
         if (counts_.everywhere <= 0) {
-          result_.notes.push_back(fmt::format("{} is left out: it holds fractions of an unknown sample count; give --samples",
-                                              layer(pass.choice.mean).name));
+          result_.notes.push_back(
+              fmt::format("{} is left out: it holds fractions of an unknown sample count; give --samples",
+                          layer(pass.choice.mean).name));
           continue;
         }
         for (std::size_t i = 0; i < counts.pixels(); ++i)
@@ -224,8 +227,8 @@ class FrameBuilder {
     Image variance = take(planned.variance, planned.choice.variance, mean.channels(), kind != Companion::SecondMoment);
     if (kind == Companion::VarianceOfMean) return variance;
     if (!counts_.known()) {
-      result_.notes.push_back(
-          fmt::format("{} is left out: it is the {} and the sample count is unknown; give --samples", from.name, name_of(kind)));
+      result_.notes.push_back(fmt::format(
+          "{} is left out: it is the {} and the sample count is unknown; give --samples", from.name, name_of(kind)));
       return {};
     }
     to_variance_of_mean(variance, mean, kind, counts_);

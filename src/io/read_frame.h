@@ -64,9 +64,9 @@ struct ReadResult {
 };
 
 /// Reads one view layer of a render. Layers that play a role are read whole, so that a cut last chunk is noticed; NaN
-/// and Inf are kept (mending them is a stage's work). Depth and visibility have one channel: a layer of more is averaged.
-/// Throws Error{Missing} where the file or a layer asked for is not there, Error{BadInput} where the file is damaged, has
-/// no beauty or its layers do not fit together, Error{OutOfMemory} beyond options.limits.max_bytes.
+/// and Inf are kept (mending them is a stage's work). Depth and visibility have one channel: a layer of more is
+/// averaged. Throws Error{Missing} where the file or a layer asked for is not there, Error{BadInput} where the file is
+/// damaged, has no beauty or its layers do not fit together, Error{OutOfMemory} beyond options.limits.max_bytes.
 ReadResult read_frame(const std::string& path, const ReadOptions& options = {});
 
 /// Layers, choice of roles and notes only, without pixels; the same errors.

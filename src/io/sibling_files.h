@@ -15,8 +15,8 @@ struct SiblingFile {
 };
 
 /// The other passes of a render that is written one pass to a file (Tungsten, LuxCore): files in the same folder, with
-/// the same extension, whose names differ from path's only in a pass that channel_names knows ("Color" | "Albedo", "NormalB").
-/// Empty where path's own name does not end in a known pass.
+/// the same extension, whose names differ from path's only in a pass that channel_names knows ("Color" | "Albedo",
+/// "NormalB"). Empty where path's own name does not end in a known pass.
 std::vector<SiblingFile> find_siblings(const std::string& path);
 
 /// The pass in the name of the file itself ("Color"), empty where there is none.

@@ -60,7 +60,8 @@ struct PartPlan {
 };
 
 const Layer& layer_named(const FrameSource& source, const std::string& name) {
-  const auto found = std::find_if(source.layers.begin(), source.layers.end(), [&](const Layer& l) { return l.name == name; });
+  const auto found =
+      std::find_if(source.layers.begin(), source.layers.end(), [&](const Layer& l) { return l.name == name; });
   if (found == source.layers.end() || found->file != 0)
     throw Error(ExitCode::Missing, fmt::format("{}: no layer {} in this file to be replaced", source.path, name));
   return *found;
@@ -88,7 +89,8 @@ void plan_replacement(const FrameSource& source, const Replacement& replacement,
   const bool one_of_three = channels.size() == 1 && image.channels() == 3;
   if (image.width() != window.max.x - window.min.x + 1 || image.height() != window.max.y - window.min.y + 1 ||
       (static_cast<std::size_t>(image.channels()) != channels.size() && !one_of_three))
-    throw Error(ExitCode::Internal, fmt::format("{}: the new image does not have the shape of layer {}", source.path, layer.name));
+    throw Error(ExitCode::Internal,
+                fmt::format("{}: the new image does not have the shape of layer {}", source.path, layer.name));
   for (std::size_t c = 0; c < channels.size(); ++c) {
     NewChannel channel{&image, static_cast<int>(c), one_of_three, {}};
     if (options.keep_noisy) {
@@ -125,7 +127,8 @@ void add_provenance(Imf::Header& header, const Provenance& provenance) {
   if (!provenance.settings.empty()) header.insert("polyrecon/settings", Imf::StringAttribute(provenance.settings));
   if (!provenance.input.empty()) header.insert("polyrecon/input", Imf::StringAttribute(provenance.input));
   if (provenance.estimated_relative_mse >= 0)
-    header.insert("polyrecon/estimatedRelMSE", Imf::FloatAttribute(static_cast<float>(provenance.estimated_relative_mse)));
+    header.insert("polyrecon/estimatedRelMSE",
+                  Imf::FloatAttribute(static_cast<float>(provenance.estimated_relative_mse)));
 }
 
 /// float -> the bits of the channel's type. Counts half values that had to be brought into range.
@@ -173,8 +176,9 @@ class Rewrite {
     for (std::size_t p = 0; p < parts_.size(); ++p) {
       if (parts_[p].copied_raw() || !is_lossy(parts_[p].header)) continue;
       parts_[p].header.compression() = Imf::ZIP_COMPRESSION;
-      notes_.push_back(fmt::format("{} is written with ZIP: its lossy compression would change the other channels again",
-                                   part_title(parts_[p].header, static_cast<int>(p))));
+      notes_.push_back(
+          fmt::format("{} is written with ZIP: its lossy compression would change the other channels again",
+                      part_title(parts_[p].header, static_cast<int>(p))));
     }
     add_provenance(parts_.front().header, options.provenance);
   }
@@ -226,9 +230,9 @@ class Rewrite {
     try {
       read_band(from, old);
     } catch (const Iex::BaseExc& problem) {
-      throw Error(ExitCode::BadInput, fmt::format("{}: incomplete or damaged: {} cannot be read at scanlines {} to {} ({})",
-                                                  path_, part_title(input_.header(p), p), old.y0, old.y1 - 1,
-                                                  first_line(problem.what())));
+      throw Error(ExitCode::BadInput,
+                  fmt::format("{}: incomplete or damaged: {} cannot be read at scanlines {} to {} ({})", path_,
+                              part_title(input_.header(p), p), old.y0, old.y1 - 1, first_line(problem.what())));
     }
     apply(parts_[static_cast<std::size_t>(p)].replaced, old, band, input_.header(p).dataWindow().min.y, saturated);
   }
@@ -286,17 +290,20 @@ std::vector<std::string> write_as_exr(const FrameSource& source, const std::vect
     for (std::size_t c = 0; c < names.size(); ++c)
       channels.push_back({names[c], Image(replacement.image.width(), replacement.image.height(), 1)});
     for (std::size_t c = 0; c < names.size(); ++c) {
-      const NewChannel from{&replacement.image, static_cast<int>(c), names.size() == 1 && replacement.image.channels() == 3, {}};
+      const NewChannel from{
+          &replacement.image, static_cast<int>(c), names.size() == 1 && replacement.image.channels() == 3, {}};
       Image& to = channels[channels.size() - names.size() + c].image;
       for (std::size_t i = 0; i < to.pixels(); ++i) to.plane(0)[i] = from.at(i);
     }
   }
   MapAttributes attributes;
-  attributes.strings = {{"polyrecon/settings", options.provenance.settings}, {"polyrecon/input", options.provenance.input}};
+  attributes.strings = {{"polyrecon/settings", options.provenance.settings},
+                        {"polyrecon/input", options.provenance.input}};
   if (options.provenance.estimated_relative_mse >= 0)
     attributes.numbers = {{"polyrecon/estimatedRelMSE", options.provenance.estimated_relative_mse}};
   write_maps(target, channels, part.data_window, part.display_window, attributes);
-  return {fmt::format("{} is no OpenEXR file: the result is written as one, with the reconstructed layers only", source.path)};
+  return {fmt::format("{} is no OpenEXR file: the result is written as one, with the reconstructed layers only",
+                      source.path)};
 }
 
 Imath::Box2i to_box(const Rect& r) { return {{r.x0, r.y0}, {r.x1 - 1, r.y1 - 1}}; }
@@ -332,7 +339,8 @@ std::vector<std::string> write_result(const FrameSource& source, const std::vect
   if (source.files.front().format != "openexr") return write_as_exr(source, replacements, target, options);
   Rewrite rewrite(source, replacements, options);
   write_atomically(
-      target, [&](const std::string& path) { rewrite.write(path); }, [&](const std::string& path) { rewrite.verify(path); });
+      target, [&](const std::string& path) { rewrite.write(path); },
+      [&](const std::string& path) { rewrite.verify(path); });
   return rewrite.take_notes();
 }
 

@@ -10,7 +10,8 @@
 
 namespace polyrecon {
 
-/// New samples for one layer: one image channel for each of its channels. A layer with one channel takes the mean of three.
+/// New samples for one layer: one image channel for each of its channels. A layer with one channel takes the mean of
+/// three.
 struct Replacement {
   std::string layer;   ///< Layer::name.
   Image image;         ///< Width and height of Frame::data_window.
@@ -21,7 +22,7 @@ struct Replacement {
 /// polyrecon/estimatedRelMSE.
 struct Provenance {
   std::string settings;
-  std::string input;                  ///< Identity of the input, e.g. its name and size.
+  std::string input;                   ///< Identity of the input, e.g. its name and size.
   double estimated_relative_mse = -1;  ///< Negative: unknown, not written.
 };
 
@@ -31,11 +32,11 @@ struct WriteOptions {
 };
 
 /// Writes the file source.path anew with the given layers replaced: same parts, layers, names, types, windows, metadata
-/// and compression. Parts without a replacement are copied chunk by chunk, other channels keep their bits; a part with a
-/// lossy compression is written with ZIP, since encoding it again would change the other channels. Half values beyond
-/// 65504 saturate. Returns notes on both. The file takes its name only after it was read back and found equal: target may
-/// be the input itself; try it with check_writable before computing. Throws Error{CannotWrite}, an older target is then untouched.
-/// Throws Error{BadInput} where a part that is only copied turns out to be damaged.
+/// and compression. Parts without a replacement are copied chunk by chunk, other channels keep their bits; a part with
+/// a lossy compression is written with ZIP, since encoding it again would change the other channels. Half values beyond
+/// 65504 saturate. Returns notes on both. The file takes its name only after it was read back and found equal: target
+/// may be the input itself; try it with check_writable before computing. Throws Error{CannotWrite}, an older target is
+/// then untouched. Throws Error{BadInput} where a part that is only copied turns out to be damaged.
 std::vector<std::string> write_result(const FrameSource& source, const std::vector<Replacement>& replacements,
                                       const std::string& target, const WriteOptions& options = {});
 

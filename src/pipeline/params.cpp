@@ -16,12 +16,14 @@ Params params_for(Quality quality) {
   if (quality == Quality::Draft) {
     params.stages = 1;
     params.levels = 2;
-    params.stride = 4;
+    params.stride = 6;
+    params.coverage = 1;
     params.max_order = 1;
     params.first_bandwidths = {Real(0.7)};
   } else if (quality == Quality::Best) {
     params.stages = 3;
-    params.stride = 1;
+    params.stride = 2;
+    params.coverage = 6;
     params.first_bandwidths = {Real(0.35), Real(0.5), Real(0.7), Real(1)};
     params.later_bandwidths = {Real(0.35), Real(0.5), Real(0.7), Real(1)};
     params.guided_bandwidths = {Real(0.5), Real(1)};

@@ -93,14 +93,26 @@ bool orthogonalise_again(NestedFactor& factor, const Window& window, const Real*
   return true;
 }
 
-POLYRECON_SIMD double weighted_variance(const Real* w, const Real* q, const Real* variance, int rows) {
-  double sum = 0;
-#pragma omp simd reduction(+ : sum)
+/// Nine sums over one column in one pass: w q y, w q g and (w q)^2 v for three channels each.
+POLYRECON_SIMD void beauty_sums(const Real* w, const Real* q, const Real* y, const Real* g, const Real* v, std::size_t stride,
+                                int rows, double* sums) {
+  const Real *y1 = y + stride, *y2 = y1 + stride, *g1 = g + stride, *g2 = g1 + stride, *v1 = v + stride, *v2 = v1 + stride;
+  double a0 = 0, a1 = 0, a2 = 0, b0 = 0, b1 = 0, b2 = 0, c0 = 0, c1 = 0, c2 = 0;
+#pragma omp simd reduction(+ : a0, a1, a2, b0, b1, b2, c0, c1, c2)
   for (int j = 0; j < rows; ++j) {
-    const double wq = static_cast<double>(w[j]) * static_cast<double>(q[j]);
-    sum += wq * wq * static_cast<double>(variance[j]);
+    const double wq = static_cast<double>(w[j]) * static_cast<double>(q[j]), square = wq * wq;
+    a0 += wq * static_cast<double>(y[j]);
+    a1 += wq * static_cast<double>(y1[j]);
+    a2 += wq * static_cast<double>(y2[j]);
+    b0 += wq * static_cast<double>(g[j]);
+    b1 += wq * static_cast<double>(g1[j]);
+    b2 += wq * static_cast<double>(g2[j]);
+    c0 += square * static_cast<double>(v[j]);
+    c1 += square * static_cast<double>(v1[j]);
+    c2 += square * static_cast<double>(v2[j]);
   }
-  return sum;
+  const double all[9] = {a0, a1, a2, b0, b1, b2, c0, c1, c2};
+  std::copy(all, all + 9, sums);
 }
 
 }  // namespace
@@ -143,11 +155,19 @@ void project(const NestedFactor& factor, const Window& window, const Real* weigh
   }
 }
 
-void project_variance(const NestedFactor& factor, const Window& window, const Real* weight, const Real* variance,
-                      double* s2) {
+void project_beauty(const NestedFactor& factor, const Window& window, const Real* weight, double* const* z,
+                    double* const* guess_z, double* const* s2) {
+  const auto stride = static_cast<std::size_t>(window.stride);
   for (int a = 0; a < factor.columns; ++a) {
-    const Real* qa = factor.q.data() + static_cast<std::size_t>(a) * static_cast<std::size_t>(window.stride);
-    s2[a] = factor.kept[static_cast<std::size_t>(a)] ? weighted_variance(weight, qa, variance, window.padded) : 0;
+    double sums[9] = {};
+    if (factor.kept[static_cast<std::size_t>(a)])
+      beauty_sums(weight, factor.q.data() + static_cast<std::size_t>(a) * stride, window.response.data(), window.guess.data(),
+                  window.noise_variance.data(), stride, window.padded, sums);
+    for (int c = 0; c < 3; ++c) {
+      z[c][a] = sums[c];
+      guess_z[c][a] = sums[3 + c];
+      s2[c][a] = sums[6 + c];
+    }
   }
 }
 

@@ -27,8 +27,10 @@ void factorise(const Window& window, int columns, const Real* weight, NestedFact
 /// z_a = sum_i w_i q_a(i) y(i) for every column a; zero for dropped ones. y has window.padded samples.
 void project(const NestedFactor& factor, const Window& window, const Real* weight, const Real* y, double* z);
 
-/// s_a^2 = sum_i w_i^2 q_a(i)^2 variance(i): the variance of z_a when the noise at pixel i has that variance.
-void project_variance(const NestedFactor& factor, const Window& window, const Real* weight, const Real* variance,
-                      double* s2);
+/// What project gives for the three channels of the beauty and of the stage's guess, and the variance of the former,
+///     s_a^2 = sum_i w_i^2 q_a(i)^2 variance(i)   where the noise at pixel i has that variance,
+/// in one pass over the window. response, guess and variance: 3 columns, window.stride apart; z, guess_z and s2: 3 arrays.
+void project_beauty(const NestedFactor& factor, const Window& window, const Real* weight, double* const* z,
+                    double* const* guess_z, double* const* s2);
 
 }  // namespace polyrecon

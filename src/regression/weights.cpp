@@ -13,27 +13,44 @@ namespace {
 /// than the rounding of float data, at any exposure.
 constexpr Real relative_epsilon = Real(1e-10);
 
-/// Noise-aware squared difference of single pixels, mean over RGB. a and b hold rows of the six planes.
+/// Noise-aware squared difference of single pixels, over RGB. a and b hold rows of the six planes.
 POLYRECON_SIMD void pixel_distances(const Real* const* a, const Real* const* b, Real* out, int n) {
   for (int j = 0; j < n; ++j) {
-    Real sum = 0;
+    Real excess = 0, scale = std::numeric_limits<Real>::min();
     for (int c = 0; c < 3; ++c) {
       const Real pa = a[c][j], pb = b[c][j], va = a[c + 3][j], vb = b[c + 3][j];
       const Real difference = pa - pb;
-      const Real noise = va + (va < vb ? va : vb);
-      const Real scale = va + vb + relative_epsilon * (pa * pa + pb * pb) + std::numeric_limits<Real>::min();
-      sum += (difference * difference - noise) / scale;
+      excess += difference * difference - (va + (va < vb ? va : vb));
+      scale += va + vb + relative_epsilon * (pa * pa + pb * pb);
     }
-    out[j] = sum * Real(1.0 / 3);
+    out[j] = excess / scale;
   }
 }
 
-/// out[j] = mean of in[j .. j + count - 1] along a stride.
+/// out[j] = factor x sum of in[j], in[j + step], ... (count of them).
 POLYRECON_SIMD void add_strided(const Real* in, std::ptrdiff_t step, int count, Real factor, Real* out, int n) {
   for (int j = 0; j < n; ++j) out[j] = in[j];
   for (int k = 1; k < count; ++k)
     for (int j = 0; j < n; ++j) out[j] += in[j + k * step];
   for (int j = 0; j < n; ++j) out[j] *= factor;
+}
+
+/// The same for one pixel a against a row of pixels.
+POLYRECON_SIMD void distances_to(const Real* a, const Real* const* b, Real* out, int n) {
+  for (int j = 0; j < n; ++j) {
+    Real excess = 0, scale = std::numeric_limits<Real>::min();
+    for (int c = 0; c < 3; ++c) {
+      const Real pa = a[c], pb = b[c][j], va = a[c + 3], vb = b[c + 3][j];
+      const Real difference = pa - pb;
+      excess += difference * difference - (va + (va < vb ? va : vb));
+      scale += va + vb + relative_epsilon * (pa * pa + pb * pb);
+    }
+    out[j] = excess / scale;
+  }
+}
+
+POLYRECON_SIMD void add_scaled(const Real* in, Real factor, Real* out, int n) {
+  for (int j = 0; j < n; ++j) out[j] += factor * in[j];
 }
 
 POLYRECON_SIMD void exponential_weights(const Real* distance, Real inverse_square, Real* weight, int n) {
@@ -83,6 +100,48 @@ void PatchDistances::offset_distances(int dx, int dy, const Rect& area, int patc
   }
 }
 
+void PatchDistances::all_centers(const Rect& block, int patch_radius) {
+  const Rect area = grow(block, patch_radius);
+  difference_.resize(area.area());
+  row_sums_.resize(area.area());
+  const std::size_t window_size = distance_.size() / center_x_.size();
+  std::size_t offset = 0;
+  for (int dy = -radius_; dy <= radius_; ++dy)
+    for (int dx = -radius_; dx <= radius_; ++dx, ++offset) {
+      offset_distances(dx, dy, area, patch_radius);
+      for (std::size_t k = 0; k < center_x_.size(); ++k)
+        distance_[k * window_size + offset] =
+            difference_[static_cast<std::size_t>(center_y_[k] - block.y0) * static_cast<std::size_t>(area.width()) +
+                        static_cast<std::size_t>(center_x_[k] - block.x0)];
+    }
+}
+
+void PatchDistances::one_center(std::size_t center, int patch_radius) {
+  const int side = 2 * radius_ + 1, patch = 2 * patch_radius + 1;
+  const auto width = static_cast<std::size_t>(loaded_.width()), plane = loaded_.area();
+  const auto at = [&](int x, int y) {
+    return static_cast<std::size_t>(y - loaded_.y0) * width + static_cast<std::size_t>(x - loaded_.x0);
+  };
+  difference_.resize(static_cast<std::size_t>(side) * 2);
+  Real* const one = difference_.data() + side;
+  Real* row = distance_.data() + center * static_cast<std::size_t>(side) * static_cast<std::size_t>(side);
+  for (int dy = -radius_; dy <= radius_; ++dy, row += side) {
+    std::fill(row, row + side, Real(0));
+    for (int py = -patch_radius; py <= patch_radius; ++py)
+      for (int px = -patch_radius; px <= patch_radius; ++px) {
+        const int x = center_x_[center] + px, y = center_y_[center] + py;
+        const Real* b[6];
+        Real a[6];
+        for (std::size_t c = 0; c < 6; ++c) {
+          a[c] = planes_[c * plane + at(x, y)];
+          b[c] = planes_.data() + c * plane + at(x - radius_, y + dy);
+        }
+        distances_to(a, b, one, side);
+        add_scaled(one, Real(1) / static_cast<Real>(patch * patch), row, side);
+      }
+  }
+}
+
 void PatchDistances::compute(const Image& guide, const Image& variance, const Rect& block,
                              const std::vector<int>& center_x, const std::vector<int>& center_y, int window_radius,
                              int patch_radius) {
@@ -91,22 +150,14 @@ void PatchDistances::compute(const Image& guide, const Image& variance, const Re
   height_ = guide.height();
   center_x_ = center_x;
   center_y_ = center_y;
+  const int side = 2 * window_radius + 1, patch = 2 * patch_radius + 1;
+  distance_.resize(center_x.size() * static_cast<std::size_t>(side) * static_cast<std::size_t>(side));
   load(guide, variance, grow(block, window_radius + patch_radius));
-  const Rect area = grow(block, patch_radius);
-  difference_.resize(area.area());
-  row_sums_.resize(area.area());
-  const int side = 2 * window_radius + 1;
-  const auto window_size = static_cast<std::size_t>(side) * static_cast<std::size_t>(side);
-  distance_.resize(center_x.size() * window_size);
-  std::size_t offset = 0;
-  for (int dy = -window_radius; dy <= window_radius; ++dy)
-    for (int dx = -window_radius; dx <= window_radius; ++dx, ++offset) {
-      offset_distances(dx, dy, area, patch_radius);
-      for (std::size_t k = 0; k < center_x.size(); ++k)
-        distance_[k * window_size + offset] =
-            difference_[static_cast<std::size_t>(center_y[k] - block.y0) * static_cast<std::size_t>(area.width()) +
-                        static_cast<std::size_t>(center_x[k] - block.x0)];
-    }
+  // Sums shared between the patches of a whole block pay only where centres are dense.
+  if (center_x.size() * static_cast<std::size_t>(patch * patch) > block.area())
+    all_centers(block, patch_radius);
+  else
+    for (std::size_t k = 0; k < center_x.size(); ++k) one_center(k, patch_radius);
 }
 
 void PatchDistances::window_of(std::size_t center, Real limit, Window& window) const {

@@ -12,7 +12,7 @@ constexpr Real cut_exponent = 7;
 
 /// Patch distance of the non-local means filter (Buades et al. 2005, in the noise-aware form of Rousselle et al. 2012)
 /// between every centre of a block and every pixel of its window:
-///     mean over the patch and RGB of  ((a - b)^2 - (va + min(va, vb))) / (va + vb + eps (a^2 + b^2))
+///     mean over the patch of  sum_rgb ((a - b)^2 - (va + min(va, vb))) / sum_rgb (va + vb + eps (a^2 + b^2))
 /// about 0 for two pixels of one colour, whatever the noise. Patches repeat the pixels at the image's border.
 class PatchDistances {
  public:
@@ -27,6 +27,8 @@ class PatchDistances {
 
  private:
   void load(const Image& guide, const Image& variance, const Rect& area);
+  void all_centers(const Rect& block, int patch_radius);
+  void one_center(std::size_t center, int patch_radius);
   void offset_distances(int dx, int dy, const Rect& area, int patch_radius);
 
   int radius_ = 0, width_ = 0, height_ = 0;

@@ -18,6 +18,7 @@ struct Window {
   int stride = 0;  ///< Distance between columns; at least padded.
 
   std::vector<int> x, y;             ///< Position of each pixel in the image.
+  std::vector<int> offset;           ///< Its index in a plane of the image.
   std::vector<Real> distance;        ///< Patch distance of each pixel to the centre, >= 0.
   std::vector<Real> design;          ///< Columns of the model at each pixel, layout.columns() x stride.
   std::vector<Real> response;        ///< y at each pixel, channels x stride.

@@ -1,10 +1,10 @@
 #include "io/atomic_file.h"
 
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/file.h>
 #include <sys/resource.h>
-#include <fcntl.h>
 #include <unistd.h>
 
 #include <chrono>
@@ -19,9 +19,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-using ::testing::HasSubstr;
 using testing::contents;
 using testing::error_of;
+using ::testing::HasSubstr;
 using testing::put_contents;
 using testing::TemporaryFolder;
 
@@ -52,7 +52,10 @@ TEST(AtomicFile, AFailureLeavesTheOldFileAndNothingElse) {
   EXPECT_EQ(error.code(), ExitCode::CannotWrite);
   EXPECT_THAT(error.what(), HasSubstr("it differs"));
   EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
-  error_of([&] { write_atomically(target, [](const std::string&) { throw Error(ExitCode::Interrupted, "stop"); }, nothing); });
+  error_of([&] {
+    write_atomically(
+        target, [](const std::string&) { throw Error(ExitCode::Interrupted, "stop"); }, nothing);
+  });
   EXPECT_EQ(contents(target), "old");
   EXPECT_EQ(folder.entries(), 1u);
 }
@@ -62,27 +65,31 @@ TEST(AtomicFile, KeepsThePermissionsOfTheFileItReplaces) {
   const std::string target = folder / "a.txt";
   put_contents(target, "old");
   fs::permissions(target, fs::perms(0640));
-  write_atomically(target, [](const std::string& path) { put_contents(path, "new"); }, nothing);
+  write_atomically(
+      target, [](const std::string& path) { put_contents(path, "new"); }, nothing);
   EXPECT_EQ(fs::status(target).permissions(), fs::perms(0640));
 }
 
 TEST(AtomicFile, VeryLongNames) {
   const TemporaryFolder folder;
   const std::string target = folder / std::string(255, 'x');
-  write_atomically(target, [](const std::string& path) { put_contents(path, "new"); }, nothing);
+  write_atomically(
+      target, [](const std::string& path) { put_contents(path, "new"); }, nothing);
   EXPECT_EQ(contents(target), "new");
 }
 
 TEST(AtomicFile, RemovesWhatAKilledRunLeftButNotWhatIsInUse) {
   const TemporaryFolder folder;
-  const std::string target = folder / "a.txt", dead = folder / ".a.txt.polyrecon-00000001", used = folder / ".a.txt.polyrecon-00000002",
-                    young = folder / ".a.txt.polyrecon-00000003", other = folder / ".b.txt.polyrecon-00000001";
+  const std::string target = folder / "a.txt", dead = folder / ".a.txt.polyrecon-00000001",
+                    used = folder / ".a.txt.polyrecon-00000002", young = folder / ".a.txt.polyrecon-00000003",
+                    other = folder / ".b.txt.polyrecon-00000001";
   for (const std::string& path : {dead, used, young, other}) put_contents(path, "half");
   for (const std::string& path : {dead, used, other})
     fs::last_write_time(path, fs::file_time_type::clock::now() - std::chrono::hours(1));
   const int descriptor = ::open(used.c_str(), O_RDONLY | O_CLOEXEC);
   ASSERT_EQ(::flock(descriptor, LOCK_EX), 0);
-  write_atomically(target, [](const std::string& path) { put_contents(path, "new"); }, nothing);
+  write_atomically(
+      target, [](const std::string& path) { put_contents(path, "new"); }, nothing);
   EXPECT_FALSE(fs::exists(dead));
   EXPECT_TRUE(fs::exists(used));
   EXPECT_TRUE(fs::exists(young));
@@ -95,7 +102,8 @@ TEST(CheckWritable, TriesTheFolderAndLeavesNothing) {
   check_writable(folder / "a.exr");
   EXPECT_EQ(folder.entries(), 0u);
   put_contents(folder / "file", "");
-  for (const std::string& target : {folder / "none/a.exr", folder / "file/a.exr", folder / "", std::string(), std::string("/dev/full")})
+  for (const std::string& target :
+       {folder / "none/a.exr", folder / "file/a.exr", folder / "", std::string(), std::string("/dev/full")})
     EXPECT_EQ(error_of([&] { check_writable(target); }).code(), ExitCode::CannotWrite) << target;
 }
 
@@ -135,7 +143,7 @@ TEST(AtomicFile, AFullDiskAtAnyByteLeavesTheOldFile) {
   for (std::size_t i = 0; i < noise.pixels(); ++i) noise.plane(0)[i] = static_cast<Real>((i * 2654435761u) % 9973);
   write_maps(target, {{"samples.Y", noise}}, window, window);
   const std::string old = contents(target);
-  for (std::size_t bytes = 0; bytes < old.size(); bytes += bytes + 64 > old.size() ? 1 : 61) {
+  for (std::size_t bytes = 0; bytes<old.size(); bytes += bytes + 64> old.size() ? 1 : 61) {
     const FullDisk full(bytes);
     const Error error = error_of([&] { write_maps(target, {{"samples.Y", noise}}, window, window); });
     ASSERT_EQ(error.code(), ExitCode::CannotWrite) << bytes;

@@ -11,13 +11,15 @@ namespace {
 using ::testing::ElementsAre;
 
 /// A part with float channels; a name that ends in "#" is a uint channel.
-PartInfo part_with(const std::vector<std::string>& channels, const std::string& name = {}, const std::string& view = {}) {
+PartInfo part_with(const std::vector<std::string>& channels, const std::string& name = {},
+                   const std::string& view = {}) {
   PartInfo part;
   part.name = name;
   part.view = view;
   for (const std::string& channel : channels) {
     const bool uint = channel.back() == '#';
-    part.channels.push_back({uint ? channel.substr(0, channel.size() - 1) : channel, uint ? SampleType::Uint : SampleType::Float});
+    part.channels.push_back(
+        {uint ? channel.substr(0, channel.size() - 1) : channel, uint ? SampleType::Uint : SampleType::Float});
   }
   return part;
 }
@@ -45,8 +47,8 @@ const Layer& named(const std::vector<Layer>& layers, const std::string& name) {
   return *found;
 }
 
-void expect_role(const std::vector<Layer>& layers, const std::string& name, Role role, Companion companion = Companion::Mean,
-                 const std::string& of = {}) {
+void expect_role(const std::vector<Layer>& layers, const std::string& name, Role role,
+                 Companion companion = Companion::Mean, const std::string& of = {}) {
   const Layer& layer = named(layers, name);
   EXPECT_STREQ(name_of(layer.role), name_of(role)) << name;
   EXPECT_STREQ(name_of(layer.companion), name_of(companion)) << name;
@@ -80,9 +82,10 @@ TEST(ChannelNames, Blender3SinglePart) {
 
 TEST(ChannelNames, Blender5HasOnePartForEachPass) {
   std::vector<PartInfo> parts;
-  for (const char* layer : {"ViewLayer.Combined.RGBA", "ViewLayer.Noisy Image.RGBA", "ViewLayer.Denoising Albedo.RGB",
-                            "ViewLayer.Denoising Normal.XYZ", "ViewLayer.Denoising Depth.Z", "ViewLayer.Diffuse Color.RGB",
-                            "ViewLayer.Ambient Occlusion.RGB", "ViewLayer.Position.XYZ", "ViewLayer.Render Time.X"})
+  for (const char* layer :
+       {"ViewLayer.Combined.RGBA", "ViewLayer.Noisy Image.RGBA", "ViewLayer.Denoising Albedo.RGB",
+        "ViewLayer.Denoising Normal.XYZ", "ViewLayer.Denoising Depth.Z", "ViewLayer.Diffuse Color.RGB",
+        "ViewLayer.Ambient Occlusion.RGB", "ViewLayer.Position.XYZ", "ViewLayer.Render Time.X"})
     parts.push_back(part_with(channels({layer}), std::string(layer).substr(0, std::string(layer).rfind('.'))));
   const auto layers = find_layers(file_with(parts));
   expect_role(layers, "ViewLayer.Noisy Image", Role::Beauty);
@@ -115,9 +118,9 @@ TEST(ChannelNames, ALayerCalledAIsNoHalfWithoutItsB) {
 }
 
 TEST(ChannelNames, Arnold) {
-  const auto layers = find_layers(file_with({part_with(
-      channels({"RGBA", "variance.RGB", "diffuse_albedo.RGB", "N.XYZ", "Z", "RGBA_key.RGB", "crypto_asset00.RGBA", "AO.RGB",
-                "RGBA_denoised.RGBA"}))}));
+  const auto layers = find_layers(
+      file_with({part_with(channels({"RGBA", "variance.RGB", "diffuse_albedo.RGB", "N.XYZ", "Z", "RGBA_key.RGB",
+                                     "crypto_asset00.RGBA", "AO.RGB", "RGBA_denoised.RGBA"}))}));
   expect_role(layers, "RGBA", Role::Beauty);
   expect_role(layers, "variance", Role::Beauty, Companion::VarianceOfMean, "RGBA");
   expect_role(layers, "diffuse_albedo", Role::Albedo);
@@ -130,10 +133,28 @@ TEST(ChannelNames, Arnold) {
 }
 
 TEST(ChannelNames, RenderMan) {
-  const auto layers = find_layers(file_with({part_with(
-      {"Ci.b", "Ci.g", "Ci.r", "a", "albedo.b", "albedo.g", "albedo.r", "albedo_var.b", "albedo_var.g", "albedo_var.r", "mse.b",
-       "mse.g", "mse.r", "normal.x", "normal.y", "normal.z", "normal_var.x", "normal_var.y", "normal_var.z", "sampleCount",
-       "z", "z_var"})}));
+  const auto layers = find_layers(file_with({part_with({"Ci.b",
+                                                        "Ci.g",
+                                                        "Ci.r",
+                                                        "a",
+                                                        "albedo.b",
+                                                        "albedo.g",
+                                                        "albedo.r",
+                                                        "albedo_var.b",
+                                                        "albedo_var.g",
+                                                        "albedo_var.r",
+                                                        "mse.b",
+                                                        "mse.g",
+                                                        "mse.r",
+                                                        "normal.x",
+                                                        "normal.y",
+                                                        "normal.z",
+                                                        "normal_var.x",
+                                                        "normal_var.y",
+                                                        "normal_var.z",
+                                                        "sampleCount",
+                                                        "z",
+                                                        "z_var"})}));
   expect_role(layers, "Ci", Role::Beauty);
   EXPECT_THAT(named(layers, "Ci").channels, ElementsAre("Ci.r", "Ci.g", "Ci.b"));
   expect_role(layers, "mse", Role::Beauty, Companion::VarianceOfMean, "Ci");
@@ -146,17 +167,17 @@ TEST(ChannelNames, RenderMan) {
 }
 
 TEST(ChannelNames, RenderManHalves) {
-  const auto layers = find_layers(file_with(
-      {part_with(channels({"beauty.RGB", "beauty_mse.RGB", "beauty_even.RGB", "beauty_odd.RGB"}))}));
+  const auto layers = find_layers(
+      file_with({part_with(channels({"beauty.RGB", "beauty_mse.RGB", "beauty_even.RGB", "beauty_odd.RGB"}))}));
   expect_role(layers, "beauty_mse", Role::Beauty, Companion::VarianceOfMean, "beauty");
   expect_role(layers, "beauty_even", Role::Beauty, Companion::HalfA, "beauty");
   expect_role(layers, "beauty_odd", Role::Beauty, Companion::HalfB, "beauty");
 }
 
 TEST(ChannelNames, VRay) {
-  const auto layers = find_layers(file_with({part_with(
-      channels({"RGBA", "effectsResult.RGB", "diffuseFilter.RGB", "normals.XYZ", "zDepth.Z", "noiseLevel.R", "worldPositions.XYZ",
-                "shadow.RGB", "GI.RGB"}))}));
+  const auto layers = find_layers(
+      file_with({part_with(channels({"RGBA", "effectsResult.RGB", "diffuseFilter.RGB", "normals.XYZ", "zDepth.Z",
+                                     "noiseLevel.R", "worldPositions.XYZ", "shadow.RGB", "GI.RGB"}))}));
   expect_role(layers, "RGBA", Role::Beauty);
   expect_role(layers, "effectsResult", Role::Prior);
   expect_role(layers, "diffuseFilter", Role::Albedo);
@@ -181,9 +202,9 @@ TEST(ChannelNames, Pbrt4) {
 
 TEST(ChannelNames, MitsubaMomentOfNestedIntegrators) {
   // moment { img: aov { alb, nn, path } }: what Mitsuba 3.9 writes.
-  const auto layers = find_layers(file_with({part_with(
-      channels({"RGB", "img.XYZ", "img.albedo.RGB", "img.nn.XYZ", "img.path.RGBA", "m2_img.XYZ", "m2_img.albedo.RGB",
-                "m2_img.nn.XYZ", "m2_img.path.RGBA"}))}));
+  const auto layers = find_layers(
+      file_with({part_with(channels({"RGB", "img.XYZ", "img.albedo.RGB", "img.nn.XYZ", "img.path.RGBA", "m2_img.XYZ",
+                                     "m2_img.albedo.RGB", "m2_img.nn.XYZ", "m2_img.path.RGBA"}))}));
   expect_role(layers, "RGBA", Role::Beauty);
   expect_role(layers, "m2_img.path", Role::Beauty, Companion::SecondMoment, "RGBA");
   expect_role(layers, "img.albedo", Role::Albedo);
@@ -192,18 +213,18 @@ TEST(ChannelNames, MitsubaMomentOfNestedIntegrators) {
 }
 
 TEST(ChannelNames, MitsubaAov) {
-  const auto layers = find_layers(
-      file_with({part_with(channels({"RGB", "albedo.RGB", "depth.T", "img.RGBA", "sh_normal.XYZ"}))}));
+  const auto layers =
+      find_layers(file_with({part_with(channels({"RGB", "albedo.RGB", "depth.T", "img.RGBA", "sh_normal.XYZ"}))}));
   expect_role(layers, "RGBA", Role::Beauty);
   expect_role(layers, "depth", Role::Depth);
   expect_role(layers, "sh_normal", Role::Normal);
 }
 
 TEST(ChannelNames, Appleseed) {
-  const auto layers = find_layers(file_with({part_with(channels({"RGBA"}), "beauty"), part_with(channels({"RGB"}), "albedo"),
-                                             part_with(channels({"RGB"}), "normal"), part_with(channels({"Z"}), "depth"),
-                                             part_with(channels({"Y"}), "pixel_sample_count"),
-                                             part_with(channels({"RGB"}), "direct_diffuse")}));
+  const auto layers = find_layers(
+      file_with({part_with(channels({"RGBA"}), "beauty"), part_with(channels({"RGB"}), "albedo"),
+                 part_with(channels({"RGB"}), "normal"), part_with(channels({"Z"}), "depth"),
+                 part_with(channels({"Y"}), "pixel_sample_count"), part_with(channels({"RGB"}), "direct_diffuse")}));
   expect_role(layers, "beauty", Role::Beauty);
   expect_role(layers, "albedo", Role::Albedo);
   expect_role(layers, "normal", Role::Normal);
@@ -214,8 +235,9 @@ TEST(ChannelNames, Appleseed) {
 }
 
 TEST(ChannelNames, LuxCore) {
-  const auto layers = find_layers(file_with({part_with(
-      channels({"RGB_IMAGEPIPELINE.RGB", "ALBEDO.RGB", "AVG_SHADING_NORMAL.XYZ", "GEOMETRY_NORMAL.XYZ", "DEPTH.Z", "SAMPLECOUNT.X"}))}));
+  const auto layers =
+      find_layers(file_with({part_with(channels({"RGB_IMAGEPIPELINE.RGB", "ALBEDO.RGB", "AVG_SHADING_NORMAL.XYZ",
+                                                 "GEOMETRY_NORMAL.XYZ", "DEPTH.Z", "SAMPLECOUNT.X"}))}));
   expect_role(layers, "RGB_IMAGEPIPELINE", Role::Beauty);
   expect_role(layers, "ALBEDO", Role::Albedo);
   expect_role(layers, "AVG_SHADING_NORMAL", Role::Normal);
@@ -225,7 +247,8 @@ TEST(ChannelNames, LuxCore) {
 }
 
 TEST(ChannelNames, StereoInOnePart) {
-  PartInfo part = part_with({"B", "G", "R", "Z", "albedo.left.B", "albedo.left.G", "albedo.left.R", "right.B", "right.G", "right.R"});
+  PartInfo part = part_with(
+      {"B", "G", "R", "Z", "albedo.left.B", "albedo.left.G", "albedo.left.R", "right.B", "right.G", "right.R"});
   part.views = {"left", "right"};
   const auto layers = find_layers(file_with({part}));
   expect_role(layers, "RGBA", Role::Beauty);
@@ -237,14 +260,15 @@ TEST(ChannelNames, StereoInOnePart) {
 }
 
 TEST(ChannelNames, StereoInSeveralParts) {
-  const auto layers = find_layers(file_with({part_with(channels({"RGB"}), "beauty.left", "left"),
-                                             part_with(channels({"RGB"}), "beauty.right", "right")}));
+  const auto layers = find_layers(file_with(
+      {part_with(channels({"RGB"}), "beauty.left", "left"), part_with(channels({"RGB"}), "beauty.right", "right")}));
   expect_role(layers, "beauty.left:beauty", Role::Beauty);
   EXPECT_EQ(named(layers, "beauty.right:beauty").view, "right");
 }
 
 TEST(ChannelNames, DotsAndUtf8InViewLayers) {
-  const auto layers = find_layers(file_with({part_with(channels({"Außen.Tür.Combined.RGB", "Außen.Tür.Denoising Depth.Z"}))}));
+  const auto layers =
+      find_layers(file_with({part_with(channels({"Außen.Tür.Combined.RGB", "Außen.Tür.Denoising Depth.Z"}))}));
   expect_role(layers, "Außen.Tür.Combined", Role::Beauty);
   EXPECT_EQ(named(layers, "Außen.Tür.Combined").view_layer, "Außen.Tür");
 }

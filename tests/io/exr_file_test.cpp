@@ -13,8 +13,8 @@
 namespace polyrecon {
 namespace {
 
-using ::testing::HasSubstr;
 using testing::error_of;
+using ::testing::HasSubstr;
 using testing::layer;
 using testing::pattern;
 using testing::put_contents;
@@ -24,7 +24,9 @@ using testing::write_exr;
 
 TestPart mixed_part() {
   TestPart part;
-  part.channels = {{"C.B", Imf::HALF, pattern(1)}, {"C.G", Imf::HALF, pattern(2)}, {"C.R", Imf::FLOAT, pattern(3)},
+  part.channels = {{"C.B", Imf::HALF, pattern(1)},
+                   {"C.G", Imf::HALF, pattern(2)},
+                   {"C.R", Imf::FLOAT, pattern(3)},
                    {"id.X", Imf::UINT, pattern(4)}};
   part.window = {-5, -3, 70, 60};  // 75 x 63: several chunks of every compression, a last one that is not full
   part.display = {0, 0, 64, 48};
@@ -59,8 +61,9 @@ TEST_P(LosslessFile, GivesBackEverySampleOfEveryType) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Compressions, LosslessFile,
-                         ::testing::Combine(::testing::Values(Imf::NO_COMPRESSION, Imf::RLE_COMPRESSION, Imf::ZIPS_COMPRESSION,
-                                                              Imf::ZIP_COMPRESSION, Imf::PIZ_COMPRESSION),
+                         ::testing::Combine(::testing::Values(Imf::NO_COMPRESSION, Imf::RLE_COMPRESSION,
+                                                              Imf::ZIPS_COMPRESSION, Imf::ZIP_COMPRESSION,
+                                                              Imf::PIZ_COMPRESSION),
                                             ::testing::Values(0, 32)));
 
 /// The lossy ones keep uint samples, and a constant image to a hundredth.
@@ -83,8 +86,9 @@ TEST_P(LossyFile, IsReadAsItsCodecGivesIt) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Compressions, LossyFile,
-                         ::testing::Combine(::testing::Values(Imf::PXR24_COMPRESSION, Imf::B44_COMPRESSION, Imf::B44A_COMPRESSION,
-                                                              Imf::DWAA_COMPRESSION, Imf::DWAB_COMPRESSION),
+                         ::testing::Combine(::testing::Values(Imf::PXR24_COMPRESSION, Imf::B44_COMPRESSION,
+                                                              Imf::B44A_COMPRESSION, Imf::DWAA_COMPRESSION,
+                                                              Imf::DWAB_COMPRESSION),
                                             ::testing::Values(0, 32)));
 
 TEST(DescribeFile, TellsPartsChannelsAndAttributes) {
@@ -248,10 +252,26 @@ INSTANTIATE_TEST_SUITE_P(
                       [](std::string& b) { patch(b, kWindow, 4, 0x80000000), patch(b, kWindow, 12, 0x7fffffff); },
                       [](std::string& b) { patch(b, kWindow, 12, 0xfffffff0); },  // xMax < xMin
                       [](std::string& b) { patch(b, kTiles, 4, 0x7fffffff), patch(b, kTiles, 8, 0x7fffffff); },
-                      [](std::string& b) { patch(b, kTiles, 4, 1), patch(b, kTiles, 8, 1), patch(b, kWindow, 12, 16000), patch(b, kWindow, 16, 16000); },
+                      [](std::string& b) {
+                        patch(b, kTiles, 4, 1), patch(b, kTiles, 8, 1), patch(b, kWindow, 12, 16000),
+                            patch(b, kWindow, 16, 16000);
+                      },
                       [](std::string& b) { patch(b, kTiles, 4, 0); },
                       [](std::string& b) { patch(b, kWindow, 0, 0x7fffffff); },  // the size of the attribute itself
                       [](std::string& b) { patch(b, std::string("channels\0chlist\0", 16), 0, 0xffffffff); }));
+
+/// The tightest packing there is must not be taken for a lie: an image of one value in every compression.
+TEST(DescribeFile, ConstantImagesAreBelieved) {
+  const TemporaryFolder folder;
+  for (int compression = 0; compression < Imf::NUM_COMPRESSION_METHODS; ++compression) {
+    TestPart part;
+    part.window = part.display = {0, 0, 2048, 2048};
+    part.compression = static_cast<Imf::Compression>(compression);
+    part.channels = testing::flat_layer("", "RGB", 0);
+    for (auto& channel : part.channels) channel.type = Imf::HALF;
+    EXPECT_NO_THROW(describe_file(write_exr(folder / "a.exr", {part}))) << compression;
+  }
+}
 
 TEST(ReadLimits, AreObeyed) {
   const TemporaryFolder folder;
@@ -291,7 +311,8 @@ TEST(ReadChannels, SubsampledPartsAreUnsupported) {
   EXPECT_THAT(error_of([&] { read_channels(file, 0, {"Y"}); }).what(), HasSubstr("unsupported"));
 }
 
-/// A portable float map of 2 x 2 pixels: "PF", size, scale < 0 for little endian, rows from the lowest to the uppermost.
+/// A portable float map of 2 x 2 pixels: "PF", size, scale < 0 for little endian, rows from the lowest to the
+/// uppermost.
 TEST(PlainImage, RowsOfAPfmAreTurned) {
   const TemporaryFolder folder;
   std::string bytes = "PF\n2 2\n-1.0\n";

@@ -115,9 +115,10 @@ inline Imf::FrameBuffer buffer_of(const TestPart& part, std::map<std::string, st
   Imf::FrameBuffer buffer;
   for (const TestChannel& channel : part.channels) {
     const std::size_t size = channel.type == Imf::HALF ? 2 : 4;
-    buffer.insert(channel.name, Imf::Slice::Make(channel.type, bytes[channel.name].data(), {part.window.x0, part.window.y0},
-                                                 part.window.width(), part.window.height(), size,
-                                                 size * static_cast<std::size_t>(part.window.width())));
+    buffer.insert(channel.name,
+                  Imf::Slice::Make(channel.type, bytes[channel.name].data(), {part.window.x0, part.window.y0},
+                                   part.window.width(), part.window.height(), size,
+                                   size * static_cast<std::size_t>(part.window.width())));
   }
   return buffer;
 }

@@ -14,11 +14,11 @@ namespace {
 
 using ::testing::Contains;
 using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::Not;
 using testing::flat_layer;
+using ::testing::HasSubstr;
 using testing::join;
 using testing::layer;
+using ::testing::Not;
 using testing::TemporaryFolder;
 using testing::TestPart;
 using testing::write_exr;
@@ -64,7 +64,8 @@ TEST(Inspect, NoiseLevelFromVarianceOrHalves) {
   EXPECT_NEAR(with_variance.noise_level, 5, 1e-5);  // 0.3 is no float
   EXPECT_EQ(with_variance.samples, 8);
   EXPECT_THAT(with_variance.missing, Not(Contains("variance")));
-  part.channels = join({flat_layer("V.Combined", "RGB", 0.3), flat_layer("V.Combined A", "RGB", 1), flat_layer("V.Combined B", "RGB", 3)});
+  part.channels = join({flat_layer("V.Combined", "RGB", 0.3), flat_layer("V.Combined A", "RGB", 1),
+                        flat_layer("V.Combined B", "RGB", 3)});
   const Inspection with_halves = inspect(write_exr(folder / "b.exr", {part}));
   EXPECT_NEAR(with_halves.noise_level, 10, 1e-5);
   EXPECT_THAT(with_halves.missing, Contains("variance"));

@@ -14,16 +14,16 @@
 namespace polyrecon {
 namespace {
 
+using testing::constant;
 using ::testing::Contains;
 using ::testing::Each;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
-using ::testing::SizeIs;
-using testing::constant;
 using testing::error_of;
 using testing::flat_layer;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 using testing::join;
 using testing::layer;
+using ::testing::SizeIs;
 using testing::stored_bytes;
 using testing::stored_floats;
 using testing::TemporaryFolder;
@@ -44,12 +44,14 @@ TestPart render(double value, const std::string& samples = {}) {
 
 std::vector<std::string> write_all(const TemporaryFolder& folder, const std::vector<TestPart>& renders) {
   std::vector<std::string> paths;
-  for (const TestPart& part : renders) paths.push_back(write_exr(folder / ("r" + std::to_string(paths.size()) + ".exr"), {part}));
+  for (const TestPart& part : renders)
+    paths.push_back(write_exr(folder / ("r" + std::to_string(paths.size()) + ".exr"), {part}));
   return paths;
 }
 
 TEST(Merge, MeanVarianceAndHalvesOfEqualRenders) {
-  // 1, 2, 6: mean 3; sum of squared deviations 4 + 1 + 9 = 14, variance of the mean 14 / 2 / 3 = 7/3; A = (1 + 6) / 2; B = 2.
+  // 1, 2, 6: mean 3; sum of squared deviations 4 + 1 + 9 = 14, variance of the mean 14 / 2 / 3 = 7/3; A = (1 + 6) / 2;
+  // B = 2.
   const TemporaryFolder folder;
   const std::string out = folder / "out.exr";
   const MergeResult result = merge(write_all(folder, {render(1), render(2), render(6)}), out);
@@ -81,7 +83,8 @@ TEST(Merge, MetadataWeighTheRenders) {
 }
 
 TEST(Merge, SampleCountPassesWeighEveryPixel) {
-  // Fractions of 8: pixel x = 0 has 8 and 0 samples, the others 4 and 8: (4 * 1 + 8 * 4) / 12 = 3, (4 * 4 + 8 * 1) / 12 = 2.
+  // Fractions of 8: pixel x = 0 has 8 and 0 samples, the others 4 and 8: (4 * 1 + 8 * 4) / 12 = 3, (4 * 4 + 8 * 1) / 12
+  // = 2.
   const TemporaryFolder folder;
   TestPart a = render(1, "8"), b = render(4, "8");
   a.channels.push_back({"V.Debug Sample Count.X", Imf::FLOAT, [](int x, int) { return x == 0 ? 1.0 : 0.5; }});
@@ -107,7 +110,9 @@ TEST(Merge, SampleCountPassesWeighEveryPixel) {
 TEST(Merge, SamplesThatAreNotFiniteAreLeftOut) {
   const TemporaryFolder folder;
   TestPart bad = render(2);
-  bad.channels[0].samples = [](int x, int y) { return x == 3 && y == 2 ? std::numeric_limits<double>::quiet_NaN() : 2.0; };
+  bad.channels[0].samples = [](int x, int y) {
+    return x == 3 && y == 2 ? std::numeric_limits<double>::quiet_NaN() : 2.0;
+  };
   const std::string channel = bad.channels[0].name, out = folder / "out.exr";
   const MergeResult result = merge(write_all(folder, {render(1), bad, render(3)}), out);
   EXPECT_THAT(result.notes, Contains(HasSubstr("1 samples that are not finite")));
@@ -119,9 +124,10 @@ TEST(Merge, OtherPassesComeFromTheFirstFileBitForBit) {
   std::vector<TestPart> renders;
   for (int k = 0; k < 2; ++k) {
     TestPart part;
-    part.channels = join({layer("V.Combined", "RGB", k), layer("V.CryptoObject00", "rgba", 50 + k), layer("V.Depth", "Z", 60 + k),
-                          layer("V.Denoising Depth", "Z", 70 + k), layer("V.IndexOB", "X", 80 + k, Imf::UINT),
-                          layer("V.Vector", "XYZW", 90 + k, Imf::HALF), layer("V.Combined Variance", "RGB", 99)});
+    part.channels =
+        join({layer("V.Combined", "RGB", k), layer("V.CryptoObject00", "rgba", 50 + k), layer("V.Depth", "Z", 60 + k),
+              layer("V.Denoising Depth", "Z", 70 + k), layer("V.IndexOB", "X", 80 + k, Imf::UINT),
+              layer("V.Vector", "XYZW", 90 + k, Imf::HALF), layer("V.Combined Variance", "RGB", 99)});
     part.window = {-3, 2, 11, 80};
     part.display = {0, 0, 10, 70};
     part.edit = [](Imf::Header& header) { Imf::addOwner(header, "studio"); };
@@ -170,7 +176,8 @@ TEST(Merge, LayersWithoutANameAndTheirCompanionsAreFoundAgain) {
   std::vector<TestPart> renders(2);
   for (std::size_t k = 0; k < 2; ++k) {
     const double value = 1 + 2 * static_cast<double>(k);
-    renders[k].channels = join({flat_layer("", "RGB", value), flat_layer("Z", "Z", value), flat_layer("albedo", "RGB", value)});
+    renders[k].channels =
+        join({flat_layer("", "RGB", value), flat_layer("Z", "Z", value), flat_layer("albedo", "RGB", value)});
     renders[k].channels[3].name = "Z";
     renders[k].tile = 4;
   }

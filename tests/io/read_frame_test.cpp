@@ -14,14 +14,14 @@ namespace polyrecon {
 namespace {
 
 using ::testing::Contains;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
-using ::testing::SizeIs;
 using testing::error_of;
 using testing::flat_layer;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 using testing::join;
 using testing::layer;
 using testing::pattern;
+using ::testing::SizeIs;
 using testing::TemporaryFolder;
 using testing::TestPart;
 using testing::write_exr;
@@ -52,12 +52,12 @@ double everywhere(const Image& image, int c = 0) {
 
 TEST(ReadFrame, FillsEveryRoleAndCompanionOfASinglePartFile) {
   const TemporaryFolder folder;
-  TestPart part = part_of(join({layer("V.Combined", "RGBA", 0), layer("V.Combined Variance", "RGB", 10),
-                                layer("V.Combined A", "RGB", 20), layer("V.Combined B", "RGB", 30),
-                                layer("V.Denoising Normal", "XYZ", 40), layer("V.Denoising Normal Variance", "XYZ", 43),
-                                layer("V.Denoising Albedo", "RGB", 50), layer("V.Denoising Depth", "Z", 60),
-                                layer("V.Denoising Depth A", "Z", 61), layer("V.Denoising Depth B", "Z", 62),
-                                layer("V.Visibility", "Z", 63), layer("V.Sample Count", "X", 64)}));
+  TestPart part = part_of(
+      join({layer("V.Combined", "RGBA", 0), layer("V.Combined Variance", "RGB", 10), layer("V.Combined A", "RGB", 20),
+            layer("V.Combined B", "RGB", 30), layer("V.Denoising Normal", "XYZ", 40),
+            layer("V.Denoising Normal Variance", "XYZ", 43), layer("V.Denoising Albedo", "RGB", 50),
+            layer("V.Denoising Depth", "Z", 60), layer("V.Denoising Depth A", "Z", 61),
+            layer("V.Denoising Depth B", "Z", 62), layer("V.Visibility", "Z", 63), layer("V.Sample Count", "X", 64)}));
   part.window = {-4, 3, 9, 14};
   const ReadResult read = read_frame(write_exr(folder / "a.exr", {part}));
   const Frame& frame = read.frame;
@@ -161,11 +161,12 @@ TEST(ReadFrame, AnUnknownSampleCountLeavesTheVarianceOutUnlessGiven) {
 }
 
 TEST(ReadFrame, ASecondMomentBecomesAVariance) {
-  // Mean 3, mean square 21, 5 samples: the unbiased variance of the mean is (21 - 9) / (5 - 1) = 3. A mean square below the
-  // squared mean (rounding) gives 0.
+  // Mean 3, mean square 21, 5 samples: the unbiased variance of the mean is (21 - 9) / (5 - 1) = 3. A mean square below
+  // the squared mean (rounding) gives 0.
   const TemporaryFolder folder;
-  TestPart part = part_of(join({flat_layer("albedo", "RGB", 3), flat_layer("m2_albedo", "RGB", 21), flat_layer("", "RGB", 1),
-                                flat_layer("nn", "XYZ", 1), flat_layer("m2_nn", "XYZ", 0.5)}));
+  TestPart part =
+      part_of(join({flat_layer("albedo", "RGB", 3), flat_layer("m2_albedo", "RGB", 21), flat_layer("", "RGB", 1),
+                    flat_layer("nn", "XYZ", 1), flat_layer("m2_nn", "XYZ", 0.5)}));
   ReadOptions options;
   options.samples = 5;
   const Frame frame = read_frame(write_exr(folder / "a.exr", {part}), options).frame;
@@ -176,8 +177,9 @@ TEST(ReadFrame, ASecondMomentBecomesAVariance) {
 
 TEST(ReadFrame, VarianceKindOverridesTheNames) {
   const TemporaryFolder folder;
-  const std::string path = write_exr(
-      folder / "a.exr", {part_of(join({flat_layer("L.Combined", "RGB", 2), flat_layer("L.Combined Variance", "RGB", 12)}))});
+  const std::string path =
+      write_exr(folder / "a.exr",
+                {part_of(join({flat_layer("L.Combined", "RGB", 2), flat_layer("L.Combined Variance", "RGB", 12)}))});
   ReadOptions options;
   options.samples = 4;
   EXPECT_EQ(everywhere(read_frame(path, options).frame.beauty.variance), 12);
@@ -203,9 +205,10 @@ TEST(ReadFrame, AFractionOfTheSampleCountBecomesANumber) {
 TEST(ReadFrame, AVisibilityInColorIsAveraged) {
   // Means 1, 2, 6 -> 3. Standard deviations 1, 2, 3 of one and the same noise -> (6 / 3)^2 = 4.
   const TemporaryFolder folder;
-  TestPart part = part_of(join({layer("V.Combined", "RGB"), flat_layer("V.Shadow", "R", 1), flat_layer("V.Shadow", "G", 2),
-                                flat_layer("V.Shadow", "B", 6), flat_layer("V.Shadow Variance", "R", 1),
-                                flat_layer("V.Shadow Variance", "G", 4), flat_layer("V.Shadow Variance", "B", 9)}));
+  TestPart part =
+      part_of(join({layer("V.Combined", "RGB"), flat_layer("V.Shadow", "R", 1), flat_layer("V.Shadow", "G", 2),
+                    flat_layer("V.Shadow", "B", 6), flat_layer("V.Shadow Variance", "R", 1),
+                    flat_layer("V.Shadow Variance", "G", 4), flat_layer("V.Shadow Variance", "B", 9)}));
   const Frame frame = read_frame(write_exr(folder / "a.exr", {part})).frame;
   ASSERT_THAT(frame.features, SizeIs(1));
   EXPECT_EQ(frame.features[0].pass.mean.channels(), 1);
@@ -222,9 +225,9 @@ TEST(ReadFrame, AGrayBeautyIsRepeated) {
 
 TEST(ReadFrame, ViewLayersAreChosenByName) {
   const TemporaryFolder folder;
-  const std::string path =
-      write_exr(folder / "a.exr", {part_of(join({layer("Back.v1.Combined", "RGB", 0), layer("Back.v1.Depth", "Z", 5),
-                                                 layer("Vorder.Combined", "RGB", 10), layer("Vorder.Depth", "Z", 15)}))});
+  const std::string path = write_exr(
+      folder / "a.exr", {part_of(join({layer("Back.v1.Combined", "RGB", 0), layer("Back.v1.Depth", "Z", 5),
+                                       layer("Vorder.Combined", "RGB", 10), layer("Vorder.Depth", "Z", 15)}))});
   EXPECT_EQ(read_frame(path).source.view_layer, "Back.v1");
   ReadOptions options;
   options.view_layer = "Vorder";
@@ -238,8 +241,8 @@ TEST(ReadFrame, ViewLayersAreChosenByName) {
 
 TEST(ReadFrame, StereoViews) {
   const TemporaryFolder folder;
-  TestPart part = part_of(join({layer("", "RGB", 0), layer("right", "RGB", 10), layer("depth.left", "Z", 5),
-                                layer("depth.right", "Z", 15)}));
+  TestPart part = part_of(join(
+      {layer("", "RGB", 0), layer("right", "RGB", 10), layer("depth.left", "Z", 5), layer("depth.right", "Z", 15)}));
   part.edit = [](Imf::Header& header) { Imf::addMultiView(header, {"left", "right"}); };
   const std::string path = write_exr(folder / "a.exr", {part});
   EXPECT_TRUE(holds(read_frame(path).frame.features.at(0).pass.mean, 0, part.window, 5));
@@ -253,11 +256,13 @@ TEST(ReadFrame, StereoViews) {
 TEST(ReadFrame, RolesByHand) {
   const TemporaryFolder folder;
   const std::string path =
-      write_exr(folder / "a.exr", {part_of(join({layer("V.Foo", "RGB", 0), layer("V.FooVar", "RGB", 10), layer("V.One", "RGB", 20),
-                                                 layer("V.Two", "RGB", 30), layer("V.Kd", "RGB", 40), layer("V.Pos", "XYZ", 50)}))});
+      write_exr(folder / "a.exr",
+                {part_of(join({layer("V.Foo", "RGB", 0), layer("V.FooVar", "RGB", 10), layer("V.One", "RGB", 20),
+                               layer("V.Two", "RGB", 30), layer("V.Kd", "RGB", 40), layer("V.Pos", "XYZ", 50)}))});
   EXPECT_EQ(error_of([&] { read_frame(path); }).code(), ExitCode::Missing);
   ReadOptions options;
-  for (const char* text : {"beauty=V.Foo", "variance=V.FooVar", "half-a=V.One", "half-b=V.Two", "albedo=V.Kd", "depth=V.Pos.Z"})
+  for (const char* text :
+       {"beauty=V.Foo", "variance=V.FooVar", "half-a=V.One", "half-b=V.Two", "albedo=V.Kd", "depth=V.Pos.Z"})
     options.map.push_back(parse_mapping(text));
   const Rect window{0, 0, 8, 6};
   const Frame frame = read_frame(path, options).frame;
@@ -290,8 +295,8 @@ TEST(ReadFrame, OnePassAFileIsGathered) {
   // Tungsten: <name>Color.exr and its companions, <name>Albedo.exr and so on, all plain RGB.
   const TemporaryFolder folder;
   int seed = 0;
-  for (const char* name : {"sceneColor", "sceneColorVariance", "sceneColorA", "sceneColorB", "sceneAlbedo", "sceneNormal",
-                           "sceneDepth", "otherVisibility", "sceneNotes"})
+  for (const char* name : {"sceneColor", "sceneColorVariance", "sceneColorA", "sceneColorB", "sceneAlbedo",
+                           "sceneNormal", "sceneDepth", "otherVisibility", "sceneNotes"})
     write_exr(folder / (std::string(name) + ".exr"), {part_of(layer("", "RGB", 10 * seed++))});
   const Rect window{0, 0, 8, 6};
   const ReadResult read = read_frame(folder / "sceneColor.exr");
@@ -308,10 +313,10 @@ TEST(ReadFrame, OnePassAFileIsGathered) {
 
 TEST(ReadFrame, AovsAskedForAndTheirCompanions) {
   const TemporaryFolder folder;
-  const std::string path =
-      write_exr(folder / "a.exr", {part_of(join({layer("V.Combined", "RGB", 0), layer("V.DiffDir", "RGB", 10),
-                                                 layer("V.DiffDir A", "RGB", 20), layer("V.DiffDir B", "RGB", 30),
-                                                 layer("V.GlossDir", "RGB", 40), layer("V.UV", "UV", 50)}))});
+  const std::string path = write_exr(
+      folder / "a.exr",
+      {part_of(join({layer("V.Combined", "RGB", 0), layer("V.DiffDir", "RGB", 10), layer("V.DiffDir A", "RGB", 20),
+                     layer("V.DiffDir B", "RGB", 30), layer("V.GlossDir", "RGB", 40), layer("V.UV", "UV", 50)}))});
   EXPECT_THAT(read_frame(path).frame.aovs, IsEmpty());
   ReadOptions options;
   options.aovs = {"V.GlossDir", "DiffDir"};

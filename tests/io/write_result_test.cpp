@@ -20,11 +20,11 @@ namespace {
 namespace fs = std::filesystem;
 
 using ::testing::Contains;
+using testing::contents;
 using ::testing::Each;
+using testing::error_of;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
-using testing::contents;
-using testing::error_of;
 using testing::join;
 using testing::layer;
 using testing::pattern;
@@ -35,13 +35,16 @@ using testing::TestChannel;
 using testing::TestPart;
 using testing::write_exr;
 
-Image filled(const Rect& window, int channels, Real value) { return {window.width(), window.height(), channels, value}; }
+Image filled(const Rect& window, int channels, Real value) {
+  return {window.width(), window.height(), channels, value};
+}
 
 /// Beauty, an identifier layer, a half and a float pass in one part with an odd window.
 TestPart render() {
   TestPart part;
-  part.channels = join({layer("V.Combined", "RGBA", 0, Imf::HALF), layer("V.Diff", "RGB", 10, Imf::HALF),
-                        layer("V.Depth", "Z", 20), layer("V.Crypto00", "rgba", 30), layer("V.Index", "X", 40, Imf::UINT)});
+  part.channels =
+      join({layer("V.Combined", "RGBA", 0, Imf::HALF), layer("V.Diff", "RGB", 10, Imf::HALF), layer("V.Depth", "Z", 20),
+            layer("V.Crypto00", "rgba", 30), layer("V.Index", "X", 40, Imf::UINT)});
   part.window = {-3, -7, 40, 61};
   part.display = {0, 0, 32, 48};
   part.edit = [](Imf::Header& header) {
@@ -91,8 +94,9 @@ TEST_P(AnyFile, KeepsAllThatWasNotReplaced) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Compressions, AnyFile,
-                         ::testing::Combine(::testing::Values(Imf::NO_COMPRESSION, Imf::RLE_COMPRESSION, Imf::ZIPS_COMPRESSION,
-                                                              Imf::ZIP_COMPRESSION, Imf::PIZ_COMPRESSION, Imf::PXR24_COMPRESSION,
+                         ::testing::Combine(::testing::Values(Imf::NO_COMPRESSION, Imf::RLE_COMPRESSION,
+                                                              Imf::ZIPS_COMPRESSION, Imf::ZIP_COMPRESSION,
+                                                              Imf::PIZ_COMPRESSION, Imf::PXR24_COMPRESSION,
                                                               Imf::B44_COMPRESSION, Imf::B44A_COMPRESSION,
                                                               Imf::DWAA_COMPRESSION, Imf::DWAB_COMPRESSION),
                                             ::testing::Values(0, 16)));
@@ -220,7 +224,8 @@ struct DeepSamples {
     for (std::size_t i = 0; i < 48; ++i) pointers[i] = reinterpret_cast<char*>(&values[6 * i]);
     Imf::DeepFrameBuffer frame;
     frame.insertSampleCountSlice(Imf::Slice(Imf::UINT, reinterpret_cast<char*>(counts.data()), 4, 32));
-    frame.insert("Z", Imf::DeepSlice(Imf::FLOAT, reinterpret_cast<char*>(pointers.data()), sizeof(char*), 8 * sizeof(char*), 4));
+    frame.insert(
+        "Z", Imf::DeepSlice(Imf::FLOAT, reinterpret_cast<char*>(pointers.data()), sizeof(char*), 8 * sizeof(char*), 4));
     return frame;
   }
 };
@@ -278,7 +283,8 @@ TEST(WriteResult, MipMappedPartsAreCopiedWithAllLevels) {
       for (int ly = 0; ly < tiles.numYLevels(); ++ly)
         for (int lx = 0; lx < tiles.numXLevels(); ++lx) {
           if (!tiles.isValidLevel(lx, ly)) continue;
-          for (std::size_t i = 0; i < samples.size(); ++i) samples[i] = static_cast<float>(lx + 10 * ly) + static_cast<float>(i % 7);
+          for (std::size_t i = 0; i < samples.size(); ++i)
+            samples[i] = static_cast<float>(lx + 10 * ly) + static_cast<float>(i % 7);
           Imf::FrameBuffer buffer;
           buffer.insert("Y", Imf::Slice::Make(Imf::HALF, samples.data(), {0, 0}, 33, 17, 2, 66));
           tiles.setFrameBuffer(buffer);
@@ -315,7 +321,9 @@ TEST(WriteResult, ADamagedPartIsNotCopiedInSilence) {
   for (std::size_t i = bytes.size() - 200; i < bytes.size(); ++i) bytes[i] = static_cast<char>(0x55);
   testing::put_contents(in, bytes);
   const ReadResult read = read_frame(in);
-  const Error error = error_of([&] { write_result(read.source, {{"beauty", filled(parts[0].window, 3, 7)}}, folder / "out.exr"); });
+  const Error error = error_of([&] {
+    write_result(read.source, {{"beauty", filled(parts[0].window, 3, 7)}}, folder / "out.exr");
+  });
   EXPECT_EQ(error.code(), ExitCode::BadInput);
   EXPECT_THAT(error.what(), HasSubstr("mask"));
   EXPECT_EQ(folder.entries(), 1u);
