@@ -36,7 +36,9 @@ class Tools:
 
     def merge(self, files, name, samples):
         target = self.work / name
-        run([self.polyrecon, "merge", *map(str, files), "-o", str(target), "--samples", str(samples)])
+        # Each subset that Blender 5 writes claims the samples of the whole sequence.
+        each = samples // len(files)
+        run([self.polyrecon, "merge", *map(str, files), "-o", str(target), "--samples", str(each)])
         return target
 
 

@@ -46,16 +46,15 @@ void setup_merge(CLI::App& app, Command& chosen) {
       ->required()
       ->type_name("FILE...");
   sub->add_option("-o,--output", o->output, "EXR to write")->required()->type_name("FILE");
-  sub->add_option(
-         "--samples", o->merge.samples,
-         "Samples per pixel of all renders together, where the files do not tell (subsets by Blender 5 do not)")
+  sub->add_option("--samples", o->merge.samples,
+                  "Samples per pixel of each render, where the files mislead: subsets by Blender 5 tell the whole's")
       ->check(CLI::PositiveNumber)
       ->type_name("N");
   sub->add_flag("-q,--quiet", o->quiet, "Print nothing but errors");
   sub->footer(
       "Examples:\n"
       "  polyrecon merge part*.exr -o merged.exr\n"
-      "  polyrecon merge subset*.exr -o merged.exr --samples 16");
+      "  polyrecon merge subset*.exr -o merged.exr --samples 2");
   sub->callback([o, &chosen] { chosen = [o] { run(*o); }; });
 }
 
