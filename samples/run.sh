@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Builds polyrecon (installing what is missing) and shows it on the shipped samples: out/SAMPLE/ then holds the clean
 # picture, the error map, the sample map, the report, and comparison.png: input | result | reference | error.
+# out/samples.png has the three comparisons in one picture.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -22,5 +23,6 @@ for sample in study glass lighthouse; do
   "$polyrecon" compare "$noisy" "$out/clean.exr" "$reference"
   "$polyrecon" preview "$noisy" "$out/clean.exr" "$reference" "$out/error.exr" -o "$out/comparison.png"
 done
+oiiotool out/{study,glass,lighthouse}/comparison.png --mosaic 1x3 --ch R,G,B -o out/samples.png
 echo
-echo "The pictures to look at: out/study/comparison.png out/glass/comparison.png out/lighthouse/comparison.png"
+echo "The picture to look at: out/samples.png (docs/samples.jpg is this one)"
