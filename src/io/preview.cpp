@@ -64,8 +64,8 @@ void draw_legend(OIIO::ImageBuf& image, const LogRange& range, int x, int y, int
     const std::array<float, 3> pixel{colors.at(i, 0, 0), colors.at(i, 0, 1), colors.at(i, 0, 2)};
     for (int row = 0; row < legend_height; ++row) image.setpixel(x + i, y + row, pixel.data(), 3);
   }
-  draw_text(image, fmt::format("{:.2g}", range.low), x, y + legend_height, width / 2, Align::Left);
-  draw_text(image, fmt::format("{:.2g}", range.high), x + width, y + legend_height, width / 2, Align::Right);
+  draw_text(image, fmt::format("{:.3g}", range.low), x, y + legend_height, width / 2, Align::Left);
+  draw_text(image, fmt::format("{:.3g}", range.high), x + width, y + legend_height, width / 2, Align::Right);
 }
 
 struct Layout {

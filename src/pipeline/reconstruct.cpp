@@ -150,7 +150,7 @@ Result reconstruct(const Frame& frame, const Params& params, Progress& progress)
   const NoiseVariance noise = timed(report, progress, "noise variance", rows * 2, [&] { return noise_variance(frame, progress); });
   report.variance_source = noise.source;
   Prepared prepared = timed(report, progress, "features", rows / 4, [&] {
-    return prepare(frame, preparation, noise.variance, params.reconstruct_alpha, progress);
+    return prepare(frame, preparation, noise.variance, params.cleaning, params.reconstruct_alpha, progress);
   });
   HalfPair& pair = prepared.pair;
   report.mended_pixels = prepared.mended_pixels;

@@ -3,7 +3,9 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <random>
 #include <sstream>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -128,6 +130,86 @@ TEST_F(Denoise, WritesTheImageAndAllMaps) {
   EXPECT_EQ(samples.spec().get_float_attribute("frame"), 7);
   EXPECT_EQ(samples.spec().get_float_attribute("seed"), 3);
   for (const char* key : {"min", "max", "total"}) EXPECT_NE(samples.spec().find_attribute(key), nullptr) << key;
+}
+
+/// As Blender 5 writes a render with its own denoiser switched on: a part for each pass, the number of samples in the
+/// metadata.
+void write_blender_parts(const std::string& path, int width, int height) {
+  const std::vector<std::string> passes{"ViewLayer.Combined", "ViewLayer.Noisy Image"};
+  std::vector<OIIO::ImageSpec> specs;
+  for (const std::string& pass : passes) {
+    OIIO::ImageSpec spec(width, height, 4, OIIO::TypeDesc::FLOAT);
+    spec.channelnames = {pass + ".R", pass + ".G", pass + ".B", pass + ".A"};
+    spec.attribute("oiio:subimagename", pass);
+    spec.attribute("cycles.ViewLayer.samples", "16");
+    specs.push_back(spec);
+  }
+  std::mt19937 random(2);
+  std::uniform_real_distribution<float> noise(-0.2f, 0.2f);
+  const auto out = OIIO::ImageOutput::create(path);
+  ASSERT_TRUE(out->open(path, static_cast<int>(specs.size()), specs.data())) << out->geterror();
+  for (std::size_t part = 0; part < specs.size(); ++part) {
+    if (part > 0) {
+      ASSERT_TRUE(out->open(path, specs[part], OIIO::ImageOutput::AppendSubimage));
+    }
+    std::vector<float> pixels(static_cast<std::size_t>(width * height * 4), 1.0f);
+    for (std::size_t i = 0; i < pixels.size(); ++i)
+      if (i % 4 != 3) pixels[i] = 0.5f + (part == 1 ? noise(random) : 0.0f);
+    ASSERT_TRUE(out->write_image(OIIO::TypeDesc::FLOAT, pixels.data()));
+  }
+  ASSERT_TRUE(out->close());
+}
+
+/// All samples of the first part that has the channel.
+std::vector<float> samples_of(const std::string& path, const std::string& channel) {
+  const auto in = OIIO::ImageInput::open(path);
+  if (!in) throw std::runtime_error(path + ": " + OIIO::geterror());
+  for (int part = 0; in->seek_subimage(part, 0); ++part) {
+    const int c = in->spec().channelindex(channel);
+    if (c < 0) continue;
+    std::vector<float> samples(static_cast<std::size_t>(in->spec().width) *
+                               static_cast<std::size_t>(in->spec().height));
+    if (!in->read_image(part, 0, c, c + 1, OIIO::TypeDesc::FLOAT, samples.data()))
+      throw std::runtime_error(in->geterror());
+    return samples;
+  }
+  throw std::runtime_error(path + ": no channel " + channel);
+}
+
+TEST_F(Denoise, ReplacesThePictureAndKeepsTheNoisyImageBesideIt) {
+  write_blender_parts(path("in.exr"), 32, 20);
+  const Outcome o = denoise({"--error-map", "error.exr", "--quality", "draft"});
+  ASSERT_EQ(o.code, 0) << o.err;
+  EXPECT_EQ(samples_of(path("out.exr"), "ViewLayer.Noisy Image.G"),
+            samples_of(path("in.exr"), "ViewLayer.Noisy Image.G"));
+  EXPECT_NE(samples_of(path("out.exr"), "ViewLayer.Combined.G"), samples_of(path("in.exr"), "ViewLayer.Combined.G"));
+  EXPECT_EQ(samples_of(path("out.exr"), "ViewLayer.Combined.A"), samples_of(path("in.exr"), "ViewLayer.Combined.A"));
+  // The metadata's 16 samples per pixel are known to the map.
+  EXPECT_EQ(samples_of(path("error.exr"), "samples.Y"), std::vector<float>(32 * 20, 16.0f));
+}
+
+TEST_F(Denoise, KeepsTheNoisyLayerOnRequest) {
+  write_render(path("in.exr"));
+  ASSERT_EQ(denoise({"--keep-noisy", "--quality", "draft"}).code, 0);
+  EXPECT_EQ(samples_of(path("out.exr"), "ViewLayer.Combined Noisy.R"),
+            samples_of(path("in.exr"), "ViewLayer.Combined.R"));
+}
+
+TEST_F(Denoise, FurtherLayersAreDenoisedByName) {
+  const std::vector<std::string> channels{"ViewLayer.Combined.R",       "ViewLayer.Combined.G",
+                                          "ViewLayer.Combined.B",       "ViewLayer.Diffuse Direct.R",
+                                          "ViewLayer.Diffuse Direct.G", "ViewLayer.Diffuse Direct.B"};
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> noise(0, 1);
+  write_exr(path("in.exr"), 32, 24, channels, [&](int, int, int) { return noise(random); });
+  const std::string aov = "ViewLayer.Diffuse Direct.R";
+  ASSERT_EQ(denoise({"--quality", "draft"}).code, 0);
+  EXPECT_EQ(samples_of(path("out.exr"), aov), samples_of(path("in.exr"), aov));
+  for (const std::string option : {"--aov", "-l"}) {
+    const Outcome o = denoise({option, "Diffuse Direct", "--quality", "draft"});
+    ASSERT_EQ(o.code, 0) << o.err;
+    EXPECT_NE(samples_of(path("out.exr"), aov), samples_of(path("in.exr"), aov));
+  }
 }
 
 TEST_F(Denoise, TellsRolesThenTheTable) {
