@@ -121,7 +121,7 @@ void filter_band(const Image& source, const Image& guide, const Image& variance,
 
 std::array<Image, 2> prefilter(const std::array<Image, 2>& halves, const Image& variance, const PrefilterParams& params,
                                Progress& progress) {
-  constexpr int band_height = 16;
+  constexpr int band_height = 32;
   const Image noise = widened_variance(variance);
   const int width = variance.width(), height = variance.height();
   std::array<Image, 2> out{Image(width, height, variance.channels()), Image(width, height, variance.channels())};

@@ -8,7 +8,6 @@
 #include "core/parallel.h"
 #include "core/sanitise.h"
 #include "features/fission.h"
-#include "features/prefilter.h"
 
 namespace polyrecon {
 namespace {
@@ -186,8 +185,8 @@ void append_channels(const Image& from, Image& to, int& channel) {
   for (int c = 0; c < from.channels(); ++c, ++channel) std::copy(from.plane(c), from.plane(c) + from.pixels(), to.plane(channel));
 }
 
-std::array<Image, 2> prepared_feature(const Feature& feature, const FeatureUse& use, std::size_t stream, std::size_t& mended,
-                                      Progress& progress) {
+std::array<Image, 2> prepared_feature(const Feature& feature, const FeatureUse& use, std::size_t stream,
+                                      const PrefilterParams& cleaning, std::size_t& mended, Progress& progress) {
   Image variance = feature_half_variance(feature.pass, mended);
   auto halves = halves_of(feature.pass, variance, stream, mended);
   if (use.clean && !variance.empty()) {
@@ -195,7 +194,7 @@ std::array<Image, 2> prepared_feature(const Feature& feature, const FeatureUse& 
     mend(mean, mend_reach);
     transform_variance(use, mean, variance);
     for (Image& half : halves) transform(use, half);
-    return prefilter(halves, variance, PrefilterParams{}, progress);
+    return prefilter(halves, variance, cleaning, progress);
   }
   for (Image& half : halves) transform(use, half);
   return halves;
@@ -230,8 +229,8 @@ Preparation look_at(const Frame& frame) {
   return out;
 }
 
-Prepared prepare(const Frame& frame, const Preparation& preparation, const Image& variance, bool with_alpha,
-                 Progress& progress) {
+Prepared prepare(const Frame& frame, const Preparation& preparation, const Image& variance, const PrefilterParams& cleaning,
+                 bool with_alpha, Progress& progress) {
   Prepared out;
   HalfPair& pair = out.pair;
   pair.epsilon = preparation.epsilon;
@@ -268,7 +267,7 @@ Prepared prepare(const Frame& frame, const Preparation& preparation, const Image
   for (Image& features : pair.features) features = Image(frame.width(), frame.height(), feature_channels);
   int channel = 0;
   for (const FeatureUse& use : preparation.features) {
-    const auto halves = prepared_feature(frame.features[use.index], use, use.index + 1, out.mended_pixels, progress);
+    const auto halves = prepared_feature(frame.features[use.index], use, use.index + 1, cleaning, out.mended_pixels, progress);
     int end = channel;
     for (std::size_t h = 0; h < 2; ++h) {
       end = channel;

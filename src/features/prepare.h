@@ -7,6 +7,7 @@
 #include "core/frame.h"
 #include "core/progress.h"
 #include "features/half_pair.h"
+#include "features/prefilter.h"
 
 namespace polyrecon {
 
@@ -38,7 +39,7 @@ struct Prepared {
 
 /// Mends, splits where the file holds no halves (features/fission.h), transforms and cleans the features.
 /// variance: noise variance of the beauty's mean, 3 channels (estimate/variance.h).
-Prepared prepare(const Frame& frame, const Preparation& preparation, const Image& variance, bool with_alpha,
-                 Progress& progress);
+Prepared prepare(const Frame& frame, const Preparation& preparation, const Image& variance, const PrefilterParams& cleaning,
+                 bool with_alpha, Progress& progress);
 
 }  // namespace polyrecon

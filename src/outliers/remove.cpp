@@ -18,9 +18,21 @@ struct Replacement {
   std::vector<int> count_above;  ///< Summed-area table of outliers, (width + 1) x (height + 1).
 };
 
+/// True if fewer than three pixels of the half around (x, y) are as bright as it: a cheap test that all but a few fail.
+bool stands_out(const Image& own, int x, int y, int radius) {
+  const Real value = brightness(own, own.index(x, y));
+  const Rect around = intersect(grow({x, y, x + 1, y + 1}, radius), own.bounds());
+  int as_bright = -1;  // itself
+  for (int v = around.y0; v < around.y1; ++v)
+    for (int u = around.x0; u < around.x1; ++u)
+      if (brightness(own, own.index(u, v)) >= value && ++as_bright == 3) return false;
+  return true;
+}
+
 /// Index of the pixel of median brightness around (x, y) if the pixel of half h is an outlier, else -1.
 std::ptrdiff_t replacement_of(const HalfPair& pair, std::size_t h, int x, int y, bool independent, const OutlierParams& p) {
   const Image &own = pair.color[h], &other = pair.color[1 - h];
+  if (!stands_out(own, x, y, p.neighbourhood)) return -1;
   const std::size_t center = own.index(x, y);
   const Real value = brightness(own, center);
   const Rect around = intersect(grow({x, y, x + 1, y + 1}, p.neighbourhood), own.bounds());

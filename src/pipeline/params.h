@@ -5,6 +5,7 @@
 
 #include "blend/blend_windows.h"
 #include "blend/select.h"
+#include "features/prefilter.h"
 
 namespace polyrecon {
 
@@ -23,6 +24,7 @@ struct Params {
   std::vector<Real> guided_bandwidths{Real(0.7)};                ///< Later stages, weights from the stage before.
   double order_tolerance = 0.01;  ///< A lower order is taken when its estimated error is within this of the least.
   double coverage = 2;            ///< Sum of weights below which finer centres are added; 0: none.
+  PrefilterParams cleaning;       ///< Of noisy feature passes.
   SelectParams selection;
   bool reconstruct_alpha = false;                 ///< Reconstruct alpha with the beauty's windows instead of keeping it.
   std::size_t max_memory = std::size_t{4} << 30;  ///< Bytes; larger frames are worked in tiles.

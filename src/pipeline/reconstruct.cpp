@@ -150,7 +150,7 @@ Result reconstruct(const Frame& frame, const Params& params, Progress& progress)
   const NoiseVariance noise = timed(report, progress, "noise variance", rows * 2, [&] { return noise_variance(frame, progress); });
   report.variance_source = noise.source;
   Prepared prepared = timed(report, progress, "features", rows / 4, [&] {
-    return prepare(frame, preparation, noise.variance, params.reconstruct_alpha, progress);
+    return prepare(frame, preparation, noise.variance, params.cleaning, params.reconstruct_alpha, progress);
   });
   HalfPair& pair = prepared.pair;
   report.mended_pixels = prepared.mended_pixels;
@@ -179,7 +179,7 @@ Result reconstruct(const Frame& frame, const Params& params, Progress& progress)
   for (std::size_t k = 0; k < frame.aovs.size(); ++k) result.aovs.push_back(channels_of(image, 3 * static_cast<int>(k + 1), 3));
   result.alpha = params.reconstruct_alpha && !frame.alpha.empty() ? channels_of(image, image.channels() - 1, 1) : frame.alpha;
   report.energy_after = energy_of(result.beauty);
-  report.estimated_relative_mse = std::max(result.error.cross_validated, 0.0);
+  report.estimated_relative_mse = result.error.mean_relative_mse;
   return result;
 }
 
