@@ -15,6 +15,7 @@
 #include <filesystem>
 #include <limits>
 #include <map>
+#include <optional>
 #include <set>
 #include <system_error>
 
@@ -153,7 +154,7 @@ struct ChannelSums {
 
 class Merger {
  public:
-  explicit Merger(std::vector<Render> renders) : renders_(std::move(renders)) {
+  Merger(std::vector<Render> renders, double samples) : renders_(std::move(renders)), samples_(samples) {
     choose_window();
     for (std::size_t l = 0; l < first().layers.size(); ++l) sort_layer(l);
     find_weights();
@@ -206,7 +207,7 @@ class Merger {
       report_.notes.push_back(fmt::format("{} samples that are not finite were left out of the means", left_out_));
     if (!merged_.empty() && !any_spread_)
       report_.notes.emplace_back("the renders are equal in every pixel: were they made with the same seed or offset?");
-    const double pixels = static_cast<double>(window_.area());
+    const auto pixels = static_cast<double>(window_.area());
     report_.samples = counted_.empty() ? 0 : count_sum_ / pixels / static_cast<double>(counted_.size());
     return report_;
   }
@@ -250,6 +251,10 @@ class Merger {
     }
   }
 
+  std::optional<double> samples_of(const Render& render, const std::string& view_layer) const {
+    return samples_ > 0 ? samples_ : samples_in_metadata(render.file, view_layer);
+  }
+
   /// The sample-count layer of a view layer, -1 without one.
   int count_layer(const std::string& view_layer) const {
     int best = -1;
@@ -263,6 +268,10 @@ class Merger {
     return best;
   }
 
+  bool is_blender(const std::string& view_layer) const {
+    return find_attribute(first().file.parts.front(), fmt::format("cycles.{}.samples", view_layer)) != nullptr;
+  }
+
   void find_weights() {
     std::set<std::string> view_layers;
     for (const std::size_t l : merged_) view_layers.insert(first().layers[l].view_layer);
@@ -272,11 +281,15 @@ class Merger {
       double total = 0;
       bool known = true;
       for (const Render& render : renders_) {
-        const auto samples = samples_in_metadata(render.file, view_layer);
+        const auto samples = samples_of(render, view_layer);
         known = known && samples.has_value();
         total += samples.value_or(0);
       }
       if (known) metadata_samples_[view_layer] = total;
+      if (known && samples_ <= 0 && is_blender(view_layer))
+        report_.notes.push_back(
+            fmt::format("{}: {:g} samples in all by the metadata; subsets of one sequence have fewer, give --samples",
+                        view_layer, total));
       if (known || (layer >= 0 && !fraction))
         counted_.push_back(view_layer);
       else
@@ -293,7 +306,7 @@ class Merger {
       const int l = count_layer(view_layer);
       for (std::size_t k = 0; k < renders_.size(); ++k) {
         const Render& render = renders_[k];
-        const double metadata = samples_in_metadata(render.file, view_layer).value_or(0);
+        const double metadata = samples_of(render, view_layer).value_or(0);
         std::vector<double>& n = weights[k][view_layer];
         n.assign(pixels, metadata);
         if (l < 0) continue;
@@ -450,6 +463,7 @@ class Merger {
   }
 
   std::vector<Render> renders_;
+  double samples_;  ///< Of each render, 0 where the files tell.
   Rect window_;
   std::vector<std::size_t> merged_, kept_;  ///< Indices of layers.
   std::vector<std::string> counted_;        ///< View layers whose sample counts are known.
@@ -462,8 +476,8 @@ class Merger {
 
 }  // namespace
 
-MergeResult merge(const std::vector<std::string>& paths, const std::string& target, const ReadLimits& limits) {
-  Merger merger(open_renders(paths, limits));
+MergeResult merge(const std::vector<std::string>& paths, const std::string& target, const MergeOptions& options) {
+  Merger merger(open_renders(paths, options.limits), options.samples);
   write_single_part(
       target, merger.header(), [&](NativeBand& band) { merger.make(band); }, merger.lines_per_band());
   return merger.report();

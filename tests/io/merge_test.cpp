@@ -49,6 +49,10 @@ std::vector<std::string> write_all(const TemporaryFolder& folder, const std::vec
   return paths;
 }
 
+std::string samples_attribute(const std::string& path) {
+  return find_attribute(describe_file(path).parts[0], "cycles.V.samples")->value;
+}
+
 TEST(Merge, MeanVarianceAndHalvesOfEqualRenders) {
   // 1, 2, 6: mean 3; sum of squared deviations 4 + 1 + 9 = 14, variance of the mean 14 / 2 / 3 = 7/3; A = (1 + 6) / 2;
   // B = 2.
@@ -73,13 +77,31 @@ TEST(Merge, MetadataWeighTheRenders) {
   const std::string out = folder / "out.exr";
   const MergeResult result = merge(write_all(folder, {render(1, "4"), render(5, "12")}), out);
   EXPECT_EQ(result.samples, 16);
-  EXPECT_THAT(result.notes, IsEmpty());
+  EXPECT_THAT(result.notes, Contains(HasSubstr("--samples")));
   EXPECT_THAT(stored_floats(out, 0, "V.Combined.R"), Each(4.f));
   EXPECT_THAT(stored_floats(out, 0, "V.Combined Variance.R"), Each(3.f));
   EXPECT_THAT(stored_floats(out, 0, "V.Combined A.R"), Each(1.f));
   EXPECT_THAT(stored_floats(out, 0, "V.Combined B.R"), Each(5.f));
   EXPECT_THAT(stored_floats(out, 0, "V.Sample Count.X"), Each(16.f));
   EXPECT_EQ(find_attribute(describe_file(out).parts[0], "cycles.V.samples")->value, "16");
+}
+
+TEST(Merge, SamplesGivenByHandReplaceTheMetadata) {
+  // Blender 5 writes 16 into each of 4 subsets of 4 samples, and a fraction of 1 of them into every pixel.
+  const TemporaryFolder folder;
+  std::vector<TestPart> renders;
+  for (int k = 0; k < 4; ++k) {
+    renders.push_back(render(k, "16"));
+    renders.back().channels.push_back({"V.Debug Sample Count.X", Imf::FLOAT, constant(1)});
+  }
+  MergeOptions options;
+  options.samples = 4;
+  const std::string out = folder / "out.exr";
+  const MergeResult result = merge(write_all(folder, renders), out, options);
+  EXPECT_EQ(result.samples, 16);
+  EXPECT_THAT(result.notes, IsEmpty());
+  EXPECT_THAT(stored_floats(out, 0, "V.Sample Count.X"), Each(16.f));
+  EXPECT_EQ(samples_attribute(out), "16");
 }
 
 TEST(Merge, SampleCountPassesWeighEveryPixel) {
