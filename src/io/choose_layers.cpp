@@ -61,7 +61,7 @@ void open_files(LayerChoice& choice, const std::string& path, const ReadOptions&
 /// A layer by its whole name, by its name within the view layer, or a single channel taken out of its layer.
 int find_layer(FrameSource& source, const std::string& name, const std::string& view_layer) {
   auto& layers = source.layers;
-  for (const std::string& candidate : {name, view_layer + "." + name})
+  for (const std::string& candidate : {name, fmt::format("{}.{}", view_layer, name)})
     for (std::size_t l = 0; l < layers.size(); ++l)
       if (layers[l].name == candidate) return static_cast<int>(l);
   for (std::size_t l = 0; l < layers.size(); ++l) {
@@ -188,7 +188,7 @@ PassChoice with_companions(const FrameSource& source, Role role, int mean) {
                                              source.path, fmt::join(names, ", ")));
 }
 
-/// Drops layers whose window does not hold the beauty's.
+/// Drops layers whose window does not hold the beauty's; alpha is written again, so its window has to be the same.
 void drop_misfits(LayerChoice& choice, PassChoice& pass) {
   const FrameSource& source = choice.source;
   const Layer& beauty = source.layers[static_cast<std::size_t>(choice.passes.front().mean)];
@@ -196,7 +196,8 @@ void drop_misfits(LayerChoice& choice, PassChoice& pass) {
   for (int* index : {&pass.variance, &pass.half_a, &pass.half_b, &pass.mean}) {
     if (*index < 0) continue;
     const Layer& layer = source.layers[static_cast<std::size_t>(*index)];
-    if (covers(part_of(source, layer).data_window, window)) continue;
+    const Rect own = part_of(source, layer).data_window;
+    if (pass.role == Role::Alpha ? own == window : covers(own, window)) continue;
     choice.notes.push_back(fmt::format("{} is left out: its data window does not hold the beauty's", layer.name));
     *index = -1;
   }
@@ -214,9 +215,9 @@ void choose_aovs(LayerChoice& choice, const ReadOptions& options) {
     const PartInfo& part = part_of(source, layer);
     if (!part.readable() || (layer.channels.size() != 3 && layer.channels.size() != 1))
       throw Error(ExitCode::BadInput, fmt::format("{}: layer {} is no colour layer", source.path, layer.name));
-    if (!covers(part.data_window, window))
+    if (!(part.data_window == window))
       throw Error(ExitCode::BadInput,
-                  fmt::format("{}: the data window of layer {} does not hold the beauty's", source.path, layer.name));
+                  fmt::format("{}: the data window of layer {} is not the beauty's", source.path, layer.name));
     choice.passes.push_back(with_companions(source, Role::Color, index));
   }
 }

@@ -132,6 +132,7 @@ Image read_channels(const FileInfo& file, int part, const std::vector<std::strin
                             channels.size(), window.width(), window.height(), limits.max_bytes >> 20));
   Image image(window.width(), window.height(), static_cast<int>(channels.size()));
   std::vector<Real*> planes;
+  planes.reserve(channels.size());
   for (int c = 0; c < image.channels(); ++c) planes.push_back(image.plane(c));
   read_planes(file, part, channels, planes);
   return image;

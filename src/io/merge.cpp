@@ -207,7 +207,7 @@ class Merger {
       report_.notes.push_back(fmt::format("{} samples that are not finite were left out of the means", left_out_));
     if (!merged_.empty() && !any_spread_)
       report_.notes.emplace_back("the renders are equal in every pixel: were they made with the same seed or offset?");
-    const double pixels = static_cast<double>(window_.area());
+    const auto pixels = static_cast<double>(window_.area());
     report_.samples = counted_.empty() ? 0 : count_sum_ / pixels / static_cast<double>(counted_.size());
     return report_;
   }

@@ -22,6 +22,7 @@
 #include <limits>
 #include <map>
 #include <stdexcept>
+#include <utility>
 
 #include "core/error.h"
 #include "io/atomic_file.h"
@@ -166,6 +167,21 @@ std::string part_title(const Imf::Header& header, int part) {
   return header.hasName() ? fmt::format("part {} \"{}\"", part, header.name()) : fmt::format("part {}", part);
 }
 
+/// The input is read again while it is written: it must still be the file that was read before.
+void check_unchanged(const FrameSource& source) {
+  const FileInfo now = describe_file(source.path);
+  const FileInfo& then = source.files.front();
+  bool same = now.bytes == then.bytes && now.parts.size() == then.parts.size();
+  for (std::size_t p = 0; same && p < now.parts.size(); ++p) {
+    const auto &a = now.parts[p].channels, &b = then.parts[p].channels;
+    same = now.parts[p].data_window == then.parts[p].data_window &&
+           std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                      [](const ChannelInfo& x, const ChannelInfo& y) { return x.name == y.name && x.type == y.type; });
+  }
+  if (!same)
+    throw Error(ExitCode::BadInput, fmt::format("{}: was changed while it was worked on; run again", source.path));
+}
+
 /// One rewriting of a file; write() and verify() are the two halves of an atomic write.
 class Rewrite {
  public:
@@ -287,13 +303,12 @@ std::vector<std::string> write_as_exr(const FrameSource& source, const std::vect
   for (const Replacement& replacement : replacements) {
     const Layer& layer = layer_named(source, replacement.layer);
     const auto names = channels_to_replace(layer, replacement);
-    for (std::size_t c = 0; c < names.size(); ++c)
-      channels.push_back({names[c], Image(replacement.image.width(), replacement.image.height(), 1)});
+    const bool mean = names.size() == 1 && replacement.image.channels() == 3;
     for (std::size_t c = 0; c < names.size(); ++c) {
-      const NewChannel from{
-          &replacement.image, static_cast<int>(c), names.size() == 1 && replacement.image.channels() == 3, {}};
-      Image& to = channels[channels.size() - names.size() + c].image;
+      const NewChannel from{&replacement.image, static_cast<int>(c), mean, {}};
+      Image to(replacement.image.width(), replacement.image.height(), 1);
       for (std::size_t i = 0; i < to.pixels(); ++i) to.plane(0)[i] = from.at(i);
+      channels.push_back({names[c], std::move(to)});
     }
   }
   MapAttributes attributes;
@@ -337,6 +352,7 @@ void fill_map_band(const std::vector<MapChannel>& channels, const Rect& data_win
 std::vector<std::string> write_result(const FrameSource& source, const std::vector<Replacement>& replacements,
                                       const std::string& target, const WriteOptions& options) {
   if (source.files.front().format != "openexr") return write_as_exr(source, replacements, target, options);
+  check_unchanged(source);
   Rewrite rewrite(source, replacements, options);
   write_atomically(
       target, [&](const std::string& path) { rewrite.write(path); },

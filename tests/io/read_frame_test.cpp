@@ -86,7 +86,7 @@ TEST(ReadFrame, FillsEveryRoleAndCompanionOfASinglePartFile) {
   EXPECT_TRUE(frame.prior.mean.empty());
   EXPECT_EQ(read.source.alpha_layer, "V.Combined");
   EXPECT_THAT(read.notes, IsEmpty());
-  EXPECT_THAT(read.source.chosen, SizeIs(12 - 0));
+  EXPECT_THAT(read.source.chosen, SizeIs(12));
 }
 
 TEST(ReadFrame, OnePartForEachPassAndAPrior) {
@@ -343,6 +343,9 @@ TEST(ReadFrame, PartsOfOtherWindowsAreCutOrLeftOut) {
   ASSERT_THAT(read.frame.features, SizeIs(1));
   EXPECT_TRUE(holds(read.frame.features[0].pass.mean, 0, parts[0].window, 10));
   EXPECT_THAT(read.notes, Contains(HasSubstr("normal")));
+  ReadOptions options;
+  options.aovs = {"albedo"};  // it could be read, but not be written back
+  EXPECT_EQ(error_of([&] { read_frame(folder / "a.exr", options); }).code(), ExitCode::BadInput);
 }
 
 TEST(ReadFrame, NeedsMemoryWithinTheLimit) {

@@ -329,6 +329,20 @@ TEST(WriteResult, ADamagedPartIsNotCopiedInSilence) {
   EXPECT_EQ(folder.entries(), 1u);
 }
 
+TEST(WriteResult, AnInputThatChangedMeanwhileIsNoticed) {
+  const TemporaryFolder folder;
+  TestPart part = render();
+  const std::string path = write_exr(folder / "in.exr", {part});
+  const ReadResult read = read_frame(path);
+  part.channels.erase(part.channels.begin());
+  write_exr(path, {part});
+  const Error error = error_of([&] {
+    write_result(read.source, {{"V.Combined", filled(part.window, 3, 7)}}, folder / "out.exr");
+  });
+  EXPECT_EQ(error.code(), ExitCode::BadInput);
+  EXPECT_THAT(error.what(), HasSubstr("changed"));
+}
+
 TEST(WriteResult, OutputMayBeTheInput) {
   const TemporaryFolder folder;
   const TestPart part = render();
