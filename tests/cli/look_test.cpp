@@ -135,9 +135,9 @@ TEST_F(Compare, RefusesWhatCannotBeCompared) {
   EXPECT_EQ(run({"compare", "depth.exr", "a.exr"}).code, 4);
 }
 
-class InspectCommand : public ProgramTest {};
+class Inspect : public ProgramTest {};
 
-TEST_F(InspectCommand, TellsTheRoleOfEachLayer) {
+TEST_F(Inspect, TellsTheRoleOfEachLayer) {
   write_render(path("in.exr"));
   const Outcome text = run({"inspect", "in.exr"});
   ASSERT_EQ(text.code, 0) << text.err;
@@ -156,9 +156,9 @@ TEST_F(InspectCommand, TellsTheRoleOfEachLayer) {
   EXPECT_LT(found["noise_level"], 0.5);
 }
 
-class MergeCommand : public ProgramTest {};
+class Merge : public ProgramTest {};
 
-TEST_F(MergeCommand, JoinsRenders) {
+TEST_F(Merge, JoinsRenders) {
   for (int k = 0; k < 4; ++k)
     write_exr(path("part" + std::to_string(k) + ".exr"), 6, 4, rgb, [&](int x, int, int) { return x + 0.1 * k; });
   const Outcome o = run({"merge", "part0.exr", "part1.exr", "part2.exr", "part3.exr", "-o", "merged.exr"});
