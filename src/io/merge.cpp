@@ -152,6 +152,17 @@ struct ChannelSums {
   explicit ChannelSums(std::size_t pixels) : all(pixels), half_a(pixels), half_b(pixels) {}
 };
 
+/// Attributes of all parts, the first part's before the others', but those that say how a part is stored.
+void copy_metadata(const Imf::MultiPartInputFile& input, Imf::Header& header) {
+  static const std::set<std::string> storage{"name",       "type",       "view",          "channels",
+                                             "chunkCount", "tiles",      "version",       "compression",
+                                             "lineOrder",  "dataWindow", "displayWindow", "maxSamplesPerPixel"};
+  std::set<std::string> copied = storage;
+  for (int p = 0; p < input.parts(); ++p)
+    for (auto a = input.header(p).begin(); a != input.header(p).end(); ++a)
+      if (copied.insert(a.name()).second) header.insert(a.name(), a.attribute());
+}
+
 class Merger {
  public:
   Merger(std::vector<Render> renders, double samples) : renders_(std::move(renders)), samples_(samples) {
@@ -163,16 +174,10 @@ class Merger {
 
   Imf::Header header() const {
     const Imf::MultiPartInputFile input(first().file.path.c_str(), 0, false);
-    Imf::Header header = input.header(0);
-    for (int p = 1; p < input.parts(); ++p)
-      for (auto a = input.header(p).begin(); a != input.header(p).end(); ++a)
-        if (header.find(a.name()) == header.end()) header.insert(a.name(), a.attribute());
-    for (const char* name : {"name", "view", "chunkCount", "tiles", "version", "maxSamplesPerPixel"})
-      if (header.find(name) != header.end()) header.erase(name);
+    Imf::Header header(input.header(0).displayWindow(), {{window_.x0, window_.y0}, {window_.x1 - 1, window_.y1 - 1}});
     header.setType(Imf::SCANLINEIMAGE);
-    header.dataWindow() = {{window_.x0, window_.y0}, {window_.x1 - 1, window_.y1 - 1}};
     header.compression() = Imf::ZIP_COMPRESSION;
-    header.lineOrder() = Imf::INCREASING_Y;
+    copy_metadata(input, header);
     header.channels() = output_channels();
     if (const auto views = stereo_views(); !views.empty()) Imf::addMultiView(header, views);
     for (const auto& [view_layer, samples] : metadata_samples_) {

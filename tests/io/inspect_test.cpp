@@ -30,7 +30,7 @@ const LayerStatistics& of(const Inspection& inspection, const std::string& layer
   return *found;
 }
 
-TEST(Inspect, CountsWhatIsWrongWithALayer) {
+TEST(InspectFile, CountsWhatIsWrongWithALayer) {
   const TemporaryFolder folder;
   TestPart part;  // 8 x 6
   part.channels = flat_layer("V.Combined", "RGB", 1);
@@ -54,7 +54,7 @@ TEST(Inspect, CountsWhatIsWrongWithALayer) {
               ElementsAre("normal", "albedo", "depth", "visibility", "sample-count", "variance", "half buffers"));
 }
 
-TEST(Inspect, NoiseLevelFromVarianceOrHalves) {
+TEST(InspectFile, NoiseLevelFromVarianceOrHalves) {
   // 0.5 / (0.3^2 + 0.01) = 5. Halves 1 and 3 alone: mean 0.3 stays, (2^2 / 4) / 0.1 = 10.
   const TemporaryFolder folder;
   TestPart part;
@@ -72,7 +72,7 @@ TEST(Inspect, NoiseLevelFromVarianceOrHalves) {
   EXPECT_THAT(with_halves.missing, Not(Contains("half buffers")));
 }
 
-TEST(Inspect, AFileWithoutABeautyIsDescribedToo) {
+TEST(InspectFile, AFileWithoutABeautyIsDescribedToo) {
   const TemporaryFolder folder;
   TestPart part;
   part.channels = layer("V.Something", "XYZ");

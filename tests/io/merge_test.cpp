@@ -53,7 +53,7 @@ std::string samples_attribute(const std::string& path) {
   return find_attribute(describe_file(path).parts[0], "cycles.V.samples")->value;
 }
 
-TEST(Merge, MeanVarianceAndHalvesOfEqualRenders) {
+TEST(MergeRenders, MeanVarianceAndHalvesOfEqualRenders) {
   // 1, 2, 6: mean 3; sum of squared deviations 4 + 1 + 9 = 14, variance of the mean 14 / 2 / 3 = 7/3; A = (1 + 6) / 2;
   // B = 2.
   const TemporaryFolder folder;
@@ -71,7 +71,7 @@ TEST(Merge, MeanVarianceAndHalvesOfEqualRenders) {
   EXPECT_THAT(stored_floats(out, 0, "V.Denoising Depth Variance.Z"), Each(::testing::FloatEq(700.f / 3.f)));
 }
 
-TEST(Merge, MetadataWeighTheRenders) {
+TEST(MergeRenders, MetadataWeighTheRenders) {
   // 4 samples of mean 1, 12 of mean 5: (4 + 60) / 16 = 4; (4 * 9 + 12 * 1) / ((2 - 1) * 16) = 3.
   const TemporaryFolder folder;
   const std::string out = folder / "out.exr";
@@ -86,7 +86,7 @@ TEST(Merge, MetadataWeighTheRenders) {
   EXPECT_EQ(find_attribute(describe_file(out).parts[0], "cycles.V.samples")->value, "16");
 }
 
-TEST(Merge, SamplesGivenByHandReplaceTheMetadata) {
+TEST(MergeRenders, SamplesGivenByHandReplaceTheMetadata) {
   // Blender 5 writes 16 into each of 4 subsets of 4 samples, and a fraction of 1 of them into every pixel.
   const TemporaryFolder folder;
   std::vector<TestPart> renders;
@@ -104,7 +104,7 @@ TEST(Merge, SamplesGivenByHandReplaceTheMetadata) {
   EXPECT_EQ(samples_attribute(out), "16");
 }
 
-TEST(Merge, SampleCountPassesWeighEveryPixel) {
+TEST(MergeRenders, SampleCountPassesWeighEveryPixel) {
   // Fractions of 8: pixel x = 0 has 8 and 0 samples, the others 4 and 8: (4 * 1 + 8 * 4) / 12 = 3, (4 * 4 + 8 * 1) / 12
   // = 2.
   const TemporaryFolder folder;
@@ -129,7 +129,7 @@ TEST(Merge, SampleCountPassesWeighEveryPixel) {
   EXPECT_EQ(read.frame.sample_count.at(1, 0, 0), 12);
 }
 
-TEST(Merge, SamplesThatAreNotFiniteAreLeftOut) {
+TEST(MergeRenders, SamplesThatAreNotFiniteAreLeftOut) {
   const TemporaryFolder folder;
   TestPart bad = render(2);
   bad.channels[0].samples = [](int x, int y) {
@@ -141,7 +141,7 @@ TEST(Merge, SamplesThatAreNotFiniteAreLeftOut) {
   EXPECT_THAT(stored_floats(out, 0, channel), Each(2.f));
 }
 
-TEST(Merge, OtherPassesComeFromTheFirstFileBitForBit) {
+TEST(MergeRenders, OtherPassesComeFromTheFirstFileBitForBit) {
   const TemporaryFolder folder;
   std::vector<TestPart> renders;
   for (int k = 0; k < 2; ++k) {
@@ -170,7 +170,7 @@ TEST(Merge, OtherPassesComeFromTheFirstFileBitForBit) {
   EXPECT_EQ(find_attribute(file.parts[0], "owner")->value, "studio");
 }
 
-TEST(Merge, MultiPartFilesBecomeOnePart) {
+TEST(MergeRenders, MultiPartFilesBecomeOnePart) {
   const TemporaryFolder folder;
   std::vector<std::string> paths;
   for (const double value : {1.0, 3.0}) {
@@ -193,7 +193,31 @@ TEST(Merge, MultiPartFilesBecomeOnePart) {
   EXPECT_EQ(stored_bytes(out, 0, "V.CryptoObject00.a"), stored_bytes(paths[0], 2, "V.CryptoObject00.a"));
 }
 
-TEST(Merge, LayersWithoutANameAndTheirCompanionsAreFoundAgain) {
+TEST(MergeRenders, StereoPartsBecomeViewsOfOnePart) {
+  const TemporaryFolder folder;
+  std::vector<std::string> paths;
+  for (const double value : {1.0, 3.0}) {
+    std::vector<TestPart> parts(2);
+    parts[0].channels = flat_layer("", "RGB", value);
+    parts[1].channels = flat_layer("", "RGB", 10 * value);
+    parts[0].view = "left";
+    parts[1].view = "right";
+    for (TestPart& part : parts) part.name = "beauty." + part.view;
+    paths.push_back(write_exr(folder / ("s" + std::to_string(value) + ".exr"), parts));
+  }
+  const std::string out = folder / "out.exr";
+  merge(paths, out);
+  ReadOptions options;
+  for (const auto& [view, scale] : {std::pair{"left", 1.0}, std::pair{"right", 10.0}}) {
+    options.view = view;
+    const Frame frame = read_frame(out, options).frame;
+    EXPECT_EQ(static_cast<double>(frame.beauty.mean.at(0, 0, 0)), 2 * scale);
+    EXPECT_EQ(static_cast<double>(frame.beauty.variance.at(0, 0, 0)), scale * scale);
+    EXPECT_EQ(static_cast<double>(frame.beauty.half_b.at(0, 0, 0)), 3 * scale);
+  }
+}
+
+TEST(MergeRenders, LayersWithoutANameAndTheirCompanionsAreFoundAgain) {
   const TemporaryFolder folder;
   std::vector<TestPart> renders(2);
   for (std::size_t k = 0; k < 2; ++k) {
@@ -212,7 +236,7 @@ TEST(Merge, LayersWithoutANameAndTheirCompanionsAreFoundAgain) {
   for (const Feature& feature : frame.features) EXPECT_EQ(feature.pass.half_a.at(0, 0, 0), 1);
 }
 
-TEST(Merge, AllBandsOfATallFrame) {
+TEST(MergeRenders, AllBandsOfATallFrame) {
   const TemporaryFolder folder;
   std::vector<TestPart> renders(4);
   for (int k = 0; k < 4; ++k) {
@@ -230,7 +254,7 @@ TEST(Merge, AllBandsOfATallFrame) {
     }
 }
 
-TEST(Merge, RefusesOneFileTheSameFileTwiceAndFilesThatDoNotFit) {
+TEST(MergeRenders, RefusesOneFileTheSameFileTwiceAndFilesThatDoNotFit) {
   const TemporaryFolder folder;
   const std::string out = folder / "out.exr", first = write_exr(folder / "a.exr", {render(1)});
   EXPECT_EQ(error_of([&] { merge({first}, out); }).code(), ExitCode::Usage);
@@ -253,7 +277,7 @@ TEST(Merge, RefusesOneFileTheSameFileTwiceAndFilesThatDoNotFit) {
   EXPECT_FALSE(std::filesystem::exists(out));
 }
 
-TEST(Merge, EqualRendersAreSuspicious) {
+TEST(MergeRenders, EqualRendersAreSuspicious) {
   const TemporaryFolder folder;
   const MergeResult result = merge(write_all(folder, {render(2), render(2)}), folder / "out.exr");
   EXPECT_THAT(result.notes, Contains(HasSubstr("same seed")));
