@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <exception>
@@ -16,7 +17,9 @@ namespace {
 using polyrecon::Command;
 using polyrecon::ExitCode;
 
-int fail(ExitCode code, const std::string& message) {
+/// One line, whatever a library put into its message.
+int fail(ExitCode code, std::string message) {
+  std::replace(message.begin(), message.end(), '\n', ' ');
   std::fputs(fmt::format("polyrecon: {}\n", message).c_str(), stderr);
   return static_cast<int>(code);
 }

@@ -17,6 +17,7 @@ namespace {
 struct MergeCommandOptions {
   std::vector<std::string> inputs;
   std::string output;
+  MergeOptions merge;
   bool quiet = false;
 };
 
@@ -24,7 +25,7 @@ void run(const MergeCommandOptions& o) {
   if (o.inputs.size() < 2) throw Error(ExitCode::Usage, "merge needs two renders or more");
   for (const std::string& input : o.inputs) require_readable(input);
   require_outputs(o.inputs, {{"-o", o.output}});
-  const MergeResult result = merge(o.inputs, o.output);
+  const MergeResult result = merge(o.inputs, o.output, o.merge);
   if (o.quiet) return;
   std::string text = fmt::format("{}: {} renders", o.output, result.files);
   if (result.samples > 0) text += fmt::format(", {:g} samples per pixel", result.samples);
@@ -45,11 +46,15 @@ void setup_merge(CLI::App& app, Command& chosen) {
       ->required()
       ->type_name("FILE...");
   sub->add_option("-o,--output", o->output, "EXR to write")->required()->type_name("FILE");
+  sub->add_option("--samples", o->merge.samples,
+                  "Samples per pixel of each render, where the files mislead: subsets by Blender 5 tell the whole's")
+      ->check(CLI::PositiveNumber)
+      ->type_name("N");
   sub->add_flag("-q,--quiet", o->quiet, "Print nothing but errors");
   sub->footer(
       "Examples:\n"
       "  polyrecon merge part*.exr -o merged.exr\n"
-      "  polyrecon merge seed1.exr seed2.exr -o merged.exr");
+      "  polyrecon merge subset*.exr -o merged.exr --samples 2");
   sub->callback([o, &chosen] { chosen = [o] { run(*o); }; });
 }
 
