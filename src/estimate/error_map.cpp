@@ -39,7 +39,8 @@ std::array<double, 2> variances(const Candidate& result) {
     });
   };
   return {sum([&](int x, int y, int c) {
-            const double d = static_cast<double>(result.half[0].at(x, y, c)) - static_cast<double>(result.half[1].at(x, y, c));
+            const double d =
+                static_cast<double>(result.half[0].at(x, y, c)) - static_cast<double>(result.half[1].at(x, y, c));
             return 0.25 * d * d;
           }),
           sum([&](int x, int y, int c) { return static_cast<double>(claimed.at(x, y, c)); })};

@@ -46,7 +46,8 @@ POLYRECON_SIMD void gram_matrix(const Real* x, const Real* weighted, int columns
 POLYRECON_SIMD double weighted_dot(const Real* w, const Real* a, const Real* b, int rows) {
   double sum = 0;
 #pragma omp simd reduction(+ : sum)
-  for (int j = 0; j < rows; ++j) sum += static_cast<double>(w[j]) * static_cast<double>(a[j]) * static_cast<double>(b[j]);
+  for (int j = 0; j < rows; ++j)
+    sum += static_cast<double>(w[j]) * static_cast<double>(a[j]) * static_cast<double>(b[j]);
   return sum;
 }
 
@@ -62,8 +63,8 @@ POLYRECON_SIMD void scale(Real* y, Real factor, int rows) {
   for (int j = 0; j < rows; ++j) y[j] *= factor;
 }
 
-/// Cholesky of the Gram matrix, row by row. Returns in inverse[a] 1/l_aa, or 0 where column a is dropped; in ratio[a] the
-/// squared length that is left of column a, relative to its own.
+/// Cholesky of the Gram matrix, row by row. Returns in inverse[a] 1/l_aa, or 0 where column a is dropped; in ratio[a]
+/// the squared length that is left of column a, relative to its own.
 void nested_cholesky(const Matrix& gram, int columns, Matrix& l, double* inverse, double* ratio) {
   for (int a = 0; a < columns; ++a) {
     double rest = gram[a][a];
@@ -94,9 +95,10 @@ bool orthogonalise_again(NestedFactor& factor, const Window& window, const Real*
 }
 
 /// Nine sums over one column in one pass: w q y, w q g and (w q)^2 v for three channels each.
-POLYRECON_SIMD void beauty_sums(const Real* w, const Real* q, const Real* y, const Real* g, const Real* v, std::size_t stride,
-                                int rows, double* sums) {
-  const Real *y1 = y + stride, *y2 = y1 + stride, *g1 = g + stride, *g2 = g1 + stride, *v1 = v + stride, *v2 = v1 + stride;
+POLYRECON_SIMD void beauty_sums(const Real* w, const Real* q, const Real* y, const Real* g, const Real* v,
+                                std::size_t stride, int rows, double* sums) {
+  const Real *y1 = y + stride, *y2 = y1 + stride, *g1 = g + stride, *g2 = g1 + stride, *v1 = v + stride,
+             *v2 = v1 + stride;
   double a0 = 0, a1 = 0, a2 = 0, b0 = 0, b1 = 0, b2 = 0, c0 = 0, c1 = 0, c2 = 0;
 #pragma omp simd reduction(+ : a0, a1, a2, b0, b1, b2, c0, c1, c2)
   for (int j = 0; j < rows; ++j) {
@@ -137,8 +139,9 @@ void factorise(const Window& window, int columns, const Real* weight, NestedFact
       const Real* xa = window.design.data() + static_cast<std::size_t>(a) * stride;
       std::copy(xa, xa + window.padded, qa);
       for (int b = 0; b < a; ++b)
-        if (l[a][b] != 0) subtract_scaled(qa, factor.q.data() + static_cast<std::size_t>(b) * stride,
-                                          static_cast<Real>(l[a][b]), window.padded);
+        if (l[a][b] != 0)
+          subtract_scaled(qa, factor.q.data() + static_cast<std::size_t>(b) * stride, static_cast<Real>(l[a][b]),
+                          window.padded);
       scale(qa, static_cast<Real>(inverse[a]), window.padded);
       if (ratio[a] < repeat_below) keep = orthogonalise_again(factor, window, weight, a);
     }
@@ -161,8 +164,8 @@ void project_beauty(const NestedFactor& factor, const Window& window, const Real
   for (int a = 0; a < factor.columns; ++a) {
     double sums[9] = {};
     if (factor.kept[static_cast<std::size_t>(a)])
-      beauty_sums(weight, factor.q.data() + static_cast<std::size_t>(a) * stride, window.response.data(), window.guess.data(),
-                  window.noise_variance.data(), stride, window.padded, sums);
+      beauty_sums(weight, factor.q.data() + static_cast<std::size_t>(a) * stride, window.response.data(),
+                  window.guess.data(), window.noise_variance.data(), stride, window.padded, sums);
     for (int c = 0; c < 3; ++c) {
       z[c][a] = sums[c];
       guess_z[c][a] = sums[3 + c];
