@@ -1,9 +1,11 @@
 #!/usr/bin/env bash
 # Installs the Debian packages that the build (and, with --tests, the tests) needs and that are not there yet.
 set -euo pipefail
-packages=(g++ cmake ninja-build pkg-config libopenimageio-dev libopenexr-dev libopencolorio-dev libcli11-dev libtbb-dev
-  libeigen3-dev nlohmann-json3-dev libfmt-dev)
-[ "${1-}" != --tests ] || packages+=(libgtest-dev libgmock-dev libbenchmark-dev openimageio-tools clang-format clang-tidy)
+# libopenimageio-dev's CMake files ask for the programs of openimageio-tools.
+packages=(g++ cmake ninja-build pkg-config libopenimageio-dev openimageio-tools libopenexr-dev libopencolorio-dev
+  libcli11-dev libtbb-dev libeigen3-dev nlohmann-json3-dev libfmt-dev)
+[ "${1-}" != --tests ] || packages+=(libgtest-dev libgmock-dev libbenchmark-dev clang-format clang-tidy
+  python3 python3-numpy python3-openimageio blender)
 missing=()
 for package in "${packages[@]}"; do
   dpkg-query -W -f='${Status}' "$package" 2>/dev/null | grep -q 'ok installed' || missing+=("$package")

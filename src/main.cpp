@@ -1,1 +1,79 @@
-int main() { return 0; }
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <csignal>
+#include <cstdio>
+#include <exception>
+#include <new>
+#include <string>
+
+#include "cli/commands.h"
+#include "cli/progress_output.h"
+#include "core/error.h"
+
+namespace {
+
+using polyrecon::Command;
+using polyrecon::ExitCode;
+
+/// One line, whatever a library put into its message.
+int fail(ExitCode code, std::string message) {
+  std::replace(message.begin(), message.end(), '\n', ' ');
+  std::fputs(fmt::format("polyrecon: {}\n", message).c_str(), stderr);
+  return static_cast<int>(code);
+}
+
+/// Parses the command line into the work to do. Returns nothing to do after --help or --version, with exit code 0.
+Command parse(int argc, char** argv) {
+  CLI::App app("Rebuilds clean images from noisy Monte Carlo renders by adaptive polynomials.", "polyrecon");
+  Command chosen;
+  app.set_version_flag("--version", "polyrecon " POLYRECON_VERSION);
+  app.require_subcommand(1);
+  app.fallthrough(false);
+  app.footer(
+      "Examples:\n"
+      "  polyrecon denoise -i render.exr -o clean.exr\n"
+      "  polyrecon inspect render.exr\n"
+      "  polyrecon merge part*.exr -o merged.exr\n"
+      "Each command has a --help of its own.");
+  polyrecon::setup_denoise(app, chosen);
+  polyrecon::setup_inspect(app, chosen);
+  polyrecon::setup_merge(app, chosen);
+  polyrecon::setup_samplemap(app, chosen);
+  polyrecon::setup_preview(app, chosen);
+  polyrecon::setup_compare(app, chosen);
+  const auto known = app.get_subcommands([&](const CLI::App* sub) { return argc > 1 && sub->get_name() == argv[1]; });
+  if (argc > 1 && argv[1][0] != '-' && known.empty())
+    throw polyrecon::Error(ExitCode::Usage, fmt::format("no command '{}' (polyrecon --help lists them)", argv[1]));
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    if (e.get_exit_code() != 0)
+      throw polyrecon::Error(ExitCode::Usage, std::string(e.what()) + " (polyrecon COMMAND --help shows the options)");
+    app.exit(e);
+  }
+  return chosen;
+}
+
+ExitCode code_of(const polyrecon::Error& error) {
+  return error.code() == ExitCode::Interrupted && polyrecon::caught_signal() == SIGTERM ? ExitCode::Terminated
+                                                                                        : error.code();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    const Command command = parse(argc, argv);
+    polyrecon::catch_signals();
+    if (command) command();
+    return static_cast<int>(ExitCode::Done);
+  } catch (const polyrecon::Error& e) {
+    return fail(code_of(e), e.what());
+  } catch (const std::bad_alloc&) {
+    return fail(ExitCode::OutOfMemory, "not enough memory: lower --max-memory, or give fewer passes");
+  } catch (const std::exception& e) {
+    return fail(ExitCode::Internal, std::string("internal error: ") + e.what());
+  }
+}

@@ -1,8 +1,28 @@
 #!/usr/bin/env bash
-# Installs what is missing, builds, and runs every test; the last lines are ctest's own.
+# Installs what is missing, builds, checks format and style, and runs every test; the last lines are ctest's own.
 set -euo pipefail
 cd "$(dirname "$0")/.."
+
+echo "== packages"
 samples/install_dependencies.sh --tests
+
+echo "== clang-format"
+find src tests -name '*.cpp' -o -name '*.h' | xargs clang-format --dry-run -Werror
+
+echo "== build, warnings are errors"
 cmake --preset dev
 cmake --build --preset dev
+
+echo "== clang-tidy"
+run-clang-tidy -p build/dev -quiet -j "$(nproc)" "^$PWD/(src|tests)/" >build/dev/clang-tidy.log 2>&1 || {
+  grep -E -A3 '(error|warning):' build/dev/clang-tidy.log
+  exit 1
+}
+
+echo "== unit tests under AddressSanitizer and UndefinedBehaviorSanitizer"
+cmake --preset asan
+cmake --build --preset asan --target unit_tests
+ctest --preset asan -L unit
+
+echo "== all tests"
 ctest --preset dev

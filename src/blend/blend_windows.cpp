@@ -23,9 +23,9 @@ class BlendSums {
 
   std::size_t channels() const { return channels_; }
   double* at(int x, int y) {
-    return sums_.data() +
-           (static_cast<std::size_t>(y - area_.y0) * static_cast<std::size_t>(area_.width()) + static_cast<std::size_t>(x - area_.x0)) *
-               channels_;
+    return sums_.data() + (static_cast<std::size_t>(y - area_.y0) * static_cast<std::size_t>(area_.width()) +
+                           static_cast<std::size_t>(x - area_.x0)) *
+                              channels_;
   }
   double weight(int x, int y) { return at(x, y)[channels_ - 1]; }
   const Rect& area() const { return area_; }
@@ -47,14 +47,16 @@ struct BlendPlane {
         width(w),
         sums(static_cast<std::size_t>(w) * static_cast<std::size_t>(h) * channels, Real(0)) {}
   Real* at(int x, int y) {
-    return sums.data() + (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)) * channels;
+    return sums.data() +
+           (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)) * channels;
   }
   void add(BlendSums& block) {
     const Rect& r = block.area();
     for (int y = r.y0; y < r.y1; ++y) {
       Real* out = at(r.x0, y);
       const double* in = block.at(r.x0, y);
-      for (std::size_t k = 0; k < static_cast<std::size_t>(r.width()) * channels; ++k) out[k] += static_cast<Real>(in[k]);
+      for (std::size_t k = 0; k < static_cast<std::size_t>(r.width()) * channels; ++k)
+        out[k] += static_cast<Real>(in[k]);
     }
   }
 };
@@ -97,8 +99,8 @@ std::array<ColumnStatistics, 3> column_statistics(const Scratch& s, bool first_s
   for (std::size_t c = 0; c < 3; ++c) {
     const std::size_t offset = c * static_cast<std::size_t>(s.window.stride);
     const Real* guess = (first_stage ? s.window.response : s.window.guess).data() + offset;
-    energies(s.weight.data(), guess, s.window.noise_variance.data() + offset, s.window.padded, &channels[c].guess_energy,
-             &channels[c].noise_energy);
+    energies(s.weight.data(), guess, s.window.noise_variance.data() + offset, s.window.padded,
+             &channels[c].guess_energy, &channels[c].noise_energy);
   }
   return channels;
 }
@@ -125,7 +127,8 @@ bool all_finite(const Scratch& s, std::size_t responses) {
   const auto stride = static_cast<std::size_t>(s.window.stride);
   for (std::size_t c = 0; c < responses; ++c) {
     double sum = 0;
-    for (std::size_t j = 0; j < static_cast<std::size_t>(s.window.count); ++j) sum += static_cast<double>(s.fit[c * stride + j]);
+    for (std::size_t j = 0; j < static_cast<std::size_t>(s.window.count); ++j)
+      sum += static_cast<double>(s.fit[c * stride + j]);
     if (!std::isfinite(sum)) return false;
   }
   return true;
@@ -184,7 +187,8 @@ void work_block(Blending& b, const Rect& block, Scratch& s, std::vector<BlendSum
   s.window.reserve(p.radius, b.layout.columns(), b.source.response->channels());
   s.weight.resize(static_cast<std::size_t>(s.window.stride));
   s.fit.resize(static_cast<std::size_t>(s.window.stride) * b.responses());
-  s.distances.compute(*b.source.guide, *b.source.guide_variance, block, s.center_x, s.center_y, p.radius, p.patch_radius);
+  s.distances.compute(*b.source.guide, *b.source.guide_variance, block, s.center_x, s.center_y, p.radius,
+                      p.patch_radius);
   const Real widest = *std::max_element(p.bandwidths.begin(), p.bandwidths.end());
   const WindowSource source{b.source.response, b.source.noise_variance, b.source.features, b.source.guess};
   for (std::size_t k = 0; k < s.center_x.size(); ++k) {
@@ -195,8 +199,8 @@ void work_block(Blending& b, const Rect& block, Scratch& s, std::vector<BlendSum
   }
 }
 
-/// Works all centres for which is_center holds. Blocks of one of the four phases never touch the same pixel, and the phases
-/// follow each other: every pixel is summed in one order, whatever the threads do.
+/// Works all centres for which is_center holds. Blocks of one of the four phases never touch the same pixel, and the
+/// phases follow each other: every pixel is summed in one order, whatever the threads do.
 template <typename IsCenter>
 void sweep(Blending& b, Progress& progress, const IsCenter& is_center) {
   const Rect bounds = b.source.response->bounds();
@@ -216,8 +220,8 @@ void sweep(Blending& b, Progress& progress, const IsCenter& is_center) {
             scratch.center_y.push_back(y);
           }
       if (scratch.center_x.empty()) return;
-      std::vector<BlendSums> sums(b.planes.size(), BlendSums(intersect(bounds, grow(mine[i], b.params.radius)),
-                                                             b.source.response->channels()));
+      std::vector<BlendSums> sums(
+          b.planes.size(), BlendSums(intersect(bounds, grow(mine[i], b.params.radius)), b.source.response->channels()));
       work_block(b, mine[i], scratch, sums);
       for (std::size_t h = 0; h < sums.size(); ++h) b.planes[h].add(sums[h]);
     });
@@ -227,7 +231,8 @@ void sweep(Blending& b, Progress& progress, const IsCenter& is_center) {
 BlendedFit normalise(BlendPlane& plane, const Image& response, const std::vector<unsigned char>& active,
                      FitCounters& counters) {
   const int width = response.width(), height = response.height(), channels = response.channels();
-  BlendedFit out{Image(width, height, channels), Image(width, height, 3), Image(width, height, 3), Image(width, height, 1)};
+  BlendedFit out{Image(width, height, channels), Image(width, height, 3), Image(width, height, 3),
+                 Image(width, height, 1)};
   Progress silent;
   parallel_for(static_cast<std::size_t>(height), silent, [&](std::size_t row) {
     const int y = static_cast<int>(row);
@@ -279,8 +284,9 @@ std::vector<unsigned char> reached(const std::vector<unsigned char>& active, int
 }  // namespace
 
 int fit_halo(const FitParams& params) {
-  // One radius from a pixel to the centres that cover it and one to the pixels of their windows. A centre of a finer lattice is
-  // there or not by the centres that cover it, those by the ones of the lattice before: one radius for each lattice.
+  // One radius from a pixel to the centres that cover it and one to the pixels of their windows. A centre of a finer
+  // lattice is there or not by the centres that cover it, those by the ones of the lattice before: one radius for each
+  // lattice.
   int lattices = 1;
   for (int step = params.stride / 2; step >= 1; step /= 2) ++lattices;
   const int radii = std::max(lattices, 2);
@@ -291,12 +297,13 @@ std::vector<BlendedFit> fit_and_blend(const FitSource& source, const std::vector
                                       const FitParams& params, FitCounters& counters, Progress& progress) {
   const int width = source.response->width(), height = source.response->height();
   Blending b{source, params, BasisLayout(source.features->channels(), params.max_order), counters, {}};
-  for (std::size_t h = 0; h < params.bandwidths.size(); ++h) b.planes.emplace_back(width, height, source.response->channels());
+  for (std::size_t h = 0; h < params.bandwidths.size(); ++h)
+    b.planes.emplace_back(width, height, source.response->channels());
   const auto needed = reached(active, width, height, params.radius);
   const std::size_t widest = static_cast<std::size_t>(
       std::max_element(params.bandwidths.begin(), params.bandwidths.end()) - params.bandwidths.begin());
-  // A coarse lattice of centres first; then, on ever finer ones, pixels that only unlike centres cover so far: they would get
-  // a bad blend, and become centres themselves.
+  // A coarse lattice of centres first; then, on ever finer ones, pixels that only unlike centres cover so far: they
+  // would get a bad blend, and become centres themselves.
   std::vector<unsigned char> is_center(active.size(), 0), done(active.size(), 0);
   for (int step = params.stride; step >= 1; step /= 2) {
     const BlendPlane& plane = b.planes[widest];

@@ -12,13 +12,13 @@
 namespace polyrecon {
 
 struct FitParams {
-  int radius = 9;                    ///< Of the window Omega_c, pixels.
-  int stride = 2;                    ///< Distance of the first lattice of window centres, pixels.
-  int patch_radius = 1;              ///< Of the patches whose distance weighs the window.
-  std::vector<Real> bandwidths;      ///< h of the kernel K_h; one blended image each.
-  int max_order = 2;                 ///< Highest Taylor order offered, 0..4.
-  double order_tolerance = 0;        ///< See select_order.
-  double coverage = 1;               ///< Where the kernel weights sum to less, centres of finer lattices are added.
+  int radius = 9;                ///< Of the window Omega_c, pixels.
+  int stride = 2;                ///< Distance of the first lattice of window centres, pixels.
+  int patch_radius = 1;          ///< Of the patches whose distance weighs the window.
+  std::vector<Real> bandwidths;  ///< h of the kernel K_h; one blended image each.
+  int max_order = 2;             ///< Highest Taylor order offered, 0..4.
+  double order_tolerance = 0;    ///< See select_order.
+  double coverage = 1;           ///< Where the kernel weights sum to less, centres of finer lattices are added.
 };
 
 /// Everything one blended image is made from; all images of one size.
@@ -26,7 +26,7 @@ struct FitSource {
   const Image* response = nullptr;        ///< Beauty and AOVs of the half that is fitted.
   const Image* noise_variance = nullptr;  ///< Of its beauty, 3 channels.
   const Image* features = nullptr;        ///< Of the other half.
-  const Image* guide = nullptr;           ///< Colours of the other half (or of the stage before), 3 channels: the weights.
+  const Image* guide = nullptr;  ///< Colours of the other half (or of the stage before), 3 channels: the weights.
   const Image* guide_variance = nullptr;  ///< Noise variance of guide.
   const Image* guess = nullptr;           ///< mu as the stage before saw it, 3 channels; null in stage 1.
 };
@@ -45,18 +45,18 @@ struct FitCounters {
   std::array<std::atomic<std::size_t>, BasisLayout::max_models> per_model{};
 };
 
-/// Centres are placed and pixels summed in blocks aligned to this many pixels; a crop that begins at a multiple of twice
-/// it is worked with the same bits as the whole.
+/// Centres are placed and pixels summed in blocks aligned to this many pixels; a crop that begins at a multiple of
+/// twice it is worked with the same bits as the whole.
 constexpr int block_size = 64;
 
-/// Pixels around a region that fit_and_blend looks at: window + the windows that reach a pixel + patch, and more where lattices are
-/// many, since the centres of each depend on the ones before.
+/// Pixels around a region that fit_and_blend looks at: window + the windows that reach a pixel + patch, and more where
+/// lattices are many, since the centres of each depend on the ones before.
 int fit_halo(const FitParams& params);
 
-/// Fits a window (2) around every stride-th pixel, chooses its order (7) and blends the windows (3), for every bandwidth;
-/// then halves the stride and adds the centres that coverage calls for, down to single pixels.
-/// `active` (one byte a pixel) tells which pixels matter; windows that cover none of them are left out, pixels that no finite
-/// fit covers keep the response.
+/// Fits a window (2) around every stride-th pixel, chooses its order (7) and blends the windows (3), for every
+/// bandwidth; then halves the stride and adds the centres that coverage calls for, down to single pixels. `active` (one
+/// byte a pixel) tells which pixels matter; windows that cover none of them are left out, pixels that no finite fit
+/// covers keep the response.
 std::vector<BlendedFit> fit_and_blend(const FitSource& source, const std::vector<unsigned char>& active,
                                       const FitParams& params, FitCounters& counters, Progress& progress);
 

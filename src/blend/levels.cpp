@@ -36,11 +36,13 @@ Candidate add_coarse(const HalfPair& pair, Candidate fine, const Candidate& coar
   std::vector<Candidate> candidates(3);
   Image brightness(pair.width(), pair.height(), 3);
   for (std::size_t h = 0; h < 2; ++h) {
-    const Image remainder = double_resolution(plus(coarse.half[h], -1, half_resolution(fine.half[h])), pair.width(), pair.height());
+    const Image remainder =
+        double_resolution(plus(coarse.half[h], -1, half_resolution(fine.half[h])), pair.width(), pair.height());
     candidates[1].half[h] = plus(fine.half[h], Real(0.5), remainder);
     candidates[2].half[h] = plus(fine.half[h], 1, remainder);
     for (int c = 0; c < 3; ++c)
-      for (std::size_t i = 0; i < brightness.pixels(); ++i) brightness.plane(c)[i] += Real(0.5) * fine.half[h].plane(c)[i];
+      for (std::size_t i = 0; i < brightness.pixels(); ++i)
+        brightness.plane(c)[i] += Real(0.5) * fine.half[h].plane(c)[i];
     candidates[0].half[h] = std::move(fine.half[h]);
   }
   Candidate out = select(pair, brightness, candidates, params);

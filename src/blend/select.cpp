@@ -17,7 +17,8 @@ void for_rows(int height, const std::function<void(int)>& body) {
   parallel_for(static_cast<std::size_t>(height), silent, [&](std::size_t y) { body(static_cast<int>(y)); });
 }
 
-/// 1 / (brightness^2 + epsilon), the square smoothed so that one dark pixel does not carry the risk of its neighbourhood.
+/// 1 / (brightness^2 + epsilon), the square smoothed so that one dark pixel does not carry the risk of its
+/// neighbourhood.
 Image inverse_brightness(const Image& brightness, double epsilon) {
   Image out = brightness;
   for_rows(out.height(), [&](int y) {
@@ -74,7 +75,8 @@ Image share(const std::vector<Image>& raw, const std::vector<Image>& risk, const
       }
       const double mean = moments.at(x, y, 0), square = moments.at(x, y, 1);
       const double error = std::sqrt(std::max(0.0, square - mean * mean) / independent);
-      const double above = static_cast<double>(risk[k].at(x, y, 0)) - static_cast<double>(risk[best_at(x, y)].at(x, y, 0));
+      const double above =
+          static_cast<double>(risk[k].at(x, y, 0)) - static_cast<double>(risk[best_at(x, y)].at(x, y, 0));
       out.at(x, y, 0) = static_cast<Real>(above > 0 ? std::exp(-above / (params.softness * error + 1e-30)) : 1.0);
     }
   });

@@ -17,21 +17,21 @@ struct Candidate {
 };
 
 struct SelectParams {
-  double risk_sigma = 4;      ///< Gaussian over which cross-validated errors are averaged, pixels.
-  double map_sigma = 1.5;     ///< Gaussian by which the choice itself is smoothed.
-  double softness = 0.5;      ///< Candidates within this many standard errors of the best share the pixel.
+  double risk_sigma = 4;   ///< Gaussian over which cross-validated errors are averaged, pixels.
+  double map_sigma = 1.5;  ///< Gaussian by which the choice itself is smoothed.
+  double softness = 0.5;   ///< Candidates within this many standard errors of the best share the pixel.
 };
 
 /// Pixels around a region that select looks at.
 int select_halo(const SelectParams& params);
 
-/// Blends the candidates pixel by pixel by their cross-validated risk. With f_A, f_B the candidate's halves and A, B the noisy
-/// ones,
+/// Blends the candidates pixel by pixel by their cross-validated risk. With f_A, f_B the candidate's halves and A, B
+/// the noisy ones,
 ///     risk = mean over RGB of [ ((f_A - B)^2 + (f_B - A)^2) / 2 - (f_A - f_B)^2 / 4 ] / (brightness^2 + epsilon)
 /// is, but for the noise of A and B that all candidates share, an unbiased estimate of the relative squared error of
-/// (f_A + f_B) / 2. Averaged over risk_sigma; a candidate's share is exp(-D / (softness SE)) with D its risk above the best's
-/// and SE the standard error of D. Shares are smoothed by map_sigma.
-/// brightness: 3 channels, a guess of the result. All images of one size; at least one candidate.
+/// (f_A + f_B) / 2. Averaged over risk_sigma; a candidate's share is exp(-D / (softness SE)) with D its risk above the
+/// best's and SE the standard error of D. Shares are smoothed by map_sigma. brightness: 3 channels, a guess of the
+/// result. All images of one size; at least one candidate.
 Candidate select(const HalfPair& pair, const Image& brightness, const std::vector<Candidate>& candidates,
                  const SelectParams& params);
 

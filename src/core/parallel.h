@@ -12,8 +12,8 @@ namespace polyrecon {
 /// Throws Error{Interrupted} when progress asks to stop; exceptions of a body are passed on.
 void parallel_for(std::size_t count, Progress& progress, const std::function<void(std::size_t)>& body);
 
-/// Sum of term(i) for i in [0, count). The sum is taken in order of i, so it has the same bits for any number of threads;
-/// make one term a row or a block, not a sample.
+/// Sum of term(i) for i in [0, count). The sum is taken in order of i, so it has the same bits for any number of
+/// threads; make one term a row or a block, not a sample.
 double ordered_sum(std::size_t count, const std::function<double(std::size_t)>& term);
 
 /// Limits the threads used from here on in this process; 0 means all processors.

@@ -27,7 +27,8 @@ Image double_resolution(const Image& image, int width, int height) {
   Progress silent;
   parallel_for(static_cast<std::size_t>(height), silent, [&](std::size_t row) {
     const int y = static_cast<int>(row);
-    // The centre of fine pixel y stands at coarse coordinate y/2 - 1/4: 3/4 of its own coarse pixel, 1/4 of the next one.
+    // The centre of fine pixel y stands at coarse coordinate y/2 - 1/4: 3/4 of its own coarse pixel, 1/4 of the next
+    // one.
     const int y0 = y / 2, y1 = std::clamp(y % 2 == 0 ? y0 - 1 : y0 + 1, 0, image.height() - 1);
     for (int c = 0; c < image.channels(); ++c)
       for (int x = 0; x < width; ++x) {

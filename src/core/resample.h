@@ -7,7 +7,8 @@ namespace polyrecon {
 /// Half the resolution (rounded up): each pixel the mean of the 2 x 2 (at the border fewer) pixels it covers.
 Image half_resolution(const Image& image);
 
-/// Twice the resolution, cut to width x height: bilinear between the centres of the coarse pixels, constant beyond them.
+/// Twice the resolution, cut to width x height: bilinear between the centres of the coarse pixels, constant beyond
+/// them.
 Image double_resolution(const Image& image, int width, int height);
 
 }  // namespace polyrecon

@@ -13,7 +13,8 @@ bool pixel_usable(const Image& image, std::size_t i) {
 }
 
 /// Mean of the good neighbours of (x, y) into `mean`; false if there are none.
-bool neighbour_mean(const Image& image, const std::vector<unsigned char>& bad, int x, int y, std::vector<double>& mean) {
+bool neighbour_mean(const Image& image, const std::vector<unsigned char>& bad, int x, int y,
+                    std::vector<double>& mean) {
   mean.assign(static_cast<std::size_t>(image.channels()), 0.0);
   int count = 0;
   const Rect around = intersect(grow({x, y, x + 1, y + 1}, 1), image.bounds());
@@ -22,7 +23,8 @@ bool neighbour_mean(const Image& image, const std::vector<unsigned char>& bad, i
       const std::size_t i = image.index(u, v);
       if (bad[i]) continue;
       ++count;
-      for (int c = 0; c < image.channels(); ++c) mean[static_cast<std::size_t>(c)] += static_cast<double>(image.plane(c)[i]);
+      for (int c = 0; c < image.channels(); ++c)
+        mean[static_cast<std::size_t>(c)] += static_cast<double>(image.plane(c)[i]);
     }
   for (double& m : mean) m /= std::max(count, 1);
   return count > 0;
@@ -58,7 +60,8 @@ std::size_t mend(Image& image, int reach) {
         rest.push_back(i);
         continue;
       }
-      for (int c = 0; c < image.channels(); ++c) image.plane(c)[i] = static_cast<Real>(mean[static_cast<std::size_t>(c)]);
+      for (int c = 0; c < image.channels(); ++c)
+        image.plane(c)[i] = static_cast<Real>(mean[static_cast<std::size_t>(c)]);
       mended.push_back(i);
     }
     for (const std::size_t i : mended) bad[i] = 0;

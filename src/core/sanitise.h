@@ -15,8 +15,8 @@ bool usable(Real value);
 /// Pixels in which some channel is not usable.
 std::size_t count_unusable(const Image& image);
 
-/// Replaces unusable pixels by the mean of the usable ones around them, growing inwards from the border of a hole; at most
-/// `reach` pixels deep, deeper ones become 0. Returns how many pixels were replaced.
+/// Replaces unusable pixels by the mean of the usable ones around them, growing inwards from the border of a hole; at
+/// most `reach` pixels deep, deeper ones become 0. Returns how many pixels were replaced.
 std::size_t mend(Image& image, int reach);
 
 }  // namespace polyrecon

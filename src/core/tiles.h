@@ -11,8 +11,9 @@ struct Tile {
   Rect core, padded;
 };
 
-/// Cuts bounds into tiles whose padded area has at most max_pixels pixels where possible (at least one alignment x alignment
-/// core each). Padded areas begin at multiples of alignment and reach halo pixels beyond the core, cut to bounds.
+/// Cuts bounds into tiles whose padded area has at most max_pixels pixels where possible (at least one alignment x
+/// alignment core each). Padded areas begin at multiples of alignment and reach halo pixels beyond the core, cut to
+/// bounds.
 std::vector<Tile> make_tiles(const Rect& bounds, int halo, int alignment, std::size_t max_pixels);
 
 }  // namespace polyrecon

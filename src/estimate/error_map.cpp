@@ -1,6 +1,7 @@
 #include "estimate/error_map.h"
 
 #include <algorithm>
+#include <array>
 
 #include "core/parallel.h"
 
@@ -22,15 +23,32 @@ double mean_of(const Image& image) {
   return sum / static_cast<double>(image.pixels());
 }
 
-void scale(Image& image, double factor) {
-  for (int c = 0; c < image.channels(); ++c)
-    for (std::size_t i = 0; i < image.pixels(); ++i)
-      image.plane(c)[i] = static_cast<Real>(factor * static_cast<double>(image.plane(c)[i]));
+/// Mean over the image of (f_A - f_B)^2 / 4 and of the variance that the windows claim, both relative.
+std::array<double, 2> variances(const Candidate& result) {
+  const Image& claimed = result.variance;
+  const auto sum = [&](const auto& term) {
+    return ordered_sum(static_cast<std::size_t>(claimed.height()), [&](std::size_t row) {
+      const int y = static_cast<int>(row);
+      double total = 0;
+      for (int c = 0; c < 3; ++c)
+        for (int x = 0; x < claimed.width(); ++x) {
+          const double f = mean_half(result, x, y, c);
+          total += term(x, y, c) / (f * f + relative_floor);
+        }
+      return total;
+    });
+  };
+  return {sum([&](int x, int y, int c) {
+            const double d =
+                static_cast<double>(result.half[0].at(x, y, c)) - static_cast<double>(result.half[1].at(x, y, c));
+            return 0.25 * d * d;
+          }),
+          sum([&](int x, int y, int c) { return static_cast<double>(claimed.at(x, y, c)); })};
 }
 
 }  // namespace
 
-double cross_validated_error(const HalfPair& pair, const Candidate& result) {
+double cross_validated_error(const HalfPair& pair, const Image& variance, const Candidate& result) {
   const double sum = ordered_sum(static_cast<std::size_t>(pair.height()), [&](std::size_t row) {
     const int y = static_cast<int>(row);
     double total = 0;
@@ -38,8 +56,9 @@ double cross_validated_error(const HalfPair& pair, const Candidate& result) {
       for (int x = 0; x < pair.width(); ++x) {
         const double fa = result.half[0].at(x, y, c), fb = result.half[1].at(x, y, c);
         const double a = pair.color[0].at(x, y, c), b = pair.color[1].at(x, y, c), f = 0.5 * (fa + fb);
-        const double error = 0.5 * ((fa - b) * (fa - b) + (fb - a) * (fb - a)) - static_cast<double>(pair.variance.at(x, y, c)) -
-                             0.25 * (fa - fb) * (fa - fb);
+        const double known = 2 * static_cast<double>(variance.at(x, y, c)), floored = pair.variance.at(x, y, c);
+        const double noise = known >= 0 && known < floored ? known : floored;
+        const double error = 0.5 * ((fa - b) * (fa - b) + (fb - a) * (fb - a)) - noise - 0.25 * (fa - fb) * (fa - fb);
         total += error / (f * f + relative_floor);
       }
     return total;
@@ -47,27 +66,28 @@ double cross_validated_error(const HalfPair& pair, const Candidate& result) {
   return sum / (3.0 * static_cast<double>(pair.variance.pixels()));
 }
 
-ErrorMap make_error_map(const HalfPair& pair, const Candidate& result) {
+ErrorMap make_error_map(const HalfPair& pair, const Image& variance, const Candidate& result) {
   ErrorMap map;
-  map.mse = result.error;
+  map.mse = Image(pair.width(), pair.height(), 3);
   map.relative_mse = Image(pair.width(), pair.height(), 1);
   map.relative_variance = map.relative_mse;
+  const auto [measured, claimed] = variances(result);
+  if (claimed > 0) map.calibration = measured / claimed;
   for (int y = 0; y < pair.height(); ++y)
     for (int x = 0; x < pair.width(); ++x) {
-      double error = 0, variance = 0;
+      double error = 0, random = 0;
       for (int c = 0; c < 3; ++c) {
-        const auto f = static_cast<double>(mean_half(result, x, y, c));
-        error += static_cast<double>(result.error.at(x, y, c)) / (f * f + relative_floor) / 3;
-        variance += static_cast<double>(result.variance.at(x, y, c)) / (f * f + relative_floor) / 3;
+        const double f = mean_half(result, x, y, c), windows = result.variance.at(x, y, c);
+        const double bias = std::max(static_cast<double>(result.error.at(x, y, c)) - windows, 0.0);
+        map.mse.at(x, y, c) = static_cast<Real>(bias + map.calibration * windows);
+        error += (bias + map.calibration * windows) / (f * f + relative_floor) / 3;
+        random += map.calibration * windows / (f * f + relative_floor) / 3;
       }
       map.relative_mse.at(x, y, 0) = static_cast<Real>(error);
-      map.relative_variance.at(x, y, 0) = static_cast<Real>(std::min(variance, error));
+      map.relative_variance.at(x, y, 0) = static_cast<Real>(random);
     }
-  const double modelled = mean_of(map.relative_mse);
-  map.cross_validated = cross_validated_error(pair, result);
-  const double ratio = modelled > 0 ? map.cross_validated / modelled : 1;
-  if (ratio >= 1.0 / 16 && ratio <= 16) map.calibration = ratio;
-  for (Image* image : {&map.mse, &map.relative_mse, &map.relative_variance}) scale(*image, map.calibration);
+  map.mean_relative_mse = mean_of(map.relative_mse);
+  map.cross_validated = cross_validated_error(pair, variance, result);
   return map;
 }
 

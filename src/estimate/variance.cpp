@@ -11,7 +11,8 @@ namespace polyrecon {
 namespace {
 
 constexpr int fit_radius = 3, fit_stride = 2, vote_radius = 2;
-constexpr double half_difference_sigma = 1.5;  // pixels over which (A - B)^2 is averaged: one of them alone has one degree of freedom
+constexpr double half_difference_sigma =
+    1.5;  // pixels over which (A - B)^2 is averaged: one of them alone has one degree of freedom
 
 /// Residual variance per channel of the fit around a centre; -1 where there are too few pixels for the columns.
 void residual_variance(const Image& y, const Image& features, int cx, int cy, Window& window, NestedFactor& factor,
@@ -37,7 +38,8 @@ void residual_variance(const Image& y, const Image& features, int cx, int cy, Wi
     project(factor, window, weight.data(), values, z.data());
     double residual = 0;
     for (int j = 0; j < window.count; ++j) residual += static_cast<double>(values[j]) * static_cast<double>(values[j]);
-    for (int a = 0; a < layout.columns(); ++a) residual -= z[static_cast<std::size_t>(a)] * z[static_cast<std::size_t>(a)];
+    for (int a = 0; a < layout.columns(); ++a)
+      residual -= z[static_cast<std::size_t>(a)] * z[static_cast<std::size_t>(a)];
     out[c] = freedom > 0 ? static_cast<Real>(std::max(residual, 0.0) / freedom) : Real(-1);
   }
 }
@@ -50,7 +52,8 @@ Image mended_features(const Frame& frame) {
   for (const Feature& feature : frame.features) {
     Image mean = feature.pass.mean;
     mend(mean, 1);
-    for (int c = 0; c < mean.channels(); ++c, ++channel) std::copy(mean.plane(c), mean.plane(c) + mean.pixels(), out.plane(channel));
+    for (int c = 0; c < mean.channels(); ++c, ++channel)
+      std::copy(mean.plane(c), mean.plane(c) + mean.pixels(), out.plane(channel));
   }
   return out;
 }
@@ -99,14 +102,16 @@ Image estimate_variance(const Frame& frame, Progress& progress) {
     std::vector<Real> weight;
     Real variance[3];
     for (int x = 0; x < fits.width(); ++x) {
-      residual_variance(y, features, x * fit_stride, static_cast<int>(row) * fit_stride, window, factor, weight, variance);
+      residual_variance(y, features, x * fit_stride, static_cast<int>(row) * fit_stride, window, factor, weight,
+                        variance);
       for (int c = 0; c < 3; ++c) fits.at(x, static_cast<int>(row), c) = variance[c];
     }
   });
   Image out(frame.width(), frame.height(), 3);
   parallel_for(static_cast<std::size_t>(out.height()), progress, [&](std::size_t row) {
     for (int c = 0; c < 3; ++c)
-      for (int x = 0; x < out.width(); ++x) out.at(x, static_cast<int>(row), c) = vote(fits, x, static_cast<int>(row), c);
+      for (int x = 0; x < out.width(); ++x)
+        out.at(x, static_cast<int>(row), c) = vote(fits, x, static_cast<int>(row), c);
   });
   return out;
 }

@@ -12,12 +12,13 @@ struct NoiseVariance {
   std::string source;  ///< "from the file", "from the half buffers" or "estimated from the image".
 };
 
-/// The noise variance of the beauty: what the file says; else (A - B)^2 / 4 of the half buffers, smoothed; else estimated.
+/// The noise variance of the beauty: what the file says; else (A - B)^2 / 4 of the half buffers, smoothed; else
+/// estimated.
 NoiseVariance noise_variance(const Frame& frame, Progress& progress);
 
-/// Estimates the noise variance of an image that comes without any: the residual variance sum r^2 / (n - rank) of local fits
-/// (constant, features, plane over 7 x 7 pixels, every second pixel), of which each pixel takes the median of the fits around it:
-/// the few windows that straddle an edge, which call the edge noise, lose the vote.
+/// Estimates the noise variance of an image that comes without any: the residual variance sum r^2 / (n - rank) of local
+/// fits (constant, features, plane over 7 x 7 pixels, every second pixel), of which each pixel takes the median of the
+/// fits around it: the few windows that straddle an edge, which call the edge noise, lose the vote.
 Image estimate_variance(const Frame& frame, Progress& progress);
 
 }  // namespace polyrecon

@@ -8,7 +8,8 @@
 namespace polyrecon {
 
 /// Two independent halves of a frame's samples, ready for the fit: every value finite. What one half is fitted with
-/// (weights, features) comes from the other, so that no pixel's noise can vote for itself; the average of the two is the result.
+/// (weights, features) comes from the other, so that no pixel's noise can vote for itself; the average of the two is
+/// the result.
 struct HalfPair {
   std::array<Image, 2> color;     ///< Beauty, then each AOV: 3 channels each.
   Image variance;                 ///< Noise variance of one half's beauty, 3 channels, >= 0.

@@ -31,10 +31,12 @@ Image widened_variance(const Image& variance) {
   return out;
 }
 
-POLYRECON_SIMD void add_distances(const Real* a, const Real* b, const Real* va, const Real* vb, Real factor, Real* out, int n) {
+POLYRECON_SIMD void add_distances(const Real* a, const Real* b, const Real* va, const Real* vb, Real factor, Real* out,
+                                  int n) {
   for (int i = 0; i < n; ++i) {
     const Real d = a[i] - b[i], noise = va[i] + (va[i] < vb[i] ? va[i] : vb[i]);
-    out[i] += factor * (d * d - noise) / (va[i] + vb[i] + Real(1e-10) * (a[i] * a[i] + b[i] * b[i]) + std::numeric_limits<Real>::min());
+    out[i] += factor * (d * d - noise) /
+              (va[i] + vb[i] + Real(1e-10) * (a[i] * a[i] + b[i] * b[i]) + std::numeric_limits<Real>::min());
   }
 }
 
@@ -59,23 +61,30 @@ struct Padded {
   std::vector<Real> samples;
 
   Padded(const Image& image, const Rect& rows, int border)
-      : width(image.width() + 2 * border), height(rows.height() + 2 * border), channels(image.channels()), margin(border) {
-    samples.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * static_cast<std::size_t>(channels));
+      : width(image.width() + 2 * border),
+        height(rows.height() + 2 * border),
+        channels(image.channels()),
+        margin(border) {
+    samples.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) *
+                   static_cast<std::size_t>(channels));
     for (int c = 0; c < channels; ++c)
       for (int y = 0; y < height; ++y) {
         const Real* in = image.row(c, std::clamp(rows.y0 + y - border, 0, image.height() - 1));
-        for (int x = 0; x < width; ++x) at(x - border, y - border, c)[0] = in[std::clamp(x - border, 0, image.width() - 1)];
+        for (int x = 0; x < width; ++x)
+          at(x - border, y - border, c)[0] = in[std::clamp(x - border, 0, image.width() - 1)];
       }
   }
   Real* at(int x, int y, int c) {
-    return samples.data() + (static_cast<std::size_t>(c) * static_cast<std::size_t>(height) + static_cast<std::size_t>(y + margin)) *
-                                static_cast<std::size_t>(width) + static_cast<std::size_t>(x + margin);
+    return samples.data() +
+           (static_cast<std::size_t>(c) * static_cast<std::size_t>(height) + static_cast<std::size_t>(y + margin)) *
+               static_cast<std::size_t>(width) +
+           static_cast<std::size_t>(x + margin);
   }
 };
 
 /// Filters the rows `band` of source with weights measured on guide.
-void filter_band(const Image& source, const Image& guide, const Image& variance, const Rect& band, const PrefilterParams& p,
-                 Image& out) {
+void filter_band(const Image& source, const Image& guide, const Image& variance, const Rect& band,
+                 const PrefilterParams& p, Image& out) {
   const int margin = p.search_radius + p.patch_radius, width = source.width(), patch = 2 * p.patch_radius + 1;
   const int wide = width + 2 * p.patch_radius, high = band.height() + 2 * p.patch_radius;
   Padded values(guide, band, margin), noise(variance, band, margin);
@@ -90,29 +99,34 @@ void filter_band(const Image& source, const Image& guide, const Image& variance,
       for (int y = 0; y < high; ++y)
         for (int c = 0; c < source.channels(); ++c) {
           const int py = y - p.patch_radius, px = -p.patch_radius;
-          add_distances(values.at(px, py, c), values.at(px + dx, py + dy, c), noise.at(px, py, c), noise.at(px + dx, py + dy, c),
-                        Real(1) / static_cast<Real>(source.channels()), pixel.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(wide), wide);
+          add_distances(values.at(px, py, c), values.at(px + dx, py + dy, c), noise.at(px, py, c),
+                        noise.at(px + dx, py + dy, c), Real(1) / static_cast<Real>(source.channels()),
+                        pixel.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(wide), wide);
         }
       for (int y = std::max(0, -dy - band.y0); y < std::min(band.height(), source.height() - dy - band.y0); ++y) {
         std::fill(row_sum.begin(), row_sum.end(), Real(0));
         for (int k = 0; k < patch; ++k)
-          add_rows(pixel.data() + static_cast<std::size_t>(y + k) * static_cast<std::size_t>(wide), Real(1), row_sum.data(), wide);
+          add_rows(pixel.data() + static_cast<std::size_t>(y + k) * static_cast<std::size_t>(wide), Real(1),
+                   row_sum.data(), wide);
         std::fill(distance.begin(), distance.end(), Real(0));
         for (int k = 0; k < patch; ++k)
           add_rows(row_sum.data() + k, Real(1) / static_cast<Real>(patch * patch), distance.data(), width);
         weights_of(distance.data(), static_cast<Real>(1 / (p.bandwidth * p.bandwidth)), width);
         const int x0 = std::max(0, -dx), x1 = std::min(width, width - dx);
         if (x0 >= x1) continue;
-        const std::size_t at = static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x0);
+        const std::size_t at =
+            static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x0);
         accumulate(distance.data() + x0, ones.data(), total.data() + at, x1 - x0);
         for (int c = 0; c < source.channels(); ++c)
-          accumulate(distance.data() + x0, source.row(c, band.y0 + y + dy) + x0 + dx, sum.data() + static_cast<std::size_t>(c) * plane + at, x1 - x0);
+          accumulate(distance.data() + x0, source.row(c, band.y0 + y + dy) + x0 + dx,
+                     sum.data() + static_cast<std::size_t>(c) * plane + at, x1 - x0);
       }
     }
   for (int c = 0; c < source.channels(); ++c)
     for (int y = 0; y < band.height(); ++y)
       for (int x = 0; x < width; ++x) {
-        const std::size_t i = static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+        const std::size_t i =
+            static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
         out.at(x, band.y0 + y, c) = static_cast<Real>(sum[static_cast<std::size_t>(c) * plane + i] / total[i]);
       }
 }
@@ -121,7 +135,7 @@ void filter_band(const Image& source, const Image& guide, const Image& variance,
 
 std::array<Image, 2> prefilter(const std::array<Image, 2>& halves, const Image& variance, const PrefilterParams& params,
                                Progress& progress) {
-  constexpr int band_height = 16;
+  constexpr int band_height = 32;
   const Image noise = widened_variance(variance);
   const int width = variance.width(), height = variance.height();
   std::array<Image, 2> out{Image(width, height, variance.channels()), Image(width, height, variance.channels())};

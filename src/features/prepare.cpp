@@ -8,14 +8,14 @@
 #include "core/parallel.h"
 #include "core/sanitise.h"
 #include "features/fission.h"
-#include "features/prefilter.h"
+#include "features/variance_floor.h"
 
 namespace polyrecon {
 namespace {
 
-constexpr int mend_reach = 8;          // pixels; deeper holes carry no information for their middle anyway
-constexpr double sky_depth = 1e9;      // renderers write 1e10 or larger for a ray that hits nothing
-constexpr double noise_floor = 1e-5;   // noise below this part of a feature's own variance is not worth cleaning
+constexpr int mend_reach = 8;         // pixels; deeper holes carry no information for their middle anyway
+constexpr double sky_depth = 1e9;     // renderers write 1e10 or larger for a ray that hits nothing
+constexpr double noise_floor = 1e-5;  // noise below this part of a feature's own variance is not worth cleaning
 
 /// Mean over the usable, non-negative part of the beauty.
 double mean_brightness(const Image& beauty) {
@@ -34,8 +34,8 @@ double mean_brightness(const Image& beauty) {
 /// What a feature's values and noise look like over the frame.
 struct FeatureLook {
   double low = std::numeric_limits<double>::max(), high = std::numeric_limits<double>::lowest();
-  double variance = 0;     ///< Of its values over the frame, mean over the channels.
-  double noise = 0;        ///< Mean of its own noise variance.
+  double variance = 0;  ///< Of its values over the frame, mean over the channels.
+  double noise = 0;     ///< Mean of its own noise variance.
   std::size_t usable_pixels = 0;
 };
 
@@ -57,7 +57,8 @@ FeatureLook look_at_feature(const Feature& feature) {
       if (!feature.pass.variance.empty() && usable(feature.pass.variance.plane(c)[i]))
         noise += static_cast<double>(feature.pass.variance.plane(c)[i]);
       else if (feature.pass.has_halves()) {
-        const double d = static_cast<double>(feature.pass.half_a.plane(c)[i]) - static_cast<double>(feature.pass.half_b.plane(c)[i]);
+        const double d =
+            static_cast<double>(feature.pass.half_a.plane(c)[i]) - static_cast<double>(feature.pass.half_b.plane(c)[i]);
         if (std::isfinite(d)) noise += d * d / 4;
       }
     }
@@ -93,10 +94,14 @@ std::string reason_to_drop(const FeatureLook& look, const Feature& feature) {
 
 const char* kind_name(FeatureKind kind) {
   switch (kind) {
-    case FeatureKind::Normal: return "normal";
-    case FeatureKind::Albedo: return "albedo";
-    case FeatureKind::Depth: return "depth";
-    case FeatureKind::Visibility: return "visibility";
+    case FeatureKind::Normal:
+      return "normal";
+    case FeatureKind::Albedo:
+      return "albedo";
+    case FeatureKind::Depth:
+      return "depth";
+    case FeatureKind::Visibility:
+      return "visibility";
   }
   return "";
 }
@@ -106,7 +111,8 @@ void transform(const FeatureUse& use, Image& image) {
     Real* values = image.plane(c);
     for (std::size_t i = 0; i < image.pixels(); ++i) {
       const auto v = static_cast<double>(values[i]);
-      values[i] = static_cast<Real>(use.half_depth > 0 ? std::max(v, 0.0) / (std::max(v, 0.0) + use.half_depth) : v * use.scale);
+      values[i] = static_cast<Real>(use.half_depth > 0 ? std::max(v, 0.0) / (std::max(v, 0.0) + use.half_depth)
+                                                       : v * use.scale);
     }
   }
 }
@@ -128,8 +134,10 @@ void make_non_negative(Image& variance) {
     for (std::size_t i = 0; i < variance.pixels(); ++i) variance.plane(c)[i] = std::max(variance.plane(c)[i], Real(0));
 }
 
-/// Both halves of a pass, mended; split from the mean where the file has none. half_variance: of one half; may be empty.
-std::array<Image, 2> halves_of(const Pass& pass, const Image& half_variance, std::uint64_t stream, std::size_t& mended) {
+/// Both halves of a pass, mended; split from the mean where the file has none. half_variance: of one half; may be
+/// empty.
+std::array<Image, 2> halves_of(const Pass& pass, const Image& half_variance, std::uint64_t stream,
+                               std::size_t& mended) {
   if (pass.has_halves()) {
     std::array<Image, 2> halves{pass.half_a, pass.half_b};
     for (Image& half : halves) mended += mend(half, mend_reach);
@@ -165,8 +173,8 @@ Image feature_half_variance(const Pass& pass, std::size_t& mended) {
   return variance;
 }
 
-/// Halves of a colour pass that has none: it takes its share, pass / beauty, of what sets the beauty's halves apart. Passes that
-/// add up to the beauty have halves that add up to its halves.
+/// Halves of a colour pass that has none: it takes its share, pass / beauty, of what sets the beauty's halves apart.
+/// Passes that add up to the beauty have halves that add up to its halves.
 std::array<Image, 2> split_like(const std::array<Image, 2>& beauty, const Pass& pass, std::size_t& mended) {
   Image mean = pass.mean;
   mended += mend(mean, mend_reach);
@@ -183,11 +191,12 @@ std::array<Image, 2> split_like(const std::array<Image, 2>& beauty, const Pass& 
 }
 
 void append_channels(const Image& from, Image& to, int& channel) {
-  for (int c = 0; c < from.channels(); ++c, ++channel) std::copy(from.plane(c), from.plane(c) + from.pixels(), to.plane(channel));
+  for (int c = 0; c < from.channels(); ++c, ++channel)
+    std::copy(from.plane(c), from.plane(c) + from.pixels(), to.plane(channel));
 }
 
-std::array<Image, 2> prepared_feature(const Feature& feature, const FeatureUse& use, std::size_t stream, std::size_t& mended,
-                                      Progress& progress) {
+std::array<Image, 2> prepared_feature(const Feature& feature, const FeatureUse& use, std::size_t stream,
+                                      const PrefilterParams& cleaning, std::size_t& mended, Progress& progress) {
   Image variance = feature_half_variance(feature.pass, mended);
   auto halves = halves_of(feature.pass, variance, stream, mended);
   if (use.clean && !variance.empty()) {
@@ -195,7 +204,7 @@ std::array<Image, 2> prepared_feature(const Feature& feature, const FeatureUse& 
     mend(mean, mend_reach);
     transform_variance(use, mean, variance);
     for (Image& half : halves) transform(use, half);
-    return prefilter(halves, variance, PrefilterParams{}, progress);
+    return prefilter(halves, variance, cleaning, progress);
   }
   for (Image& half : halves) transform(use, half);
   return halves;
@@ -230,8 +239,8 @@ Preparation look_at(const Frame& frame) {
   return out;
 }
 
-Prepared prepare(const Frame& frame, const Preparation& preparation, const Image& variance, bool with_alpha,
-                 Progress& progress) {
+Prepared prepare(const Frame& frame, const Preparation& preparation, const Image& variance,
+                 const PrefilterParams& cleaning, bool with_alpha, Progress& progress) {
   Prepared out;
   HalfPair& pair = out.pair;
   pair.epsilon = preparation.epsilon;
@@ -239,6 +248,7 @@ Prepared prepare(const Frame& frame, const Preparation& preparation, const Image
   pair.variance = variance;
   mend(pair.variance, mend_reach);
   make_non_negative(pair.variance);
+  pair.variance = floor_variance(pair.variance);
   for (int c = 0; c < 3; ++c)
     for (std::size_t i = 0; i < pair.variance.pixels(); ++i) {
       pair.variance.plane(c)[i] *= 2;  // of a half, from that of the mean
@@ -268,7 +278,8 @@ Prepared prepare(const Frame& frame, const Preparation& preparation, const Image
   for (Image& features : pair.features) features = Image(frame.width(), frame.height(), feature_channels);
   int channel = 0;
   for (const FeatureUse& use : preparation.features) {
-    const auto halves = prepared_feature(frame.features[use.index], use, use.index + 1, out.mended_pixels, progress);
+    const auto halves =
+        prepared_feature(frame.features[use.index], use, use.index + 1, cleaning, out.mended_pixels, progress);
     int end = channel;
     for (std::size_t h = 0; h < 2; ++h) {
       end = channel;

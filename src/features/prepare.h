@@ -7,38 +7,39 @@
 #include "core/frame.h"
 #include "core/progress.h"
 #include "features/half_pair.h"
+#include "features/prefilter.h"
 
 namespace polyrecon {
 
 /// A feature pass that takes part in the fit.
 struct FeatureUse {
-  std::size_t index = 0;      ///< Into Frame::features.
-  bool clean = false;         ///< It is noisy: prefilter it (features/prefilter.h).
-  double scale = 1;           ///< Factor that brings its values to order 1, so that no square overflows.
-  double half_depth = 0;      ///< Depth z enters as z / (z + half_depth): bounded, so that a sky at 1e10 fits; 0: as it is.
+  std::size_t index = 0;  ///< Into Frame::features.
+  bool clean = false;     ///< It is noisy: prefilter it (features/prefilter.h).
+  double scale = 1;       ///< Factor that brings its values to order 1, so that no square overflows.
+  double half_depth = 0;  ///< Depth z enters as z / (z + half_depth): bounded, so that a sky at 1e10 fits; 0: as it is.
 };
 
 /// What a look at the whole frame settles before any work: only the effects that the scene calls for are run.
 struct Preparation {
   std::vector<FeatureUse> features;
-  double epsilon = 1;                 ///< HalfPair::epsilon: (0.3 x mean brightness)^2, so that exposure does not matter.
+  double epsilon = 1;  ///< HalfPair::epsilon: (0.3 x mean brightness)^2, so that exposure does not matter.
   std::vector<Decision> decisions;
 };
 
-/// Drops features that are absent, not finite, constant, or nothing but noise, and says which of the others need cleaning.
-/// Throws Error{CheckFailed} where the beauty holds no usable pixel.
+/// Drops features that are absent, not finite, constant, or nothing but noise, and says which of the others need
+/// cleaning. Throws Error{CheckFailed} where the beauty holds no usable pixel.
 Preparation look_at(const Frame& frame);
 
 struct Prepared {
   HalfPair pair;
-  bool independent_halves = true;    ///< False where the halves were split from one image.
-  std::size_t mended_pixels = 0;     ///< Non-finite pixels replaced, over all passes used.
-  std::size_t negative_pixels = 0;   ///< Beauty pixels with a negative channel; kept as they are.
+  bool independent_halves = true;   ///< False where the halves were split from one image.
+  std::size_t mended_pixels = 0;    ///< Non-finite pixels replaced, over all passes used.
+  std::size_t negative_pixels = 0;  ///< Beauty pixels with a negative channel; kept as they are.
 };
 
 /// Mends, splits where the file holds no halves (features/fission.h), transforms and cleans the features.
 /// variance: noise variance of the beauty's mean, 3 channels (estimate/variance.h).
-Prepared prepare(const Frame& frame, const Preparation& preparation, const Image& variance, bool with_alpha,
-                 Progress& progress);
+Prepared prepare(const Frame& frame, const Preparation& preparation, const Image& variance,
+                 const PrefilterParams& cleaning, bool with_alpha, Progress& progress);
 
 }  // namespace polyrecon

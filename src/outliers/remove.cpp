@@ -18,9 +18,22 @@ struct Replacement {
   std::vector<int> count_above;  ///< Summed-area table of outliers, (width + 1) x (height + 1).
 };
 
+/// True if fewer than three pixels of the half around (x, y) are as bright as it: a cheap test that all but a few fail.
+bool stands_out(const Image& own, int x, int y, int radius) {
+  const Real value = brightness(own, own.index(x, y));
+  const Rect around = intersect(grow({x, y, x + 1, y + 1}, radius), own.bounds());
+  int as_bright = -1;  // itself
+  for (int v = around.y0; v < around.y1; ++v)
+    for (int u = around.x0; u < around.x1; ++u)
+      if (brightness(own, own.index(u, v)) >= value && ++as_bright == 3) return false;
+  return true;
+}
+
 /// Index of the pixel of median brightness around (x, y) if the pixel of half h is an outlier, else -1.
-std::ptrdiff_t replacement_of(const HalfPair& pair, std::size_t h, int x, int y, bool independent, const OutlierParams& p) {
+std::ptrdiff_t replacement_of(const HalfPair& pair, std::size_t h, int x, int y, bool independent,
+                              const OutlierParams& p) {
   const Image &own = pair.color[h], &other = pair.color[1 - h];
+  if (!stands_out(own, x, y, p.neighbourhood)) return -1;
   const std::size_t center = own.index(x, y);
   const Real value = brightness(own, center);
   const Rect around = intersect(grow({x, y, x + 1, y + 1}, p.neighbourhood), own.bounds());
@@ -59,21 +72,24 @@ Replacement find(const HalfPair& pair, std::size_t h, bool independent, const Ou
   out.source.assign(pair.variance.pixels(), -1);
   parallel_for(static_cast<std::size_t>(height), progress, [&](std::size_t y) {
     for (int x = 0; x < width; ++x)
-      out.source[pair.variance.index(x, static_cast<int>(y))] = replacement_of(pair, h, x, static_cast<int>(y), independent, p);
+      out.source[pair.variance.index(x, static_cast<int>(y))] =
+          replacement_of(pair, h, x, static_cast<int>(y), independent, p);
   });
   const auto row = static_cast<std::size_t>(width) + 1;
   out.count_above.assign(row * (static_cast<std::size_t>(height) + 1), 0);
   for (std::size_t y = 0; y < static_cast<std::size_t>(height); ++y)
     for (std::size_t x = 0; x < static_cast<std::size_t>(width); ++x)
-      out.count_above[(y + 1) * row + x + 1] = (out.source[y * static_cast<std::size_t>(width) + x] >= 0) + out.count_above[y * row + x + 1] +
-                                               out.count_above[(y + 1) * row + x] - out.count_above[y * row + x];
+      out.count_above[(y + 1) * row + x + 1] = (out.source[y * static_cast<std::size_t>(width) + x] >= 0) +
+                                               out.count_above[y * row + x + 1] + out.count_above[(y + 1) * row + x] -
+                                               out.count_above[y * row + x];
   return out;
 }
 
 bool rare(const Replacement& found, int width, int height, int x, int y, const OutlierParams& p) {
   const Rect r = intersect(grow({x, y, x + 1, y + 1}, p.density_radius), {0, 0, width, height});
   const auto sum = [&](int u, int v) {
-    return found.count_above[static_cast<std::size_t>(v) * (static_cast<std::size_t>(width) + 1) + static_cast<std::size_t>(u)];
+    return found
+        .count_above[static_cast<std::size_t>(v) * (static_cast<std::size_t>(width) + 1) + static_cast<std::size_t>(u)];
   };
   const int count = sum(r.x1, r.y1) - sum(r.x0, r.y1) - sum(r.x1, r.y0) + sum(r.x0, r.y0);
   return count <= 1 + p.density * static_cast<double>(r.area());
@@ -81,7 +97,8 @@ bool rare(const Replacement& found, int width, int height, int x, int y, const O
 
 }  // namespace
 
-std::vector<Outlier> remove_outliers(HalfPair& pair, bool independent_halves, const OutlierParams& params, Progress& progress) {
+std::vector<Outlier> remove_outliers(HalfPair& pair, bool independent_halves, const OutlierParams& params,
+                                     Progress& progress) {
   const int width = pair.width(), height = pair.height(), channels = pair.color[0].channels();
   const std::array<Replacement, 2> found{find(pair, 0, independent_halves, params, progress),
                                          find(pair, 1, independent_halves, params, progress)};

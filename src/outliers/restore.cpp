@@ -10,7 +10,8 @@ namespace {
 class BoxSums {
  public:
   explicit BoxSums(const Image& image, int channel)
-      : row_(static_cast<std::size_t>(image.width()) + 1), sums_(row_ * (static_cast<std::size_t>(image.height()) + 1), 0.0) {
+      : row_(static_cast<std::size_t>(image.width()) + 1),
+        sums_(row_ * (static_cast<std::size_t>(image.height()) + 1), 0.0) {
     for (int y = 0; y < image.height(); ++y) {
       double row = 0;
       const Real* values = image.row(channel, y);
@@ -44,7 +45,9 @@ Rect restoration_area(const Outlier& outlier, const std::vector<BoxSums>& sums, 
 
 /// Adds value to every pixel of r once `integrate` has run.
 void add_box(std::vector<double>& corners, std::size_t row, const Rect& r, double value) {
-  const auto at = [&](int x, int y) -> double& { return corners[static_cast<std::size_t>(y) * row + static_cast<std::size_t>(x)]; };
+  const auto at = [&](int x, int y) -> double& {
+    return corners[static_cast<std::size_t>(y) * row + static_cast<std::size_t>(x)];
+  };
   at(r.x0, r.y0) += value;
   at(r.x1, r.y0) -= value;
   at(r.x0, r.y1) -= value;
@@ -81,7 +84,8 @@ void restore_energy(const std::vector<Outlier>& outliers, double max_gain, Image
     for (int y = 0; y < image.height(); ++y)
       for (int x = 0; x < image.width(); ++x) {
         const double yhat = std::max(static_cast<double>(shape.at(x, y, static_cast<int>(color))), 0.0);
-        image.at(x, y, c) += static_cast<Real>(yhat * gain[static_cast<std::size_t>(y) * row + static_cast<std::size_t>(x)]);
+        image.at(x, y, c) +=
+            static_cast<Real>(yhat * gain[static_cast<std::size_t>(y) * row + static_cast<std::size_t>(x)]);
       }
   }
 }

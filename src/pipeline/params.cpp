@@ -20,6 +20,8 @@ Params params_for(Quality quality) {
     params.coverage = 1;
     params.max_order = 1;
     params.first_bandwidths = {Real(0.7)};
+    params.cleaning.search_radius = 3;
+    params.cleaning.patch_radius = 2;
   } else if (quality == Quality::Best) {
     params.stages = 3;
     params.stride = 2;

@@ -5,6 +5,7 @@
 
 #include "blend/blend_windows.h"
 #include "blend/select.h"
+#include "features/prefilter.h"
 
 namespace polyrecon {
 
@@ -12,19 +13,20 @@ enum class Quality { Draft, Standard, Best };
 
 /// Everything that steers a reconstruction; the only home of its defaults.
 struct Params {
-  int stages = 2;             ///< Rounds of error estimation, equations (8) and (9); 1..4.
-  int levels = 3;             ///< Resolutions worked: the frame, its half, its quarter; 1..5.
-  int radius = 9;             ///< Of the windows, pixels; 1..20.
-  int stride = 4;             ///< Distance of the window centres where windows agree, pixels; 1..radius.
-  int patch_radius = 1;       ///< Of the patches that weigh a window; 0..4.
-  int max_order = 2;          ///< Highest Taylor order offered to the selection, 0..4.
-  std::vector<Real> first_bandwidths{Real(0.5), Real(1)};        ///< Stage 1.
-  std::vector<Real> later_bandwidths{Real(0.35), Real(0.7)};     ///< Later stages, weights from the noisy half.
-  std::vector<Real> guided_bandwidths{Real(0.7)};                ///< Later stages, weights from the stage before.
+  int stages = 2;        ///< Rounds of error estimation, equations (8) and (9); 1..4.
+  int levels = 3;        ///< Resolutions worked: the frame, its half, its quarter; 1..5.
+  int radius = 9;        ///< Of the windows, pixels; 1..20.
+  int stride = 4;        ///< Distance of the window centres where windows agree, pixels; 1..radius.
+  int patch_radius = 1;  ///< Of the patches that weigh a window; 0..4.
+  int max_order = 2;     ///< Highest Taylor order offered to the selection, 0..4.
+  std::vector<Real> first_bandwidths{Real(0.5), Real(1)};     ///< Stage 1.
+  std::vector<Real> later_bandwidths{Real(0.35), Real(0.7)};  ///< Later stages, weights from the noisy half.
+  std::vector<Real> guided_bandwidths{Real(0.7)};             ///< Later stages, weights from the stage before.
   double order_tolerance = 0.01;  ///< A lower order is taken when its estimated error is within this of the least.
   double coverage = 2;            ///< Sum of weights below which finer centres are added; 0: none.
+  PrefilterParams cleaning;       ///< Of noisy feature passes.
   SelectParams selection;
-  bool reconstruct_alpha = false;                 ///< Reconstruct alpha with the beauty's windows instead of keeping it.
+  bool reconstruct_alpha = false;  ///< Reconstruct alpha with the beauty's windows instead of keeping it.
   std::size_t max_memory = std::size_t{4} << 30;  ///< Bytes; larger frames are worked in tiles.
 
   FitParams fit(const std::vector<Real>& bandwidths) const {

@@ -16,8 +16,9 @@
 namespace polyrecon {
 namespace {
 
-constexpr int smallest_level = 16;      // pixels; a smaller level has no window of its own
-constexpr double max_restored_gain = 0.02;  // a change of brightness by 2 % over an area is about what can be seen (Weber)
+constexpr int smallest_level = 16;  // pixels; a smaller level has no window of its own
+constexpr double max_restored_gain =
+    0.02;  // a change of brightness by 2 % over an area is about what can be seen (Weber)
 
 /// Runs a step, tells progress of it, and notes how long it took.
 template <typename Step>
@@ -30,14 +31,17 @@ auto timed(Report& report, Progress& progress, const std::string& name, std::siz
   return result;
 }
 
-std::size_t bytes_of(const Image& image) { return image.pixels() * static_cast<std::size_t>(image.channels()) * sizeof(Real); }
+std::size_t bytes_of(const Image& image) {
+  return image.pixels() * static_cast<std::size_t>(image.channels()) * sizeof(Real);
+}
 
 std::size_t bytes_of(const Pass& pass) {
   return bytes_of(pass.mean) + bytes_of(pass.variance) + bytes_of(pass.half_a) + bytes_of(pass.half_b);
 }
 
 std::size_t bytes_of(const Frame& frame) {
-  std::size_t bytes = bytes_of(frame.beauty) + bytes_of(frame.prior) + bytes_of(frame.alpha) + bytes_of(frame.sample_count);
+  std::size_t bytes =
+      bytes_of(frame.beauty) + bytes_of(frame.prior) + bytes_of(frame.alpha) + bytes_of(frame.sample_count);
   for (const Feature& feature : frame.features) bytes += bytes_of(feature.pass);
   for (const Pass& aov : frame.aovs) bytes += bytes_of(aov);
   return bytes;
@@ -54,18 +58,20 @@ std::size_t stage_memory(const Frame& frame, const HalfPair& pair, std::size_t m
 
 void require_memory(const Frame& frame, const HalfPair& pair, const Params& params, std::size_t available) {
   const int halo = stage_halo(params);
-  const auto side = static_cast<std::size_t>(2 * block_size + 2 * ((halo + 2 * block_size - 1) / (2 * block_size)) * 2 * block_size);
+  const auto side =
+      static_cast<std::size_t>(2 * block_size + 2 * ((halo + 2 * block_size - 1) / (2 * block_size)) * 2 * block_size);
   const std::size_t needed = std::min(side * side, pair.variance.pixels()) * stage_bytes_per_pixel(pair, params);
   if (available >= needed) return;
   const std::size_t total = params.max_memory - available + needed;
   throw Error(ExitCode::OutOfMemory, "layer '" + frame.beauty.name + "': " + std::to_string(frame.width()) + " x " +
-                                         std::to_string(frame.height()) + " pixels need " + std::to_string((total >> 20) + 1) +
+                                         std::to_string(frame.height()) + " pixels need " +
+                                         std::to_string((total >> 20) + 1) +
                                          " MiB; raise --max-memory or render fewer passes");
 }
 
 /// Sections 2.1 and 2.2 of the method on one level and, by way of its remainder, on the coarser ones.
-Candidate solve_level(const HalfPair& pair, int level, const Params& params, std::size_t max_bytes, FitCounters& counters,
-                      Progress& progress) {
+Candidate solve_level(const HalfPair& pair, int level, const Params& params, std::size_t max_bytes,
+                      FitCounters& counters, Progress& progress) {
   Candidate result = run_stage(pair, nullptr, params, max_bytes, counters, progress);
   const bool has_coarser = level + 1 < params.levels && std::min(pair.width(), pair.height()) >= 2 * smallest_level;
   Candidate coarse;
@@ -95,19 +101,24 @@ Image average(const HalfPair& pair, const Candidate& solved) {
 
 Image channels_of(const Image& image, int first, int count) {
   Image out(image.width(), image.height(), count);
-  for (int c = 0; c < count; ++c) std::copy(image.plane(first + c), image.plane(first + c) + image.pixels(), out.plane(c));
+  for (int c = 0; c < count; ++c)
+    std::copy(image.plane(first + c), image.plane(first + c) + image.pixels(), out.plane(c));
   return out;
 }
 
 std::array<double, 3> energy_of(const Image& image) {
   std::array<double, 3> energy{};
   for (int c = 0; c < 3; ++c)
-    energy[static_cast<std::size_t>(c)] = ordered_sum(static_cast<std::size_t>(image.height()), [&](std::size_t y) {
-      double row = 0;
-      const Real* values = image.row(c, static_cast<int>(y));
-      for (int x = 0; x < image.width(); ++x) row += std::isfinite(values[x]) ? static_cast<double>(values[x]) : 0.0;
-      return row;
-    }) / static_cast<double>(image.pixels());
+    energy[static_cast<std::size_t>(c)] =
+        ordered_sum(static_cast<std::size_t>(image.height()),
+                    [&](std::size_t y) {
+                      double row = 0;
+                      const Real* values = image.row(c, static_cast<int>(y));
+                      for (int x = 0; x < image.width(); ++x)
+                        row += std::isfinite(values[x]) ? static_cast<double>(values[x]) : 0.0;
+                      return row;
+                    }) /
+        static_cast<double>(image.pixels());
   return energy;
 }
 
@@ -123,14 +134,16 @@ void note_outliers(const std::vector<Outlier>& outliers, Report& report) {
   report.outliers = outliers.size();
   for (const Outlier& outlier : outliers)
     for (std::size_t c = 0; c < 3; ++c) report.outlier_energy[c] += outlier.energy[c];
-  report.decisions.push_back({"outlier removal", !outliers.empty(),
-                              outliers.empty() ? "no pixel stands out alone" : std::to_string(outliers.size()) + " pixels stand out alone"});
+  report.decisions.push_back(
+      {"outlier removal", !outliers.empty(),
+       outliers.empty() ? "no pixel stands out alone" : std::to_string(outliers.size()) + " pixels stand out alone"});
 }
 
 /// Progress steps of the fits over all levels and stages: blocks x phases, both halves. Close enough for a bar.
 std::size_t fit_steps(const Frame& frame, const Params& params) {
   const std::size_t blocks = aligned_blocks({0, 0, frame.width(), frame.height()}, block_size).size();
-  const std::size_t passes = 1 + static_cast<std::size_t>(params.stages - 1) * (params.guided_bandwidths.empty() ? 1 : 2);
+  const std::size_t passes =
+      1 + static_cast<std::size_t>(params.stages - 1) * (params.guided_bandwidths.empty() ? 1 : 2);
   return blocks * 2 * passes * (params.stride > 1 ? 2 : 1) * 4 / 3;
 }
 
@@ -147,10 +160,11 @@ Result reconstruct(const Frame& frame, const Params& params, Progress& progress)
   const Preparation preparation = look_at(frame);
   report.decisions = preparation.decisions;
   const auto rows = static_cast<std::size_t>(frame.height());
-  const NoiseVariance noise = timed(report, progress, "noise variance", rows * 2, [&] { return noise_variance(frame, progress); });
+  const NoiseVariance noise =
+      timed(report, progress, "noise variance", rows * 2, [&] { return noise_variance(frame, progress); });
   report.variance_source = noise.source;
   Prepared prepared = timed(report, progress, "features", rows / 4, [&] {
-    return prepare(frame, preparation, noise.variance, params.reconstruct_alpha, progress);
+    return prepare(frame, preparation, noise.variance, params.cleaning, params.reconstruct_alpha, progress);
   });
   HalfPair& pair = prepared.pair;
   report.mended_pixels = prepared.mended_pixels;
@@ -163,9 +177,8 @@ Result reconstruct(const Frame& frame, const Params& params, Progress& progress)
   const std::size_t memory = stage_memory(frame, pair, params.max_memory);
   require_memory(frame, pair, params, memory);
   FitCounters counters;
-  const Candidate solved = timed(report, progress, "polynomials", fit_steps(frame, params), [&] {
-    return solve_level(pair, 0, params, memory, counters, progress);
-  });
+  const Candidate solved = timed(report, progress, "polynomials", fit_steps(frame, params),
+                                 [&] { return solve_level(pair, 0, params, memory, counters, progress); });
   note_fits(counters, report);
 
   Image image = timed(report, progress, "energy", 1, [&] {
@@ -173,13 +186,15 @@ Result reconstruct(const Frame& frame, const Params& params, Progress& progress)
     restore_energy(outliers, max_restored_gain, out);
     return out;
   });
-  result.error = timed(report, progress, "error map", 1, [&] { return make_error_map(pair, solved); });
+  result.error = timed(report, progress, "error map", 1, [&] { return make_error_map(pair, noise.variance, solved); });
   result.order = solved.order;
   result.beauty = channels_of(image, 0, 3);
-  for (std::size_t k = 0; k < frame.aovs.size(); ++k) result.aovs.push_back(channels_of(image, 3 * static_cast<int>(k + 1), 3));
-  result.alpha = params.reconstruct_alpha && !frame.alpha.empty() ? channels_of(image, image.channels() - 1, 1) : frame.alpha;
+  for (std::size_t k = 0; k < frame.aovs.size(); ++k)
+    result.aovs.push_back(channels_of(image, 3 * static_cast<int>(k + 1), 3));
+  result.alpha =
+      params.reconstruct_alpha && !frame.alpha.empty() ? channels_of(image, image.channels() - 1, 1) : frame.alpha;
   report.energy_after = energy_of(result.beauty);
-  report.estimated_relative_mse = std::max(result.error.cross_validated, 0.0);
+  report.estimated_relative_mse = result.error.mean_relative_mse;
   return result;
 }
 

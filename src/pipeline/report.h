@@ -22,19 +22,19 @@ struct Report {
   std::vector<Decision> decisions;
   std::string variance_source;  ///< "from the file", "from half buffers" or "estimated from the image".
 
-  std::size_t windows = 0;                          ///< Local fits made.
-  std::array<std::size_t, 6> windows_per_order{};   ///< [0]: constant only; [k]: order k - 1 with features, k = 1..5.
-  std::size_t rank_deficient_windows = 0;           ///< Fits in which a dependent column was dropped.
-  std::size_t windows_fallen_back_to_mean = 0;      ///< Fits that kept nothing but the weighted mean.
-  std::size_t pixels_fallen_back_to_input = 0;      ///< Pixels that no finite fit covered.
-  std::size_t mended_pixels = 0;                    ///< Non-finite input pixels replaced before the fit, all passes.
-  std::size_t negative_pixels = 0;                  ///< Beauty pixels with a negative channel (kept as they are).
+  std::size_t windows = 0;                         ///< Local fits made.
+  std::array<std::size_t, 6> windows_per_order{};  ///< [0]: constant only; [k]: order k - 1 with features, k = 1..5.
+  std::size_t rank_deficient_windows = 0;          ///< Fits in which a dependent column was dropped.
+  std::size_t windows_fallen_back_to_mean = 0;     ///< Fits that kept nothing but the weighted mean.
+  std::size_t pixels_fallen_back_to_input = 0;     ///< Pixels that no finite fit covered.
+  std::size_t mended_pixels = 0;                   ///< Non-finite input pixels replaced before the fit, all passes.
+  std::size_t negative_pixels = 0;                 ///< Beauty pixels with a negative channel (kept as they are).
 
-  std::size_t outliers = 0;                         ///< Pixels replaced by equation (10)'s median.
-  std::array<double, 3> outlier_energy{};           ///< Sum of e_o per channel, radiance x pixels.
-  std::array<double, 3> energy_before{};            ///< Mean of the noisy beauty per channel.
-  std::array<double, 3> energy_after{};             ///< Mean of the result per channel.
-  double estimated_relative_mse = 0;                ///< Mean of the error map's relative MSE.
+  std::size_t outliers = 0;                ///< Pixels replaced by equation (10)'s median.
+  std::array<double, 3> outlier_energy{};  ///< Sum of e_o per channel, radiance x pixels.
+  std::array<double, 3> energy_before{};   ///< Mean of the noisy beauty per channel.
+  std::array<double, 3> energy_after{};    ///< Mean of the result per channel.
+  double estimated_relative_mse = 0;       ///< Mean of the error map's relative MSE.
 };
 
 }  // namespace polyrecon

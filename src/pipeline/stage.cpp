@@ -38,8 +38,8 @@ void add_candidates(const HalfPair& pair, const Guide& guide, const Candidate* b
   std::array<std::vector<BlendedFit>, 2> fits;
   for (std::size_t h = 0; h < 2; ++h) {
     const std::size_t other = 1 - h;
-    const FitSource source{&pair.color[h],  &pair.variance, &pair.features[other], guide.color[h],
-                           guide.variance, before ? &before->half[other] : nullptr};
+    const FitSource source{&pair.color[h], &pair.variance, &pair.features[other],
+                           guide.color[h], guide.variance, before ? &before->half[other] : nullptr};
     fits[h] = fit_and_blend(source, noisy, params.fit(*guide.bandwidths), counters, progress);
   }
   const auto mean = [](Image a, const Image& b) {
@@ -88,7 +88,8 @@ Candidate stage_of_tile(const HalfPair& pair, const Candidate* before, const Par
                         Progress& progress) {
   const auto noisy = noisy_pixels(pair);
   std::vector<Candidate> candidates;
-  const Guide raw{{&pair.color[1], &pair.color[0]}, &pair.variance, before ? &params.later_bandwidths : &params.first_bandwidths};
+  const Guide raw{
+      {&pair.color[1], &pair.color[0]}, &pair.variance, before ? &params.later_bandwidths : &params.first_bandwidths};
   add_candidates(pair, raw, before, noisy, params, counters, progress, candidates);
   Image brightness;
   if (before) {
@@ -112,7 +113,8 @@ Candidate crop_candidate(const Candidate& candidate, const Rect& r) {
 
 void paste_candidate(const Candidate& part, const Tile& tile, Candidate& whole) {
   const Rect& core = tile.core;
-  const Rect from{core.x0 - tile.padded.x0, core.y0 - tile.padded.y0, core.x1 - tile.padded.x0, core.y1 - tile.padded.y0};
+  const Rect from{core.x0 - tile.padded.x0, core.y0 - tile.padded.y0, core.x1 - tile.padded.x0,
+                  core.y1 - tile.padded.y0};
   for (std::size_t h = 0; h < 2; ++h) paste(part.half[h], from, whole.half[h], core.x0, core.y0);
   paste(part.error, from, whole.error, core.x0, core.y0);
   paste(part.variance, from, whole.variance, core.x0, core.y0);
@@ -122,13 +124,15 @@ void paste_candidate(const Candidate& part, const Tile& tile, Candidate& whole) 
 }  // namespace
 
 int stage_halo(const Params& params) {
-  // The guide's noise is final its blur inside a tile, every candidate fit_halo further in, the choice select_halo more.
+  // The guide's noise is final its blur inside a tile, every candidate fit_halo further in, the choice select_halo
+  // more.
   return gaussian_reach(residual_sigma) + fit_halo(params.fit(params.first_bandwidths)) + select_halo(params.selection);
 }
 
 std::size_t stage_bytes_per_pixel(const HalfPair& pair, const Params& params) {
   const auto channels = static_cast<std::size_t>(pair.color[0].channels());
-  const std::size_t fits = std::max(params.first_bandwidths.size(), params.later_bandwidths.size() + params.guided_bandwidths.size());
+  const std::size_t fits =
+      std::max(params.first_bandwidths.size(), params.later_bandwidths.size() + params.guided_bandwidths.size());
   const std::size_t candidate = 2 * channels + 7, sums = channels + 8;
   const std::size_t inputs = 2 * channels + 3 + 2 * static_cast<std::size_t>(pair.features[0].channels());
   return sizeof(Real) * (inputs + candidate * (fits + 3) + sums * fits + 4 * fits + 24);

@@ -8,9 +8,10 @@
 
 namespace polyrecon {
 
-/// One stage of equations (8) and (9) on one level: windows of every bandwidth, blended, and the best chosen pixel by pixel by
-/// cross-validation. before: the result of the stage before, whose halves are the guess of mu; null in stage 1.
-/// Works in tiles so that the memory beside pair and result stays within max_bytes; the tiles do not show in the result.
+/// One stage of equations (8) and (9) on one level: windows of every bandwidth, blended, and the best chosen pixel by
+/// pixel by cross-validation. before: the result of the stage before, whose halves are the guess of mu; null in
+/// stage 1. Works in tiles so that the memory beside pair and result stays within max_bytes; the tiles do not show in
+/// the result.
 Candidate run_stage(const HalfPair& pair, const Candidate* before, const Params& params, std::size_t max_bytes,
                     FitCounters& counters, Progress& progress);
 

@@ -45,7 +45,8 @@ POLYRECON_SIMD void gram_matrix(const Real* x, int columns, int rows, std::size_
 POLYRECON_SIMD double weighted_dot(const Real* w, const Real* a, const Real* b, int rows) {
   double sum = 0;
 #pragma omp simd reduction(+ : sum)
-  for (int j = 0; j < rows; ++j) sum += static_cast<double>(w[j]) * static_cast<double>(a[j]) * static_cast<double>(b[j]);
+  for (int j = 0; j < rows; ++j)
+    sum += static_cast<double>(w[j]) * static_cast<double>(a[j]) * static_cast<double>(b[j]);
   return sum;
 }
 
@@ -95,7 +96,8 @@ void normalised_remainder(const Window& window, const Matrix& l, int a, double i
   std::copy(xa, xa + window.padded, qa);
   for (int b = 0; b < a; ++b)
     if (l[a][b] != 0)
-      subtract_scaled(qa, factor.q.data() + static_cast<std::size_t>(b) * stride, static_cast<Real>(l[a][b]), window.padded);
+      subtract_scaled(qa, factor.q.data() + static_cast<std::size_t>(b) * stride, static_cast<Real>(l[a][b]),
+                      window.padded);
   scale(qa, static_cast<Real>(inverse), window.padded);
 }
 
@@ -114,9 +116,10 @@ bool orthogonalise_again(NestedFactor& factor, const Window& window, const Real*
 }
 
 /// Nine sums over one column in one pass: w q y, w q g and (w q)^2 v for three channels each.
-POLYRECON_SIMD void beauty_sums(const Real* w, const Real* q, const Real* y, const Real* g, const Real* v, std::size_t stride,
-                                int rows, double* sums) {
-  const Real *y1 = y + stride, *y2 = y1 + stride, *g1 = g + stride, *g2 = g1 + stride, *v1 = v + stride, *v2 = v1 + stride;
+POLYRECON_SIMD void beauty_sums(const Real* w, const Real* q, const Real* y, const Real* g, const Real* v,
+                                std::size_t stride, int rows, double* sums) {
+  const Real *y1 = y + stride, *y2 = y1 + stride, *g1 = g + stride, *g2 = g1 + stride, *v1 = v + stride,
+             *v2 = v1 + stride;
   double a0 = 0, a1 = 0, a2 = 0, b0 = 0, b1 = 0, b2 = 0, c0 = 0, c1 = 0, c2 = 0;
 #pragma omp simd reduction(+ : a0, a1, a2, b0, b1, b2, c0, c1, c2)
   for (int j = 0; j < rows; ++j) {
@@ -163,7 +166,9 @@ void factorise(const Window& window, int columns, const Real* weight, NestedFact
     for (int b = a + 1; b < columns; ++b) {
       const Real* const xb = window.design.data() + static_cast<std::size_t>(b) * stride;
       // A column that lost digits points elsewhere than the Gram matrix says: ask the column itself.
-      l[b][a] = !keep ? 0 : again ? weighted_dot(weight, qa, xb, window.padded) : cholesky_entry(gram, l, a, b) * remainder.inverse;
+      l[b][a] = !keep   ? 0
+                : again ? weighted_dot(weight, qa, xb, window.padded)
+                        : cholesky_entry(gram, l, a, b) * remainder.inverse;
     }
   }
 }
@@ -181,8 +186,8 @@ void project_beauty(const NestedFactor& factor, const Window& window, const Real
   for (int a = 0; a < factor.columns; ++a) {
     double sums[9] = {};
     if (factor.kept[static_cast<std::size_t>(a)])
-      beauty_sums(weight, factor.q.data() + static_cast<std::size_t>(a) * stride, window.response.data(), window.guess.data(),
-                  window.noise_variance.data(), stride, window.padded, sums);
+      beauty_sums(weight, factor.q.data() + static_cast<std::size_t>(a) * stride, window.response.data(),
+                  window.guess.data(), window.noise_variance.data(), stride, window.padded, sums);
     for (int c = 0; c < 3; ++c) {
       z[c][a] = sums[c];
       guess_z[c][a] = sums[3 + c];

@@ -10,19 +10,19 @@ namespace polyrecon {
 
 /// One weighted factorisation that serves every nested model: with S = diag(sqrt(w)) and X the design,
 ///     S X = Q R,   q_a = column a of S^-1 Q,   so that   sum_i w_i q_a(i) q_b(i) = (a == b).
-/// The fit of any prefix of columns is yhat = sum_a z_a q_a with z_a = sum_i w_i q_a(i) y(i), and the projection matrix of
-/// equations (5) and (6) is H_ij = sum_a q_a(i) q_a(j) w_j. H itself is never formed.
+/// The fit of any prefix of columns is yhat = sum_a z_a q_a with z_a = sum_i w_i q_a(i) y(i), and the projection matrix
+/// of equations (5) and (6) is H_ij = sum_a q_a(i) q_a(j) w_j. H itself is never formed.
 struct NestedFactor {
   int columns = 0;
-  int rank = 0;                                           ///< Columns kept.
-  std::array<bool, BasisLayout::max_columns> kept{};      ///< False where a column depends on those before it.
-  std::vector<Real> q;                                    ///< columns x window.stride; dropped columns are zero.
-  std::vector<Real> root;                                 ///< sqrt(w), the diagonal of S.
+  int rank = 0;                                       ///< Columns kept.
+  std::array<bool, BasisLayout::max_columns> kept{};  ///< False where a column depends on those before it.
+  std::vector<Real> q;                                ///< columns x window.stride; dropped columns are zero.
+  std::vector<Real> root;                             ///< sqrt(w), the diagonal of S.
 };
 
 /// Factorises the window's design under the weights w (window.padded of them, >= 0, zero beyond window.count). The Gram
-/// matrix is summed in double, factored by Cholesky in the order of the columns; a column whose part orthogonal to the ones
-/// before it is under 1e-4 of its own length is dropped, one under 1e-2 is orthogonalised a second time.
+/// matrix is summed in double, factored by Cholesky in the order of the columns; a column whose part orthogonal to the
+/// ones before it is under 1e-4 of its own length is dropped, one under 1e-2 is orthogonalised a second time.
 void factorise(const Window& window, int columns, const Real* weight, NestedFactor& factor);
 
 /// z_a = sum_i w_i q_a(i) y(i) for every column a; zero for dropped ones. y has window.padded samples.
@@ -30,7 +30,8 @@ void project(const NestedFactor& factor, const Window& window, const Real* weigh
 
 /// What project gives for the three channels of the beauty and of the stage's guess, and the variance of the former,
 ///     s_a^2 = sum_i w_i^2 q_a(i)^2 variance(i)   where the noise at pixel i has that variance,
-/// in one pass over the window. response, guess and variance: 3 columns, window.stride apart; z, guess_z and s2: 3 arrays.
+/// in one pass over the window. response, guess and variance: 3 columns, window.stride apart; z, guess_z and s2: 3
+/// arrays.
 void project_beauty(const NestedFactor& factor, const Window& window, const Real* weight, double* const* z,
                     double* const* guess_z, double* const* s2);
 

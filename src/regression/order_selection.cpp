@@ -22,7 +22,8 @@ std::array<double, BasisLayout::max_models> nested_errors(const Channels& channe
   int column = 0;
   for (int model = 0; model < layout.models(); ++model) {
     for (; column < layout.columns(model); ++column)
-      for (const ColumnStatistics& channel : channels) error += error_change(channel, column, factor[column], first_stage);
+      for (const ColumnStatistics& channel : channels)
+        error += error_change(channel, column, factor[column], first_stage);
     errors[static_cast<std::size_t>(model)] = error;
   }
   return errors;

@@ -9,11 +9,11 @@ namespace polyrecon {
 /// What one channel of a window knows of each column a of its factorisation (least_squares.h).
 struct ColumnStatistics {
   using Columns = std::array<double, BasisLayout::max_columns>;
-  Columns z{};               ///< Coefficient of the noisy response.
-  Columns variance{};        ///< s_a^2, variance of z_a: the terms of equations (6) and (9).
-  Columns guess{};           ///< Coefficient of the guess of mu of the stage before; unused in stage 1.
-  double guess_energy = 0;   ///< |S m|^2 = sum_i w_i m(i)^2 for the stage's guess m of mu (stage 1: of y).
-  double noise_energy = 0;   ///< sum_i w_i sigma^2(i).
+  Columns z{};              ///< Coefficient of the noisy response.
+  Columns variance{};       ///< s_a^2, variance of z_a: the terms of equations (6) and (9).
+  Columns guess{};          ///< Coefficient of the guess of mu of the stage before; unused in stage 1.
+  double guess_energy = 0;  ///< |S m|^2 = sum_i w_i m(i)^2 for the stage's guess m of mu (stage 1: of y).
+  double noise_energy = 0;  ///< sum_i w_i sigma^2(i).
 };
 
 /// The model that a window settles on, and its estimated error.
@@ -35,9 +35,9 @@ double error_change(const ColumnStatistics& channel, int column, double g, bool 
 /// Departure from Moon et al. 2016, who let a column in whole or not at all.
 double shrinkage_factor(const std::array<ColumnStatistics, 3>& channels, int column, bool first_stage);
 
-/// Equation (7), k_opt = argmin_k of bias^2 + variance, over the nested models of layout, the error summed over channels.
-/// Of models whose error differs by less than tolerance (relative) the one of lowest order is taken. weight_sum is
-/// sum_i w_i > 0.
+/// Equation (7), k_opt = argmin_k of bias^2 + variance, over the nested models of layout, the error summed over
+/// channels. Of models whose error differs by less than tolerance (relative) the one of lowest order is taken.
+/// weight_sum is sum_i w_i > 0.
 OrderChoice select_order(const std::array<ColumnStatistics, 3>& channels, const BasisLayout& layout, double weight_sum,
                          bool first_stage, double tolerance);
 

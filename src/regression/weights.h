@@ -37,11 +37,11 @@ class PatchDistances {
   std::vector<Real> planes_;      ///< Guide RGB, variance RGB over loaded_, border pixels repeated.
   std::vector<Real> difference_;  ///< Distance of single pixels for one offset.
   std::vector<Real> row_sums_;
-  std::vector<Real> distance_;    ///< centres x (2 radius + 1)^2.
+  std::vector<Real> distance_;  ///< centres x (2 radius + 1)^2.
 };
 
-/// w_i = exp(-d_i / bandwidth^2), cut at cut_exponent: the kernel K_h of equations (3) and (4). Fills window.padded weights,
-/// zero beyond window.count, and returns their sum.
+/// w_i = exp(-d_i / bandwidth^2), cut at cut_exponent: the kernel K_h of equations (3) and (4). Fills window.padded
+/// weights, zero beyond window.count, and returns their sum.
 double kernel_weights(const Window& window, Real bandwidth, Real* weight);
 
 }  // namespace polyrecon

@@ -16,8 +16,8 @@ void gather_channel(const Image& image, int channel, const Window& window, Real 
   gather_plane(image.plane(channel), window.offset.data(), minus, column, window.padded);
 }
 
-POLYRECON_SIMD void first_order_columns(const int* x, const int* y, int center_x, int center_y, Real scale, Real* dx, Real* dy,
-                                        int n) {
+POLYRECON_SIMD void first_order_columns(const int* x, const int* y, int center_x, int center_y, Real scale, Real* dx,
+                                        Real* dy, int n) {
   for (int j = 0; j < n; ++j) {
     dx[j] = static_cast<Real>(x[j] - center_x) * scale;
     dy[j] = static_cast<Real>(y[j] - center_y) * scale;
@@ -34,7 +34,8 @@ void taylor_columns(int order, int center_x, int center_y, int radius, const Win
   const auto stride = static_cast<std::size_t>(window.stride);
   const int n = window.padded;
   Real *const dx = column, *const dy = column + stride;
-  first_order_columns(window.x.data(), window.y.data(), center_x, center_y, Real(1) / static_cast<Real>(std::max(radius, 1)), dx, dy, n);
+  first_order_columns(window.x.data(), window.y.data(), center_x, center_y,
+                      Real(1) / static_cast<Real>(std::max(radius, 1)), dx, dy, n);
   const Real* below = column;
   column += 2 * stride;
   for (int o = 2; o <= order; ++o) {

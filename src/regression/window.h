@@ -7,9 +7,9 @@
 
 namespace polyrecon {
 
-/// The pixels of one window Omega_c that may carry weight, gathered from the images into contiguous columns. Reused from
-/// centre to centre, so that the inner loops neither allocate nor jump through memory.
-/// Rows beyond count (up to padded) repeat the centre and always have weight 0.
+/// The pixels of one window Omega_c that may carry weight, gathered from the images into contiguous columns. Reused
+/// from centre to centre, so that the inner loops neither allocate nor jump through memory. Rows beyond count (up to
+/// padded) repeat the centre and always have weight 0.
 struct Window {
   static constexpr int lanes = 16;  ///< Columns are padded to a multiple of this, for the vector units.
 
@@ -37,9 +37,9 @@ struct WindowSource {
   const Image* guess = nullptr;           ///< mu as the stage before saw it, 3 channels; null in stage 1.
 };
 
-/// Fills design, response, noise_variance and guess for the pixels already listed in window.x, window.y (count of them).
-/// Features enter minus their value at the centre, positions as (i - c) / radius, both of order 1 or below: the columns
-/// of equation (2) but for scale.
+/// Fills design, response, noise_variance and guess for the pixels already listed in window.x, window.y (count of
+/// them). Features enter minus their value at the centre, positions as (i - c) / radius, both of order 1 or below: the
+/// columns of equation (2) but for scale.
 void gather(const WindowSource& source, const BasisLayout& layout, int center_x, int center_y, int radius,
             Window& window);
 

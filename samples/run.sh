@@ -1,0 +1,28 @@
+#!/usr/bin/env bash
+# Builds polyrecon (installing what is missing) and shows it on the shipped samples: out/SAMPLE/ then holds the clean
+# picture, the error map, the sample map, the report, and comparison.png: input | result | reference | error.
+# out/samples.png has the three comparisons in one picture.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+echo "== packages"
+samples/install_dependencies.sh
+echo "== build"
+cmake --preset release
+cmake --build --preset release
+
+polyrecon=build/release/src/polyrecon
+for sample in study glass lighthouse; do
+  noisy=samples/${sample}_16.exr reference=samples/${sample}_ref.exr out=out/$sample
+  mkdir -p "$out"
+  echo
+  echo "== $sample: samples/README.md says what it shows"
+  "$polyrecon" denoise -i "$noisy" -o "$out/clean.exr" --error-map "$out/error.exr" \
+    --sample-map "$out/samples.exr" --budget 16 --report "$out/report.json"
+  echo "before and after, against the reference:"
+  "$polyrecon" compare "$noisy" "$out/clean.exr" "$reference"
+  "$polyrecon" preview "$noisy" "$out/clean.exr" "$reference" "$out/error.exr" -o "$out/comparison.png"
+done
+oiiotool out/{study,glass,lighthouse}/comparison.png --mosaic 1x3 --ch R,G,B -o out/samples.png
+echo
+echo "The picture to look at: out/samples.png (docs/samples.jpg is this one)"

@@ -1,0 +1,61 @@
+#include "io/merge.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cli/checks.h"
+#include "cli/commands.h"
+#include "core/error.h"
+
+namespace polyrecon {
+namespace {
+
+struct MergeCommandOptions {
+  std::vector<std::string> inputs;
+  std::string output;
+  MergeOptions merge;
+  bool quiet = false;
+};
+
+void run(const MergeCommandOptions& o) {
+  if (o.inputs.size() < 2) throw Error(ExitCode::Usage, "merge needs two renders or more");
+  for (const std::string& input : o.inputs) require_readable(input);
+  require_outputs(o.inputs, {{"-o", o.output}});
+  const MergeResult result = merge(o.inputs, o.output, o.merge);
+  if (o.quiet) return;
+  std::string text = fmt::format("{}: {} renders", o.output, result.files);
+  if (result.samples > 0) text += fmt::format(", {:g} samples per pixel", result.samples);
+  text += fmt::format("\n  mean, variance and halves: {}\n", fmt::join(result.merged, ", "));
+  if (!result.kept.empty()) text += fmt::format("  from the first file:       {}\n", fmt::join(result.kept, ", "));
+  if (!result.dropped.empty())
+    text += fmt::format("  left out:                  {}\n", fmt::join(result.dropped, ", "));
+  for (const std::string& note : result.notes) text += fmt::format("  note: {}\n", note);
+  std::fputs(text.c_str(), stdout);
+}
+
+}  // namespace
+
+void setup_merge(CLI::App& app, Command& chosen) {
+  const auto o = std::make_shared<MergeCommandOptions>();
+  CLI::App* sub = app.add_subcommand("merge", "Joins renders of one frame into mean, variance and half buffers");
+  sub->add_option("inputs", o->inputs, "Subsets of one sample sequence, or renders with different seeds")
+      ->required()
+      ->type_name("FILE...");
+  sub->add_option("-o,--output", o->output, "EXR to write")->required()->type_name("FILE");
+  sub->add_option("--samples", o->merge.samples,
+                  "Samples per pixel of each render, where the files mislead: subsets by Blender 5 tell the whole's")
+      ->check(CLI::PositiveNumber)
+      ->type_name("N");
+  sub->add_flag("-q,--quiet", o->quiet, "Print nothing but errors");
+  sub->footer(
+      "Examples:\n"
+      "  polyrecon merge part*.exr -o merged.exr\n"
+      "  polyrecon merge subset*.exr -o merged.exr --samples 2");
+  sub->callback([o, &chosen] { chosen = [o] { run(*o); }; });
+}
+
+}  // namespace polyrecon

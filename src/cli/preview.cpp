@@ -1,0 +1,106 @@
+#include "io/preview.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cli/checks.h"
+#include "cli/commands.h"
+#include "cli/layers.h"
+#include "core/error.h"
+#include "io/color.h"
+
+namespace polyrecon {
+namespace {
+
+struct PreviewOptions {
+  std::vector<std::string> inputs;
+  std::string output, layer;
+  DisplayParams display;
+  bool false_color = false;
+};
+
+/// What a person wants to see first: the picture, else what a map is about, else the first thing there is.
+const Layer& main_layer(const LayeredFile& file) {
+  if (const Layer* color = color_layer(file)) return *color;
+  for (const Layer& layer : file.layers)
+    if (layer.role == Role::Beauty && layer.companion == Companion::Mean && layer.channels.size() == 3) return layer;
+  for (const char* name : {"relmse", "samples", "order"})
+    if (const Layer* map = find_layer(file, name)) return *map;
+  if (file.layers.empty()) throw Error(ExitCode::Missing, file.info.path + ": holds no layer to show");
+  return file.layers.front();
+}
+
+const Layer& wanted_layer(const LayeredFile& file, const std::string& name) {
+  if (name.empty()) return main_layer(file);
+  if (const Layer* layer = find_layer(file, name)) return *layer;
+  throw Error(ExitCode::Missing, fmt::format("{}: no layer '{}' (polyrecon inspect lists them)", file.info.path, name));
+}
+
+Image mean_of_channels(const Image& image) {
+  Image out(image.width(), image.height(), 1);
+  for (int c = 0; c < image.channels(); ++c)
+    for (std::size_t i = 0; i < image.pixels(); ++i)
+      out.plane(0)[i] += image.plane(c)[i] / static_cast<Real>(image.channels());
+  return out;
+}
+
+/// Three channels are a picture; anything else, or all on request, is shown in false colours.
+Panel make_panel(const std::string& path, const PreviewOptions& o) {
+  const LayeredFile file = open_layers(path);
+  const Layer& layer = wanted_layer(file, o.layer);
+  const Image image = read_layer(file, layer);
+  Panel panel;
+  if (image.channels() == 3 && !o.false_color) {
+    panel.rgb = to_display(image, o.display);
+  } else {
+    const Image values = mean_of_channels(image);
+    panel.range = log_range(values);
+    panel.rgb = false_color(values, panel.range);
+  }
+  const std::string name = std::filesystem::path(path).filename().string();
+  if (o.inputs.size() > 1 || panel.range.high > 0)
+    panel.caption = image.channels() == 3 ? name : fmt::format("{}: {}", name, layer.name);
+  return panel;
+}
+
+void run(const PreviewOptions& o) {
+  for (const std::string& input : o.inputs) require_readable(input);
+  require_outputs(o.inputs, {{"-o", o.output}});
+  std::vector<Panel> panels;
+  panels.reserve(o.inputs.size());
+  for (const std::string& input : o.inputs) panels.push_back(make_panel(input, o));
+  write_png(o.output, compose(panels));
+}
+
+}  // namespace
+
+void setup_preview(CLI::App& app, Command& chosen) {
+  const auto o = std::make_shared<PreviewOptions>();
+  CLI::App* sub = app.add_subcommand("preview", "Shows layers and maps as a PNG, several files side by side");
+  sub->add_option("inputs", o->inputs, "Images or maps")->required()->type_name("FILE...");
+  sub->add_option("-o,--output", o->output, "PNG to write")->required()->type_name("FILE");
+  sub->add_option("--layer", o->layer, "Layer to show in place of the beauty")->type_name("NAME");
+  sub->add_option("--view", o->display.view, "View of the display: Standard, Filmic, or one of $OCIO's")
+      ->type_name("NAME");
+  sub->add_option("--exposure", o->display.exposure, "Brighter (or darker) by so many stops")
+      ->check(CLI::Range(-64.0, 64.0))
+      ->type_name("STOPS");
+  sub->add_flag("--false-colour,--false-color", o->false_color,
+                "Logarithmic false colours with a legend (maps have them anyway)");
+  sub->footer(
+      "Colours go through OpenColorIO: the configuration named by $OCIO, or a built-in sRGB one.\n"
+      "Examples:\n"
+      "  polyrecon preview clean.exr -o clean.png --view Filmic --exposure 1\n"
+      "  polyrecon preview noisy.exr clean.exr reference.exr error.exr -o compared.png\n"
+      "  polyrecon preview error.exr -o error.png --layer mse --false-colour");
+  sub->callback([o, &chosen] { chosen = [o] { run(*o); }; });
+}
+
+}  // namespace polyrecon

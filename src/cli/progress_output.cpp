@@ -1,0 +1,130 @@
+#include "cli/progress_output.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <string>
+
+namespace polyrecon {
+namespace {
+
+volatile std::sig_atomic_t arrived = 0;
+
+extern "C" void remember_signal(int signal) { arrived = signal; }
+
+/// Cancels on a signal, says nothing.
+class SignalProgress : public Progress {
+ public:
+  bool cancelled() const override { return arrived != 0; }
+};
+
+/// Counts steps over all threads and shows them from time to time.
+class ShownProgress : public SignalProgress {
+ public:
+  void begin(std::string_view stage, std::size_t steps) override {
+    const std::lock_guard lock(mutex_);
+    stage_ = stage;
+    total_ = steps;
+    done_ = 0;
+    begun_ = shown_ = Clock::now();
+    show(Event::Begin);
+  }
+  void advance(std::size_t steps) override {
+    done_ += steps;
+    // A thread that finds another one printing goes on with its work.
+    const std::unique_lock lock(mutex_, std::try_to_lock);
+    if (!lock || Clock::now() - shown_ < std::chrono::milliseconds(100)) return;
+    shown_ = Clock::now();
+    show(Event::Progress);
+  }
+  void end() override {
+    const std::lock_guard lock(mutex_);
+    show(Event::End);
+  }
+
+ protected:
+  enum class Event { Begin, Progress, End };
+  virtual void show(Event event) = 0;
+
+  const std::string& stage() const { return stage_; }
+  /// Totals are estimates: never more than all.
+  std::size_t done() const { return std::min<std::size_t>(done_, total_); }
+  std::size_t total() const { return total_; }
+  double seconds() const { return std::chrono::duration<double>(Clock::now() - begun_).count(); }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  std::mutex mutex_;
+  std::string stage_;
+  std::atomic<std::size_t> done_{0};
+  std::size_t total_ = 0;
+  Clock::time_point begun_, shown_;
+};
+
+class BarProgress final : public ShownProgress {
+ protected:
+  void show(Event event) override {
+    if (!terminal_ && event != Event::End) return;
+    constexpr std::size_t width = 30;
+    const bool finished = event == Event::End;
+    const double part = finished ? 1.0 : total() ? static_cast<double>(done()) / static_cast<double>(total()) : 0.0;
+    const auto filled = static_cast<std::size_t>(part * width);
+    const std::string line =
+        fmt::format("{:<24} [{:<30}] {:3.0f} %  {:6.1f} s", stage(), std::string(filled, '#'), 100 * part, seconds());
+    std::fputs(fmt::format("{}{}{}", terminal_ ? "\r" : "", line, finished ? "\n" : "").c_str(), stderr);
+    std::fflush(stderr);
+  }
+
+ private:
+  const bool terminal_ = ::isatty(STDERR_FILENO) != 0;
+};
+
+class JsonProgress final : public ShownProgress {
+ protected:
+  void show(Event event) override {
+    const char* name = event == Event::Begin ? "begin" : event == Event::End ? "end" : "progress";
+    const nlohmann::ordered_json line{{"event", name},
+                                      {"stage", stage()},
+                                      {"done", event == Event::End ? total() : done()},
+                                      {"total", total()},
+                                      {"seconds", seconds()}};
+    std::fputs((line.dump() + "\n").c_str(), stderr);
+    std::fflush(stderr);
+  }
+};
+
+}  // namespace
+
+void catch_signals() {
+  struct sigaction action = {};
+  action.sa_handler = remember_signal;
+  action.sa_flags = static_cast<int>(SA_RESETHAND);
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+}
+
+int caught_signal() { return arrived; }
+
+std::unique_ptr<Progress> make_progress(ProgressStyle style) {
+  if (style == ProgressStyle::Auto) style = ::isatty(STDERR_FILENO) != 0 ? ProgressStyle::Bar : ProgressStyle::None;
+  switch (style) {
+    case ProgressStyle::Bar:
+      return std::make_unique<BarProgress>();
+    case ProgressStyle::Json:
+      return std::make_unique<JsonProgress>();
+    case ProgressStyle::Auto:
+    case ProgressStyle::None:
+      break;
+  }
+  return std::make_unique<SignalProgress>();
+}
+
+}  // namespace polyrecon

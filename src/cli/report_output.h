@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstddef>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "io/read_frame.h"
+#include "pipeline/report.h"
+
+namespace polyrecon {
+
+/// All that a run of `denoise` tells: the reconstruction's own report and what surrounds it.
+struct RunReport {
+  std::string version, input, output, settings;
+  std::vector<std::string> notes;  ///< Of reading, writing and the sample map.
+  double seconds = 0;              ///< From start to the last file written.
+  double read_seconds = 0, write_seconds = 0;
+  std::size_t peak_memory = 0;  ///< Bytes, of the process.
+  double calibration = 1;       ///< Of the error map: the factor that brought it to the cross-validated error.
+  Report reconstruction;
+};
+
+/// Peak resident memory of this process in bytes.
+std::size_t peak_memory();
+
+/// Which layer plays which role, a line each.
+std::string roles_text(const FrameSource& source);
+nlohmann::ordered_json roles_json(const FrameSource& source);
+
+/// The table at the end of a run.
+std::string report_text(const RunReport& run);
+
+/// The same with stable keys; docs/formats.md lists them.
+nlohmann::ordered_json report_json(const RunReport& run, const FrameSource& source);
+
+}  // namespace polyrecon

@@ -1,0 +1,56 @@
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <memory>
+#include <string>
+
+#include "cli/checks.h"
+#include "cli/commands.h"
+#include "cli/map_files.h"
+#include "cli/progress_output.h"
+#include "cli/sample_map_options.h"
+
+namespace polyrecon {
+namespace {
+
+struct SamplemapOptions {
+  std::string error_map, output;
+  SampleMapOptions map;
+  double samples = 0;  ///< 0: as the error map tells.
+  bool quiet = false;
+};
+
+void run(const SamplemapOptions& o) {
+  check_sample_map_options(o.map);
+  require_readable(o.error_map);
+  require_outputs({o.error_map, o.map.cost}, {{"-o", o.output}});
+  ErrorMapFile error = read_error_map(o.error_map);
+  const Image& map = error.map.relative_mse;
+  if (error.sample_count.empty() && o.samples > 0)
+    error.sample_count = Image(map.width(), map.height(), 1, static_cast<Real>(o.samples));
+  const auto progress = make_progress(ProgressStyle::None);
+  const std::string text =
+      make_and_write_sample_map(o.output, error.map, error.sample_count, error.windows, o.map, *progress);
+  if (!o.quiet) std::fputs(fmt::format("{}: {}\n", o.output, text).c_str(), stdout);
+}
+
+}  // namespace
+
+void setup_samplemap(CLI::App& app, Command& chosen) {
+  const auto o = std::make_shared<SamplemapOptions>();
+  CLI::App* sub = app.add_subcommand("samplemap", "Tells from an error map where the next samples go");
+  sub->add_option("-e,--error-map", o->error_map, "Error map that denoise wrote")->required()->type_name("FILE");
+  sub->add_option("-o,--output", o->output, "Sample map to write")->required()->type_name("FILE");
+  sub->add_option("--samples", o->samples, "Samples per pixel already taken, where the error map does not tell")
+      ->check(CLI::PositiveNumber);
+  sub->add_flag("-q,--quiet", o->quiet, "Print nothing but errors");
+  add_sample_map_options(*sub, o->map);
+  sub->footer(
+      "Examples:\n"
+      "  polyrecon samplemap --error-map error.exr --budget 32 -o samples.exr\n"
+      "  polyrecon samplemap --error-map error.exr --target 0.002 -o samples.exr\n"
+      "  polyrecon samplemap --error-map error.exr --budget 16 --export appleseed -o samples.exr");
+  sub->callback([o, &chosen] { chosen = [o] { run(*o); }; });
+}
+
+}  // namespace polyrecon

@@ -1,0 +1,154 @@
+#include "io/atomic_file.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <chrono>
+#include <cstdio>
+#include <cstring>
+#include <exception>
+#include <filesystem>
+#include <random>
+#include <system_error>
+
+#include "core/error.h"
+#include "io/exr_attributes.h"
+
+namespace polyrecon {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kTemporaryMark = ".polyrecon-";
+constexpr std::size_t kLongestStem = 200;     ///< Of 255 bytes that a name may have.
+constexpr std::chrono::minutes kStaleAge{1};  ///< Younger ones may belong to a run that has not locked its file yet.
+
+[[noreturn]] void fail(const std::string& target, const std::string& doing, int error) {
+  throw Error(ExitCode::CannotWrite,
+              fmt::format("{}: cannot be written ({}: {})", target, doing, std::strerror(error)));
+}
+
+fs::path folder_of(const std::string& target) {
+  const fs::path parent = fs::path(target).parent_path();
+  return parent.empty() ? fs::path(".") : parent;
+}
+
+/// How names of temporaries for this target begin.
+std::string temporary_prefix(const std::string& target) {
+  return "." + fs::path(target).filename().string().substr(0, kLongestStem) + std::string(kTemporaryMark);
+}
+
+/// A new file beside the target that is locked as long as it is in use, and removed unless it took the target's name.
+class Temporary {
+ public:
+  explicit Temporary(const std::string& target) : target_(target) {
+    std::random_device random;
+    for (int attempt = 0; attempt < 100 && descriptor_ < 0; ++attempt) {
+      path_ =
+          (folder_of(target) / fmt::format("{}{:08x}{:08x}", temporary_prefix(target), random(), random())).string();
+      descriptor_ = ::open(path_.c_str(), O_CREAT | O_EXCL | O_RDWR | O_CLOEXEC, 0666);
+      if (descriptor_ < 0 && errno != EEXIST) break;
+    }
+    if (descriptor_ < 0) fail(target, "making a file in its folder", errno);
+    ::flock(descriptor_, LOCK_EX | LOCK_NB);
+  }
+  Temporary(const Temporary&) = delete;
+  Temporary& operator=(const Temporary&) = delete;
+  ~Temporary() {
+    if (!renamed_) ::unlink(path_.c_str());
+    ::close(descriptor_);
+  }
+
+  const std::string& path() const { return path_; }
+
+  void flush() {
+    if (::fsync(descriptor_) != 0) fail(target_, "flushing it to disk", errno);
+  }
+
+  void take_name_of_target() {
+    struct ::stat old {};
+    if (::stat(target_.c_str(), &old) == 0 && S_ISREG(old.st_mode)) ::fchmod(descriptor_, old.st_mode & 07777);
+    if (std::rename(path_.c_str(), target_.c_str()) != 0) fail(target_, "renaming it", errno);
+    renamed_ = true;
+  }
+
+ private:
+  std::string target_, path_;
+  int descriptor_ = -1;
+  bool renamed_ = false;
+};
+
+/// The rename lasts only once the folder is on disk; file systems that cannot flush a folder say EINVAL.
+void flush_folder(const std::string& target) {
+  const int folder = ::open(folder_of(target).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (folder < 0) return;  // a folder may be writable and not readable
+  const bool failed = ::fsync(folder) != 0 && errno != EINVAL;
+  const int error = errno;
+  ::close(folder);
+  if (failed) fail(target, "flushing its folder", error);
+}
+
+bool is_abandoned(const fs::path& path) {
+  std::error_code failure;
+  const auto changed = fs::last_write_time(path, failure);
+  if (failure || fs::file_time_type::clock::now() - changed < kStaleAge) return false;
+  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW);
+  if (descriptor < 0) return false;
+  const bool free = ::flock(descriptor, LOCK_EX | LOCK_NB) == 0;
+  ::close(descriptor);
+  return free;
+}
+
+void remove_abandoned(const std::string& target) {
+  const std::string prefix = temporary_prefix(target);
+  std::error_code failure;
+  for (fs::directory_iterator entry(folder_of(target), failure), end; !failure && entry != end;
+       entry.increment(failure)) {
+    if (entry->path().filename().string().compare(0, prefix.size(), prefix) != 0 || !is_abandoned(entry->path()))
+      continue;
+    std::error_code ignored;
+    fs::remove(entry->path(), ignored);
+  }
+}
+
+void check_target(const std::string& target) {
+  std::error_code failure;
+  const fs::file_status status = fs::status(target, failure);
+  if (target.empty() || fs::path(target).filename().empty() || fs::is_directory(status))
+    throw Error(ExitCode::CannotWrite, fmt::format("{}: cannot be written (it is a folder)", target));
+  if (fs::exists(status) && !fs::is_regular_file(status))
+    throw Error(ExitCode::CannotWrite, fmt::format("{}: cannot be written (it is not a regular file)", target));
+}
+
+}  // namespace
+
+void check_writable(const std::string& target) {
+  check_target(target);
+  const Temporary probe(target);
+}
+
+void write_atomically(const std::string& target, const std::function<void(const std::string& path)>& write,
+                      const std::function<void(const std::string& path)>& verify) {
+  check_target(target);
+  remove_abandoned(target);
+  Temporary temporary(target);
+  try {
+    write(temporary.path());
+    temporary.flush();
+    verify(temporary.path());
+  } catch (const Error&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& problem) {
+    throw Error(ExitCode::CannotWrite, fmt::format("{}: cannot be written ({})", target, first_line(problem.what())));
+  }
+  temporary.take_name_of_target();
+  flush_folder(target);
+}
+
+}  // namespace polyrecon

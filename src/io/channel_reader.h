@@ -1,0 +1,34 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "io/exr_file.h"
+
+namespace polyrecon {
+
+/// Reads some channels of one part a band of lines at a time, so that memory does not grow with the frame.
+class ChannelReader {
+ public:
+  /// Throws Error{BadInput} for a part that is not PartInfo::readable(), or that cannot be opened.
+  ChannelReader(const FileInfo& file, int part, std::vector<std::string> channels);
+  ~ChannelReader();
+
+  /// Lines [y0, y1) of the data window in file coordinates: one plane of (y1 - y0) * width floats after the other.
+  /// Throws Error{BadInput} naming the part and the first line that cannot be read.
+  const std::vector<float>& read(int y0, int y1);
+
+  /// How many lines to read at once: whole chunks, and a bounded number of samples.
+  int lines_per_band() const;
+
+ private:
+  struct Source;
+  std::unique_ptr<Source> source_;
+  const FileInfo& file_;
+  int part_;
+  std::vector<std::string> channels_;
+  std::vector<float> band_;
+};
+
+}  // namespace polyrecon

@@ -1,0 +1,292 @@
+#include "io/choose_layers.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <system_error>
+#include <tuple>
+
+#include "core/error.h"
+#include "io/sibling_files.h"
+
+namespace polyrecon {
+namespace {
+
+constexpr int kByHand = -1000;  ///< Rank of a layer that the user named.
+
+const PartInfo& part_of(const FrameSource& source, const Layer& layer) {
+  return source.files[static_cast<std::size_t>(layer.file)].parts[static_cast<std::size_t>(layer.part)];
+}
+
+bool covers(const Rect& outer, const Rect& inner) { return intersect(outer, inner) == inner; }
+
+/// Every pass of a one-pass-a-file render becomes a layer named after its file.
+void add_file(FrameSource& source, const std::string& path, const std::string& pass, const ReadLimits& limits) {
+  source.files.push_back(describe_file(path, limits));
+  std::vector<Layer> layers = find_layers(source.files.back());
+  if (layers.empty()) throw Error(ExitCode::BadInput, fmt::format("{}: no channels", path));
+  Layer layer = layers.front();
+  layer.file = static_cast<int>(source.files.size()) - 1;
+  layer.name = layer.pass = pass;
+  layer.view_layer.clear();
+  source.layers.push_back(std::move(layer));
+}
+
+bool is_one_bare_image(const FrameSource& source) {
+  return source.layers.size() == 1 && source.layers.front().view_layer.empty() &&
+         (source.layers.front().pass == "RGBA" || source.layers.front().channels.size() == 1);
+}
+
+void open_files(LayerChoice& choice, const std::string& path, const ReadOptions& options) {
+  FrameSource& source = choice.source;
+  source.path = path;
+  source.files.push_back(describe_file(path, options.limits));
+  source.layers = find_layers(source.files.front());
+  if (!is_one_bare_image(source)) return;
+  const auto siblings = find_siblings(path);
+  if (siblings.empty()) return;
+  source.layers.front().name = source.layers.front().pass = pass_in_file_name(path);
+  std::vector<std::string> names;
+  for (const SiblingFile& sibling : siblings) {
+    add_file(source, sibling.path, sibling.pass, options.limits);
+    names.push_back(std::filesystem::path(sibling.path).filename().string());
+  }
+  classify_layers(source.files, source.layers);
+  choice.notes.push_back(fmt::format("passes from files beside the input: {}", fmt::join(names, ", ")));
+}
+
+/// A layer by its whole name, by its name within the view layer, or a single channel taken out of its layer.
+int find_layer(FrameSource& source, const std::string& name, const std::string& view_layer) {
+  auto& layers = source.layers;
+  for (const std::string& candidate : {name, fmt::format("{}.{}", view_layer, name)})
+    for (std::size_t l = 0; l < layers.size(); ++l)
+      if (layers[l].name == candidate) return static_cast<int>(l);
+  for (std::size_t l = 0; l < layers.size(); ++l) {
+    Layer alone = layers[l];
+    const bool is_alpha = alone.alpha == name;
+    if (!is_alpha && std::find(alone.channels.begin(), alone.channels.end(), name) == alone.channels.end()) continue;
+    alone.name = name;
+    alone.channels = {name};
+    alone.alpha.clear();
+    alone.companion = Companion::Mean;
+    layers.push_back(alone);
+    return static_cast<int>(layers.size()) - 1;
+  }
+  return -1;
+}
+
+[[noreturn]] void no_such_layer(const FrameSource& source, const std::string& name) {
+  std::vector<std::string> names;
+  for (const Layer& layer : source.layers) names.push_back(layer.name);
+  throw Error(ExitCode::Missing,
+              fmt::format("{}: no layer {}; there are: {}", source.path, name, fmt::join(names, ", ")));
+}
+
+bool has_beauty(const FrameSource& source, const std::string& view_layer) {
+  return std::any_of(source.layers.begin(), source.layers.end(), [&](const Layer& l) {
+    return l.view_layer == view_layer && l.role == Role::Beauty && l.companion == Companion::Mean;
+  });
+}
+
+void choose_view_layer(FrameSource& source, const ReadOptions& options) {
+  const auto beauty = std::find_if(source.layers.begin(), source.layers.end(), [&](const Layer& l) {
+    return l.role == Role::Beauty && l.companion == Companion::Mean &&
+           (options.view_layer.empty() || l.view_layer == options.view_layer) &&
+           (options.view.empty() || l.view == options.view);
+  });
+  source.view_layer = options.view_layer;
+  source.view = options.view;
+  if (beauty != source.layers.end()) {
+    source.view_layer = beauty->view_layer;
+    source.view = beauty->view;
+  } else if (!options.view_layer.empty() &&
+             std::none_of(source.layers.begin(), source.layers.end(),
+                          [&](const Layer& l) { return l.view_layer == options.view_layer; })) {
+    throw Error(ExitCode::Missing, fmt::format("{}: no view layer {}", source.path, options.view_layer));
+  }
+}
+
+/// Marks the layers named by hand; companions after the means, since they refer to them.
+void apply_map(FrameSource& source, const ReadOptions& options) {
+  for (const bool means : {true, false})
+    for (const RoleMapping& mapping : options.map) {
+      if ((mapping.companion == Companion::Mean) != means) continue;
+      int index = find_layer(source, mapping.layer, source.view_layer);
+      std::error_code failure;
+      if (index < 0 && std::filesystem::is_regular_file(mapping.layer, failure)) {
+        add_file(source, mapping.layer, mapping.layer, options.limits);
+        index = static_cast<int>(source.layers.size()) - 1;
+      }
+      if (index < 0) no_such_layer(source, mapping.layer);
+      Layer& layer = source.layers[static_cast<std::size_t>(index)];
+      layer.role = mapping.role;
+      layer.companion = mapping.companion;
+      layer.rank = kByHand;
+      layer.view = source.view;
+      layer.view_layer = source.view_layer;
+      layer.of.clear();
+      layer.why = "named by hand";
+    }
+}
+
+/// The mean that plays a role: named by hand, else of the chosen view layer, else of one that has no beauty of its own
+/// (Mitsuba's nested integrators); then by rank, then in file order. Parts that cannot be read are passed over.
+int find_mean(const FrameSource& source, Role role, bool readable = true) {
+  int best = -1;
+  const auto key = [&](const Layer& l) {
+    return std::make_tuple(l.rank != kByHand, l.view_layer != source.view_layer, l.rank);
+  };
+  for (std::size_t i = 0; i < source.layers.size(); ++i) {
+    const Layer& layer = source.layers[i];
+    if (layer.role != role || layer.companion != Companion::Mean || layer.view != source.view) continue;
+    if (layer.view_layer != source.view_layer && has_beauty(source, layer.view_layer)) continue;
+    if (part_of(source, layer).readable() != readable) continue;
+    if (best < 0 || key(layer) < key(source.layers[static_cast<std::size_t>(best)])) best = static_cast<int>(i);
+  }
+  return best;
+}
+
+bool is_variance(Companion c) {
+  return c == Companion::VarianceOfMean || c == Companion::VarianceOfSample || c == Companion::SecondMoment;
+}
+
+template <class Wanted>
+int find_companion(const FrameSource& source, const Layer& mean, Wanted wanted) {
+  int best = -1;
+  for (std::size_t i = 0; i < source.layers.size(); ++i) {
+    const Layer& layer = source.layers[i];
+    const bool by_hand = layer.rank == kByHand && layer.of.empty() && layer.role == mean.role;
+    if (!wanted(layer.companion) || !part_of(source, layer).readable()) continue;
+    if (!by_hand && (layer.of != mean.name || layer.view != mean.view)) continue;
+    if (by_hand) return static_cast<int>(i);
+    if (best < 0) best = static_cast<int>(i);
+  }
+  return best;
+}
+
+PassChoice with_companions(const FrameSource& source, Role role, int mean) {
+  const Layer& layer = source.layers[static_cast<std::size_t>(mean)];
+  PassChoice pass{role, mean};
+  pass.variance = find_companion(source, layer, is_variance);
+  pass.half_a = find_companion(source, layer, [](Companion c) { return c == Companion::HalfA; });
+  pass.half_b = find_companion(source, layer, [](Companion c) { return c == Companion::HalfB; });
+  if (pass.half_a < 0 || pass.half_b < 0) pass.half_a = pass.half_b = -1;
+  return pass;
+}
+
+[[noreturn]] void no_beauty(const FrameSource& source) {
+  if (find_mean(source, Role::Beauty, false) >= 0)
+    throw Error(ExitCode::BadInput,
+                fmt::format("{}: the beauty is deep, mip-mapped or subsampled (luminance-chroma), which is unsupported",
+                            source.path));
+  std::vector<std::string> names;
+  for (const Layer& layer : source.layers) names.push_back(layer.name);
+  throw Error(ExitCode::Missing, fmt::format("{}: no beauty among the layers {}; name it with --map beauty=LAYER",
+                                             source.path, fmt::join(names, ", ")));
+}
+
+/// Drops layers whose window does not hold the beauty's; alpha is written again, so its window has to be the same.
+void drop_misfits(LayerChoice& choice, PassChoice& pass) {
+  const FrameSource& source = choice.source;
+  const Layer& beauty = source.layers[static_cast<std::size_t>(choice.passes.front().mean)];
+  const Rect window = part_of(source, beauty).data_window;
+  for (int* index : {&pass.variance, &pass.half_a, &pass.half_b, &pass.mean}) {
+    if (*index < 0) continue;
+    const Layer& layer = source.layers[static_cast<std::size_t>(*index)];
+    const Rect own = part_of(source, layer).data_window;
+    if (pass.role == Role::Alpha ? own == window : covers(own, window)) continue;
+    choice.notes.push_back(fmt::format("{} is left out: its data window does not hold the beauty's", layer.name));
+    *index = -1;
+  }
+  if (pass.half_a < 0 || pass.half_b < 0) pass.half_a = pass.half_b = -1;
+}
+
+void choose_aovs(LayerChoice& choice, const ReadOptions& options) {
+  FrameSource& source = choice.source;
+  const auto& beauty = source.layers[static_cast<std::size_t>(choice.passes.front().mean)];
+  const Rect window = part_of(source, beauty).data_window;
+  for (const std::string& name : options.aovs) {
+    const int index = find_layer(source, name, source.view_layer);
+    if (index < 0) no_such_layer(source, name);
+    const Layer& layer = source.layers[static_cast<std::size_t>(index)];
+    const PartInfo& part = part_of(source, layer);
+    if (!part.readable() || (layer.channels.size() != 3 && layer.channels.size() != 1))
+      throw Error(ExitCode::BadInput, fmt::format("{}: layer {} is no colour layer", source.path, layer.name));
+    if (!(part.data_window == window))
+      throw Error(ExitCode::BadInput,
+                  fmt::format("{}: the data window of layer {} is not the beauty's", source.path, layer.name));
+    choice.passes.push_back(with_companions(source, Role::Color, index));
+  }
+}
+
+void describe_choice(LayerChoice& choice) {
+  FrameSource& source = choice.source;
+  for (const PassChoice& pass : choice.passes)
+    for (const int index : {pass.mean, pass.variance, pass.half_a, pass.half_b}) {
+      if (index < 0) continue;
+      const Layer& layer = source.layers[static_cast<std::size_t>(index)];
+      source.chosen.push_back({pass.role, layer.companion, layer.name, layer.why});
+    }
+}
+
+}  // namespace
+
+RoleMapping parse_mapping(const std::string& text) {
+  static constexpr std::array companions{std::pair{"variance", Companion::VarianceOfMean},
+                                         std::pair{"half-a", Companion::HalfA}, std::pair{"half-b", Companion::HalfB}};
+  const auto equals = text.find('=');
+  RoleMapping mapping;
+  std::string word = text.substr(0, equals);
+  for (const auto& [name, companion] : companions) {
+    const std::string ending = fmt::format("-{}", name);
+    if (word == name) word = fmt::format("beauty-{}", name);
+    if (word.size() <= ending.size() || word.compare(word.size() - ending.size(), ending.size(), ending) != 0) continue;
+    mapping.companion = companion;
+    word.resize(word.size() - ending.size());
+  }
+  const auto role = role_from(word);
+  if (equals == std::string::npos || equals + 1 == text.size() || !role || *role == Role::Color || *role == Role::Other)
+    throw Error(
+        ExitCode::Usage,
+        fmt::format("--map {}: expected ROLE=LAYER with a role of beauty, prior, alpha, albedo, normal, depth, "
+                    "visibility, sample-count, variance, half-a, half-b or ROLE-variance, ROLE-half-a, ROLE-half-b",
+                    text));
+  mapping.role = *role;
+  mapping.layer = text.substr(equals + 1);
+  return mapping;
+}
+
+LayerChoice choose_layers(const std::string& path, const ReadOptions& options) {
+  LayerChoice choice;
+  FrameSource& source = choice.source;
+  open_files(choice, path, options);
+  choose_view_layer(source, options);
+  apply_map(source, options);
+  const int beauty = find_mean(source, Role::Beauty);
+  if (beauty < 0) no_beauty(source);
+  choice.passes.push_back(with_companions(source, Role::Beauty, beauty));
+  drop_misfits(choice, choice.passes.front());
+  for (const Role role :
+       {Role::Normal, Role::Albedo, Role::Depth, Role::Visibility, Role::Prior, Role::SampleCount, Role::Alpha}) {
+    const int mean = find_mean(source, role);
+    if (mean < 0) continue;
+    PassChoice pass = with_companions(source, role, mean);
+    drop_misfits(choice, pass);
+    if (pass.mean >= 0) choice.passes.push_back(pass);
+  }
+  choose_aovs(choice, options);
+  const Layer& layer = source.layers[static_cast<std::size_t>(beauty)];
+  if (!layer.alpha.empty()) source.alpha_layer = layer.name;
+  for (const PassChoice& pass : choice.passes)
+    if (pass.role == Role::Alpha) {
+      const Layer& own = source.layers[static_cast<std::size_t>(pass.mean)];
+      if (layer.alpha.empty() || own.rank == kByHand) source.alpha_layer = own.name;
+    }
+  describe_choice(choice);
+  return choice;
+}
+
+}  // namespace polyrecon

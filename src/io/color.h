@@ -1,0 +1,35 @@
+#pragma once
+
+#include <string>
+
+#include "core/image.h"
+
+namespace polyrecon {
+
+/// How linear radiance becomes a picture on a display.
+struct DisplayParams {
+  double exposure = 0;  ///< Stops: radiance is multiplied by 2^exposure first.
+  std::string view;     ///< View of the configuration's default display; empty: its default view.
+};
+
+/// Linear radiance (3 channels) -> display-encoded RGB in 0..1, by OpenColorIO: the configuration that the environment
+/// variable OCIO names, or a built-in one with the sRGB display and the views "Standard" (the plain sRGB curve) and
+/// "Filmic" (16.5 stops under a soft shoulder). Pixels that are not finite come out magenta.
+/// Throws Error{BadInput} where $OCIO cannot be used, Error{Usage} for an unknown view, naming the known ones.
+Image to_display(const Image& linear, const DisplayParams& params);
+
+/// The values at the ends of a false-colour scale; logarithmic between.
+struct LogRange {
+  double low = 0, high = 0;
+};
+
+/// From the 1st to the 99.9th percentile of the positive finite values, but at most four powers of ten below the upper
+/// end; {0, 0} where there is none.
+LogRange log_range(const Image& values);
+
+/// values (1 channel) -> display-encoded RGB on the perceptually uniform colour map "inferno" (S. van der Walt and
+/// N. Smith, 2015), on a logarithmic scale over range. What is not above its lower end is black, what is not finite
+/// cyan.
+Image false_color(const Image& values, const LogRange& range);
+
+}  // namespace polyrecon

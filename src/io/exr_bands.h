@@ -1,0 +1,49 @@
+#pragma once
+
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfInputPart.h>
+#include <OpenEXR/ImfMultiPartOutputFile.h>
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/rect.h"
+
+namespace polyrecon {
+
+/// One channel of a band, in the type of the file: rows of the data window's width.
+struct NativeChannel {
+  std::string name;
+  Imf::PixelType type = Imf::FLOAT;
+  std::vector<char> samples;
+};
+
+/// Some lines of all channels of a part, bit for bit.
+struct NativeBand {
+  int x0 = 0, width = 0;
+  int y0 = 0, y1 = 0;  ///< Lines y0 .. y1 - 1 in the file's coordinates.
+  std::vector<NativeChannel> channels;
+
+  NativeBand(const Imf::Header& header, int first, int last_excluded);
+  NativeChannel* find(const std::string& name);
+  Imf::FrameBuffer buffer();
+};
+
+std::size_t size_of(Imf::PixelType type);
+
+constexpr int kBandLines = 256;  ///< A multiple of the lines in a chunk, whatever the compression.
+
+/// The bands that cover a part: so many lines each, or a row of tiles, in the order in which the part's line order has
+/// them written.
+std::vector<std::pair<int, int>> bands_of(const Imf::Header& header, int lines = kBandLines);
+
+/// Decodes the lines of band from a flat part whose channels have one sample a pixel.
+void read_band(Imf::InputPart& input, NativeBand& band);
+
+/// Writes a part band by band; make fills the lines of each band. The bands are those of bands_of, in its order.
+void write_bands(Imf::MultiPartOutputFile& output, int part, const std::function<void(NativeBand&)>& make,
+                 int lines = kBandLines);
+
+}  // namespace polyrecon

@@ -1,0 +1,491 @@
+#include "io/merge.h"
+
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfFloatAttribute.h>
+#include <OpenEXR/ImfMultiPartInputFile.h>
+#include <OpenEXR/ImfPartType.h>
+#include <OpenEXR/ImfStandardAttributes.h>
+#include <OpenEXR/ImfStringAttribute.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <limits>
+#include <map>
+#include <optional>
+#include <set>
+#include <system_error>
+
+#include "core/error.h"
+#include "io/channel_names.h"
+#include "io/channel_reader.h"
+#include "io/exr_bands.h"
+#include "io/exr_single_part.h"
+
+namespace polyrecon {
+namespace {
+
+constexpr std::size_t kSumsAtOnce = std::size_t{1} << 21;
+constexpr int kChunkLines = 32;
+
+/// One render and its layers, which are those of the first render in the same order.
+struct Render {
+  FileInfo file;
+  std::vector<Layer> layers;
+};
+
+const PartInfo& part_of(const Render& render, const Layer& layer) {
+  return render.file.parts[static_cast<std::size_t>(layer.part)];
+}
+
+[[noreturn]] void misfit(const Render& render, const Render& first, const std::string& what) {
+  throw Error(ExitCode::BadInput, fmt::format("{}: does not fit {}: {}", render.file.path, first.file.path, what));
+}
+
+void check_fits(Render& render, const Render& first) {
+  std::vector<Layer> ordered;
+  for (const Layer& layer : first.layers) {
+    const auto same =
+        std::find_if(render.layers.begin(), render.layers.end(), [&](const Layer& l) { return l.name == layer.name; });
+    if (same == render.layers.end()) misfit(render, first, fmt::format("no layer {}", layer.name));
+    if (same->channels.size() != layer.channels.size() || same->alpha.empty() != layer.alpha.empty())
+      misfit(render, first, fmt::format("other channels in layer {}", layer.name));
+    if (!(part_of(render, *same).data_window == part_of(first, layer).data_window))
+      misfit(render, first, fmt::format("another data window in layer {}", layer.name));
+    if (!(part_of(render, *same).display_window == part_of(first, layer).display_window))
+      misfit(render, first, "another display window");
+    ordered.push_back(*same);
+  }
+  for (const Layer& layer : render.layers)
+    if (std::none_of(first.layers.begin(), first.layers.end(), [&](const Layer& l) { return l.name == layer.name; }))
+      misfit(render, first, fmt::format("a further layer {}", layer.name));
+  render.layers = std::move(ordered);
+}
+
+std::vector<Render> open_renders(const std::vector<std::string>& paths, const ReadLimits& limits) {
+  if (paths.size() < 2) throw Error(ExitCode::Usage, "merge needs at least two renders of the same frame");
+  std::vector<Render> renders;
+  for (const std::string& path : paths) {
+    Render render;
+    render.file = describe_file(path, limits);
+    if (render.file.format != "openexr")
+      throw Error(ExitCode::BadInput, fmt::format("{}: merge needs OpenEXR files", path));
+    render.layers = find_layers(render.file);
+    std::error_code failure;
+    for (const Render& other : renders)
+      if (std::filesystem::equivalent(path, other.file.path, failure))
+        throw Error(ExitCode::Usage, fmt::format("{}: given twice; renders have to be independent", path));
+    if (!renders.empty()) check_fits(render, renders.front());
+    renders.push_back(std::move(render));
+  }
+  return renders;
+}
+
+/// What becomes of a layer.
+enum class Fate { Merged, Kept, Dropped };
+
+/// With alpha, which comes last.
+std::vector<std::string> all_channels(const Layer& layer) {
+  std::vector<std::string> channels = layer.channels;
+  if (!layer.alpha.empty()) channels.push_back(layer.alpha);
+  return channels;
+}
+
+bool all_uint(const Render& render, const Layer& layer) {
+  for (const ChannelInfo& channel : part_of(render, layer).channels)
+    if (channel.name == layer.channels.front()) return channel.type == SampleType::Uint;
+  return false;
+}
+
+/// A plain depth pass beside one for denoising is for compositing: its values must not be mixed.
+bool is_second_depth(const Render& first, const Layer& layer) {
+  return layer.role == Role::Depth && std::any_of(first.layers.begin(), first.layers.end(), [&](const Layer& other) {
+           return other.role == Role::Depth && other.companion == Companion::Mean && other.rank < layer.rank &&
+                  other.view_layer == layer.view_layer && other.view == layer.view;
+         });
+}
+
+Fate fate_of(const Render& first, const Layer& layer) {
+  if (layer.companion != Companion::Mean || layer.role == Role::SampleCount) return Fate::Dropped;
+  if (layer.role == Role::Other || all_uint(first, layer) || is_second_depth(first, layer)) return Fate::Kept;
+  return Fate::Merged;
+}
+
+/// The name of a channel in the one part of the output.
+std::string output_name(const Render& first, const Layer& layer, const std::string& channel,
+                        const std::string& companion = {}) {
+  const bool single = first.file.parts.size() == 1;
+  if (single && companion.empty()) return channel;
+  const auto dot = channel.rfind('.');
+  const std::string suffix = dot == std::string::npos ? channel : channel.substr(dot + 1);
+  std::string name = layer.view_layer.empty() ? "" : layer.view_layer + ".";
+  name += layer.pass + companion;
+  if (!layer.view.empty()) name += "." + layer.view;
+  return name + "." + suffix;
+}
+
+/// Weighted mean and spread of a stream of samples (West's form of Welford's recurrence).
+struct Accumulator {
+  double weight = 0, mean = 0, spread = 0;
+  int renders = 0;
+
+  void add(double x, double w) {
+    ++renders;
+    weight += w;
+    const double delta = x - mean;
+    mean += delta * w / weight;
+    spread += w * delta * (x - mean);
+  }
+  double variance_of_mean() const {
+    if (renders < 2) return std::numeric_limits<double>::quiet_NaN();
+    return spread / ((renders - 1) * weight);
+  }
+};
+
+/// Accumulators of one channel over a band.
+struct ChannelSums {
+  std::vector<Accumulator> all, half_a, half_b;
+
+  explicit ChannelSums(std::size_t pixels) : all(pixels), half_a(pixels), half_b(pixels) {}
+};
+
+/// Attributes of all parts, the first part's before the others', but those that say how a part is stored.
+void copy_metadata(const Imf::MultiPartInputFile& input, Imf::Header& header) {
+  static const std::set<std::string> storage{"name",       "type",       "view",          "channels",
+                                             "chunkCount", "tiles",      "version",       "compression",
+                                             "lineOrder",  "dataWindow", "displayWindow", "maxSamplesPerPixel"};
+  std::set<std::string> copied = storage;
+  for (int p = 0; p < input.parts(); ++p)
+    for (auto a = input.header(p).begin(); a != input.header(p).end(); ++a)
+      if (copied.insert(a.name()).second) header.insert(a.name(), a.attribute());
+}
+
+class Merger {
+ public:
+  Merger(std::vector<Render> renders, double samples) : renders_(std::move(renders)), samples_(samples) {
+    choose_window();
+    for (std::size_t l = 0; l < first().layers.size(); ++l) sort_layer(l);
+    find_weights();
+    report_.files = static_cast<int>(renders_.size());
+  }
+
+  Imf::Header header() const {
+    const Imf::MultiPartInputFile input(first().file.path.c_str(), 0, false);
+    Imf::Header header(input.header(0).displayWindow(), {{window_.x0, window_.y0}, {window_.x1 - 1, window_.y1 - 1}});
+    header.setType(Imf::SCANLINEIMAGE);
+    header.compression() = Imf::ZIP_COMPRESSION;
+    copy_metadata(input, header);
+    header.channels() = output_channels();
+    if (const auto views = stereo_views(); !views.empty()) Imf::addMultiView(header, views);
+    for (const auto& [view_layer, samples] : metadata_samples_) {
+      header.insert(fmt::format("polyrecon/{}/samples", view_layer), Imf::FloatAttribute(static_cast<float>(samples)));
+      const std::string cycles = fmt::format("cycles.{}.samples", view_layer);
+      if (header.find(cycles) != header.end())
+        header.insert(cycles, Imf::StringAttribute(fmt::format("{:.0f}", samples)));
+    }
+    header.insert("polyrecon/version", Imf::StringAttribute(POLYRECON_VERSION));
+    return header;
+  }
+
+  void make(NativeBand& band) {
+    const auto weights = read_weights(band.y0, band.y1);
+    merge_layers(weights, band);
+    for (const std::size_t l : kept_) copy_layer(l, band);
+    for (const std::string& view_layer : counted_) write_counts(view_layer, weights, band);
+  }
+
+  /// Lines merged at once, so that the sums take some 200 MB at most (and one chunk of the tallest usual kind at
+  /// least).
+  int lines_per_band() const {
+    std::size_t channels = 0;
+    for (const std::size_t l : merged_) channels += all_channels(first().layers[l]).size();
+    const std::size_t line = std::max<std::size_t>(1, channels * static_cast<std::size_t>(window_.width()));
+    return std::max(kChunkLines, static_cast<int>(std::min<std::size_t>(kSumsAtOnce / line, kBandLines)) / kChunkLines *
+                                     kChunkLines);
+  }
+
+  MergeResult report() {
+    if (left_out_ > 0)
+      report_.notes.push_back(fmt::format("{} samples that are not finite were left out of the means", left_out_));
+    if (!merged_.empty() && !any_spread_)
+      report_.notes.emplace_back("the renders are equal in every pixel: were they made with the same seed or offset?");
+    const auto pixels = static_cast<double>(window_.area());
+    report_.samples = counted_.empty() ? 0 : count_sum_ / pixels / static_cast<double>(counted_.size());
+    return report_;
+  }
+
+ private:
+  using Weights = std::vector<std::map<std::string, std::vector<double>>>;  ///< [render][view layer][pixel]
+
+  const Render& first() const { return renders_.front(); }
+
+  void choose_window() {
+    for (const Layer& layer : first().layers)
+      if (layer.role == Role::Beauty && layer.companion == Companion::Mean && part_of(first(), layer).readable()) {
+        window_ = part_of(first(), layer).data_window;
+        return;
+      }
+    throw Error(ExitCode::Missing, fmt::format("{}: no beauty to merge", first().file.path));
+  }
+
+  void sort_layer(std::size_t l) {
+    const Layer& layer = first().layers[l];
+    const PartInfo& part = part_of(first(), layer);
+    if (!part.readable() || !(part.data_window == window_)) {
+      report_.dropped.push_back(layer.name);
+      report_.notes.push_back(
+          fmt::format("{} is left out: {}", layer.name,
+                      part.readable() ? "its data window is not the beauty's" : "its part is no plain image"));
+      return;
+    }
+    switch (fate_of(first(), layer)) {
+      case Fate::Merged:
+        merged_.push_back(l);
+        report_.merged.push_back(layer.name);
+        break;
+      case Fate::Kept:
+        kept_.push_back(l);
+        report_.kept.push_back(layer.name);
+        break;
+      case Fate::Dropped:
+        report_.dropped.push_back(layer.name);
+        break;
+    }
+  }
+
+  std::optional<double> samples_of(const Render& render, const std::string& view_layer) const {
+    return samples_ > 0 ? samples_ : samples_in_metadata(render.file, view_layer);
+  }
+
+  /// The sample-count layer of a view layer, -1 without one.
+  int count_layer(const std::string& view_layer) const {
+    int best = -1;
+    for (std::size_t l = 0; l < first().layers.size(); ++l) {
+      const Layer& layer = first().layers[l];
+      if (layer.role != Role::SampleCount || layer.view_layer != view_layer || !part_of(first(), layer).readable() ||
+          !(part_of(first(), layer).data_window == window_))
+        continue;
+      if (best < 0 || layer.rank < first().layers[static_cast<std::size_t>(best)].rank) best = static_cast<int>(l);
+    }
+    return best;
+  }
+
+  bool is_blender(const std::string& view_layer) const {
+    return find_attribute(first().file.parts.front(), fmt::format("cycles.{}.samples", view_layer)) != nullptr;
+  }
+
+  void find_weights() {
+    std::set<std::string> view_layers;
+    for (const std::size_t l : merged_) view_layers.insert(first().layers[l].view_layer);
+    for (const std::string& view_layer : view_layers) {
+      const int layer = count_layer(view_layer);
+      const bool fraction = layer >= 0 && is_sample_fraction(first().layers[static_cast<std::size_t>(layer)]);
+      double total = 0;
+      bool known = true;
+      for (const Render& render : renders_) {
+        const auto samples = samples_of(render, view_layer);
+        known = known && samples.has_value();
+        total += samples.value_or(0);
+      }
+      if (known) metadata_samples_[view_layer] = total;
+      if (known && samples_ <= 0 && is_blender(view_layer))
+        report_.notes.push_back(
+            fmt::format("{}: {:g} samples in all by the metadata; subsets of one sequence have fewer, give --samples",
+                        view_layer, total));
+      if (known || (layer >= 0 && !fraction))
+        counted_.push_back(view_layer);
+      else
+        report_.notes.push_back(fmt::format("{}: sample counts are unknown, all renders count alike",
+                                            view_layer.empty() ? "the image" : view_layer));
+    }
+  }
+
+  /// n_k of every pixel of a band.
+  Weights read_weights(int y0, int y1) {
+    const std::size_t pixels = static_cast<std::size_t>(window_.width()) * static_cast<std::size_t>(y1 - y0);
+    Weights weights(renders_.size());
+    for (const std::string& view_layer : counted_) {
+      const int l = count_layer(view_layer);
+      for (std::size_t k = 0; k < renders_.size(); ++k) {
+        const Render& render = renders_[k];
+        const double metadata = samples_of(render, view_layer).value_or(0);
+        std::vector<double>& n = weights[k][view_layer];
+        n.assign(pixels, metadata);
+        if (l < 0) continue;
+        const Layer& layer = render.layers[static_cast<std::size_t>(l)];
+        const double scale = is_sample_fraction(layer) ? metadata : 1;
+        ChannelReader reader(render.file, layer.part, layer.channels);
+        const std::vector<float>& counts = reader.read(y0, y1);
+        for (std::size_t i = 0; i < pixels; ++i)
+          n[i] = std::isfinite(counts[i]) && counts[i] > 0 ? counts[i] * scale : 0;
+      }
+    }
+    return weights;
+  }
+
+  /// Adds all merged layers of one render to the sums; every part is decoded once.
+  void add_render(std::size_t k, const Weights& weights, const NativeBand& band,
+                  std::vector<std::vector<ChannelSums>>& sums) {
+    const Render& render = renders_[k];
+    const std::size_t pixels = static_cast<std::size_t>(band.width) * static_cast<std::size_t>(band.y1 - band.y0);
+    const std::vector<double> alike(pixels, 1);
+    for (int part = 0; part < static_cast<int>(render.file.parts.size()); ++part) {
+      std::vector<std::string> channels;
+      std::vector<std::pair<ChannelSums*, const std::vector<double>*>> targets;
+      for (std::size_t m = 0; m < merged_.size(); ++m) {
+        const Layer& layer = render.layers[merged_[m]];
+        if (layer.part != part) continue;
+        const auto known = weights[k].find(layer.view_layer);
+        const std::vector<double>& n = known == weights[k].end() ? alike : known->second;
+        const auto names = all_channels(layer);
+        for (std::size_t c = 0; c < names.size(); ++c) {
+          channels.push_back(names[c]);
+          targets.emplace_back(&sums[m][c], &n);
+        }
+      }
+      if (channels.empty()) continue;
+      ChannelReader reader(render.file, part, channels);
+      const std::vector<float>& samples = reader.read(band.y0, band.y1);
+      for (std::size_t c = 0; c < targets.size(); ++c)
+        for (std::size_t i = 0; i < pixels; ++i)
+          add(*targets[c].first, i, samples[c * pixels + i], (*targets[c].second)[i], k);
+    }
+  }
+
+  void merge_layers(const Weights& weights, NativeBand& band) {
+    const std::size_t pixels = static_cast<std::size_t>(band.width) * static_cast<std::size_t>(band.y1 - band.y0);
+    std::vector<std::vector<ChannelSums>> sums;
+    for (const std::size_t l : merged_) sums.emplace_back(all_channels(first().layers[l]).size(), ChannelSums(pixels));
+    for (std::size_t k = 0; k < renders_.size(); ++k) add_render(k, weights, band, sums);
+    for (std::size_t m = 0; m < merged_.size(); ++m) {
+      const Layer& layer = first().layers[merged_[m]];
+      for (std::size_t c = 0; c < layer.channels.size(); ++c) write_channel(layer, layer.channels[c], sums[m][c], band);
+      if (!layer.alpha.empty()) write_mean(*band.find(output_name(first(), layer, layer.alpha)), sums[m].back().all);
+    }
+  }
+
+  void add(ChannelSums& sums, std::size_t i, float x, double weight, std::size_t k) {
+    if (weight <= 0) return;
+    if (!std::isfinite(x)) {
+      ++left_out_;
+      return;
+    }
+    sums.all[i].add(x, weight);
+    (k % 2 == 0 ? sums.half_a : sums.half_b)[i].add(x, weight);
+  }
+
+  static void put(NativeChannel& channel, std::size_t i, double value) {
+    const auto narrow = static_cast<float>(value);
+    std::memcpy(channel.samples.data() + i * sizeof narrow, &narrow, sizeof narrow);
+  }
+
+  static void write_mean(NativeChannel& channel, const std::vector<Accumulator>& sums) {
+    for (std::size_t i = 0; i < sums.size(); ++i)
+      put(channel, i, sums[i].renders > 0 ? sums[i].mean : std::numeric_limits<double>::quiet_NaN());
+  }
+
+  void write_channel(const Layer& layer, const std::string& name, const ChannelSums& sums, NativeBand& band) {
+    write_mean(*band.find(output_name(first(), layer, name)), sums.all);
+    NativeChannel& variance = *band.find(output_name(first(), layer, name, " Variance"));
+    NativeChannel& half_a = *band.find(output_name(first(), layer, name, " A"));
+    NativeChannel& half_b = *band.find(output_name(first(), layer, name, " B"));
+    for (std::size_t i = 0; i < sums.all.size(); ++i) {
+      const Accumulator& all = sums.all[i];
+      any_spread_ = any_spread_ || all.spread > 0;
+      put(variance, i, all.variance_of_mean());
+      const double mean = all.renders > 0 ? all.mean : std::numeric_limits<double>::quiet_NaN();
+      put(half_a, i, sums.half_a[i].renders > 0 ? sums.half_a[i].mean : mean);
+      put(half_b, i, sums.half_b[i].renders > 0 ? sums.half_b[i].mean : mean);
+    }
+  }
+
+  /// Bit for bit, whatever the type.
+  void copy_layer(std::size_t l, NativeBand& band) {
+    const Layer& layer = first().layers[l];
+    const std::vector<std::string> channels = all_channels(layer);
+    Imf::MultiPartInputFile container(first().file.path.c_str(), 0, false);
+    Imf::InputPart input(container, layer.part);
+    NativeBand old(input.header(), band.y0, band.y1);
+    old.channels.erase(std::remove_if(old.channels.begin(), old.channels.end(),
+                                      [&](const NativeChannel& c) {
+                                        return std::find(channels.begin(), channels.end(), c.name) == channels.end();
+                                      }),
+                       old.channels.end());
+    read_band(input, old);
+    for (NativeChannel& channel : old.channels)
+      band.find(output_name(first(), layer, channel.name))->samples = std::move(channel.samples);
+  }
+
+  void write_counts(const std::string& view_layer, const Weights& weights, NativeBand& band) {
+    NativeChannel& channel = *band.find(count_name(view_layer));
+    const std::size_t pixels = channel.samples.size() / sizeof(float);
+    for (std::size_t i = 0; i < pixels; ++i) {
+      double sum = 0;
+      for (const auto& render : weights) sum += render.at(view_layer)[i];
+      put(channel, i, sum);
+      count_sum_ += sum;
+    }
+  }
+
+  static std::string count_name(const std::string& view_layer) {
+    return view_layer.empty() ? "Sample Count.X" : view_layer + ".Sample Count.X";
+  }
+
+  Imf::ChannelList output_channels() const {
+    static constexpr std::array companions{"", " Variance", " A", " B"};
+    Imf::ChannelList list;
+    for (const std::size_t l : merged_) {
+      const Layer& layer = first().layers[l];
+      for (const std::string& name : layer.channels)
+        for (const char* companion : companions)
+          list.insert(output_name(first(), layer, name, companion), Imf::Channel(Imf::FLOAT));
+      if (!layer.alpha.empty()) list.insert(output_name(first(), layer, layer.alpha), Imf::Channel(Imf::FLOAT));
+    }
+    for (const std::size_t l : kept_) {
+      const Layer& layer = first().layers[l];
+      for (const ChannelInfo& channel : part_of(first(), layer).channels) {
+        const auto mine = all_channels(layer);
+        if (std::find(mine.begin(), mine.end(), channel.name) == mine.end()) continue;
+        const auto type = channel.type == SampleType::Half   ? Imf::HALF
+                          : channel.type == SampleType::Uint ? Imf::UINT
+                                                             : Imf::FLOAT;
+        list.insert(output_name(first(), layer, channel.name), Imf::Channel(type));
+      }
+    }
+    for (const std::string& view_layer : counted_) list.insert(count_name(view_layer), Imf::Channel(Imf::FLOAT));
+    return list;
+  }
+
+  Imf::StringVector stereo_views() const {
+    Imf::StringVector views;
+    for (const Layer& layer : first().layers)
+      if (!layer.view.empty() && std::find(views.begin(), views.end(), layer.view) == views.end())
+        views.push_back(layer.view);
+    return views;
+  }
+
+  std::vector<Render> renders_;
+  double samples_;  ///< Of each render, 0 where the files tell.
+  Rect window_;
+  std::vector<std::size_t> merged_, kept_;  ///< Indices of layers.
+  std::vector<std::string> counted_;        ///< View layers whose sample counts are known.
+  std::map<std::string, double> metadata_samples_;
+  MergeResult report_;
+  std::size_t left_out_ = 0;
+  double count_sum_ = 0;
+  bool any_spread_ = false;
+};
+
+}  // namespace
+
+MergeResult merge(const std::vector<std::string>& paths, const std::string& target, const MergeOptions& options) {
+  Merger merger(open_renders(paths, options.limits), options.samples);
+  write_single_part(
+      target, merger.header(), [&](NativeBand& band) { merger.make(band); }, merger.lines_per_band());
+  return merger.report();
+}
+
+}  // namespace polyrecon

@@ -1,0 +1,88 @@
+#include "io/plain_image_file.h"
+
+#include <OpenImageIO/imageio.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <filesystem>
+#include <memory>
+
+#include "core/error.h"
+#include "io/exr_attributes.h"
+
+namespace polyrecon {
+namespace {
+
+[[noreturn]] void fail(const std::string& path, const std::string& what) {
+  throw Error(ExitCode::BadInput, fmt::format("{}: {}", path, what));
+}
+
+/// Linear formats that renderers write; others are refused by name rather than guessed at.
+bool is_known_extension(const std::string& path) {
+  std::string extension = std::filesystem::path(path).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  static constexpr std::array known{".pfm", ".hdr", ".tif", ".tiff"};
+  return std::find(known.begin(), known.end(), extension) != known.end();
+}
+
+/// Rows of a PFM run bottom-up; some versions of OpenImageIO turn them only on request.
+std::unique_ptr<OIIO::ImageInput> open_image(const std::string& path) {
+  OIIO::ImageSpec hints;
+  hints.attribute("pnm:pfmflip", 1);
+  return OIIO::ImageInput::open(path, &hints);
+}
+
+SampleType to_sample_type(const OIIO::TypeDesc& type) {
+  if (type.basetype == OIIO::TypeDesc::HALF) return SampleType::Half;
+  return type.is_floating_point() ? SampleType::Float : SampleType::Uint;
+}
+
+}  // namespace
+
+void describe_plain_image(FileInfo& file, const ReadLimits& limits) {
+  if (!is_known_extension(file.path)) fail(file.path, "not an OpenEXR file");
+  const auto input = open_image(file.path);
+  if (!input) fail(file.path, fmt::format("cannot be read ({})", first_line(OIIO::geterror())));
+  const OIIO::ImageSpec& spec = input->spec();
+  if (spec.width <= 0 || spec.height <= 0 || spec.nchannels <= 0 || spec.image_pixels() > limits.max_pixels ||
+      static_cast<std::size_t>(spec.nchannels) > limits.max_channels)
+    fail(file.path,
+         fmt::format("{} x {} pixels of {} channels are beyond the limits", spec.width, spec.height, spec.nchannels));
+  file.format = input->format_name();
+  const std::uint64_t raw = spec.image_bytes(true);
+  const bool packed = file.format != "pnm";
+  if (packed ? raw / 1024 > file.bytes : raw > file.bytes)
+    fail(file.path, fmt::format("incomplete: {} bytes of pixels in a file of {} bytes", raw, file.bytes));
+  PartInfo part;
+  part.data_window = {spec.x, spec.y, spec.x + spec.width, spec.y + spec.height};
+  part.display_window = {spec.full_x, spec.full_y, spec.full_x + spec.full_width, spec.full_y + spec.full_height};
+  part.compression = spec.get_string_attribute("compression", "none");
+  for (const std::string& name : spec.channelnames) part.channels.push_back({name, to_sample_type(spec.format)});
+  for (const auto& attribute : spec.extra_attribs)
+    part.attributes.push_back({attribute.name().string(), attribute.type().c_str(), attribute.get_string()});
+  file.parts.push_back(std::move(part));
+}
+
+Image read_plain_image(const FileInfo& file, const std::vector<std::string>& channels) {
+  const PartInfo& part = file.parts.front();
+  const std::size_t stride = part.channels.size();
+  std::vector<float> pixels(part.data_window.area() * stride);
+  const auto input = open_image(file.path);
+  if (!input || !input->read_image(0, 0, 0, static_cast<int>(stride), OIIO::TypeDesc::FLOAT, pixels.data()))
+    fail(file.path,
+         fmt::format("incomplete or damaged ({})", first_line(input ? input->geterror() : OIIO::geterror())));
+  Image image(part.data_window.width(), part.data_window.height(), static_cast<int>(channels.size()));
+  for (std::size_t c = 0; c < channels.size(); ++c) {
+    const auto found = std::find_if(part.channels.begin(), part.channels.end(),
+                                    [&](const ChannelInfo& channel) { return channel.name == channels[c]; });
+    const auto source = static_cast<std::size_t>(found - part.channels.begin());
+    for (std::size_t i = 0; i < image.pixels(); ++i)
+      image.plane(static_cast<int>(c))[i] = static_cast<Real>(pixels[i * stride + source]);
+  }
+  return image;
+}
+
+}  // namespace polyrecon

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/image.h"
+#include "io/color.h"
+
+namespace polyrecon {
+
+/// One picture of a preview.
+struct Panel {
+  Image rgb;            ///< 3 channels, display-encoded, 0..1.
+  std::string caption;  ///< One line; cut where it is wider than the panel.
+  LogRange range;       ///< Of a false-colour picture: draws a legend. {0, 0}: none.
+};
+
+/// The panels side by side on a dark ground, each with its caption (and legend) in a strip below; a single panel
+/// without caption and legend is the bare picture. Where no font is found the strips stay without text. Throws
+/// Error{OutOfMemory} where the picture would have more than 2^28 pixels.
+Image compose(const std::vector<Panel>& panels);
+
+/// Writes rgb (3 channels, 0..1) as 8-bit PNG; the file takes its name only once it is whole.
+/// Throws Error{CannotWrite}; an older file is then untouched.
+void write_png(const std::string& target, const Image& rgb);
+
+}  // namespace polyrecon

@@ -1,0 +1,306 @@
+#include "io/read_frame.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <utility>
+
+#include "core/error.h"
+#include "io/choose_layers.h"
+
+namespace polyrecon {
+namespace {
+
+/// Collects images to be read, then reads every part once.
+class PartReader {
+ public:
+  PartReader(const FrameSource& source, const ReadLimits& limits) : source_(source), limits_(limits) {}
+
+  /// Plans to read channels of a layer's part; the pointer stays good, the pixels are there after read().
+  Image* plan(const Layer& layer, const std::vector<std::string>& channels) {
+    const Rect window = window_of(layer);
+    samples_ += window.area() * channels.size();
+    if (samples_ > limits_.max_bytes / sizeof(Real))
+      throw Error(ExitCode::OutOfMemory, fmt::format("{}: the passes in use need more than the limit of {} MB",
+                                                     source_.path, limits_.max_bytes >> 20));
+    auto& wanted = parts_[{layer.file, layer.part}];
+    wanted.push_back({channels, std::make_unique<Image>()});
+    return wanted.back().image.get();
+  }
+
+  void read() {
+    for (auto& [place, wanted] : parts_) {
+      const FileInfo& file = source_.files[static_cast<std::size_t>(place.first)];
+      const Rect window = file.parts[static_cast<std::size_t>(place.second)].data_window;
+      std::vector<std::string> channels;
+      std::vector<Real*> planes;
+      std::vector<std::pair<Real*, Real*>> repeated;
+      for (Wanted& w : wanted) {
+        *w.image = Image(window.width(), window.height(), static_cast<int>(w.channels.size()));
+        for (std::size_t c = 0; c < w.channels.size(); ++c) {
+          Real* plane = w.image->plane(static_cast<int>(c));
+          const auto known = std::find(channels.begin(), channels.end(), w.channels[c]);
+          if (known != channels.end()) {
+            repeated.emplace_back(planes[static_cast<std::size_t>(known - channels.begin())], plane);
+            continue;
+          }
+          channels.push_back(w.channels[c]);
+          planes.push_back(plane);
+        }
+      }
+      read_planes(file, place.second, channels, planes);
+      for (const auto& [from, to] : repeated) std::copy_n(from, window.area(), to);
+    }
+  }
+
+  Rect window_of(const Layer& layer) const {
+    return source_.files[static_cast<std::size_t>(layer.file)].parts[static_cast<std::size_t>(layer.part)].data_window;
+  }
+
+ private:
+  struct Wanted {
+    std::vector<std::string> channels;
+    std::unique_ptr<Image> image;
+  };
+  const FrameSource& source_;
+  const ReadLimits& limits_;
+  std::size_t samples_ = 0;
+  std::map<std::pair<int, int>, std::vector<Wanted>> parts_;
+};
+
+Image cropped(Image image, const Rect& from, const Rect& to) {
+  if (from == to) return image;
+  return crop(image, {to.x0 - from.x0, to.y0 - from.y0, to.x1 - from.x0, to.y1 - from.y0});
+}
+
+/// Channels that a role has in a Frame.
+int channels_of(Role role) {
+  switch (role) {
+    case Role::Alpha:
+    case Role::Depth:
+    case Role::Visibility:
+    case Role::SampleCount:
+      return 1;
+    default:
+      return 3;
+  }
+}
+
+Image repeated(const Image& gray, int channels) {
+  Image out(gray.width(), gray.height(), channels);
+  for (int c = 0; c < channels; ++c) std::copy_n(gray.plane(0), gray.pixels(), out.plane(c));
+  return out;
+}
+
+/// Mean of the channels. A variance is averaged as if the channels' noise were one and the same, as it is for gray
+/// shadows: the square of the mean standard deviation.
+Image averaged(const Image& image, bool is_variance) {
+  Image out(image.width(), image.height(), 1);
+  for (std::size_t i = 0; i < image.pixels(); ++i) {
+    double sum = 0;
+    for (int c = 0; c < image.channels(); ++c) {
+      const double value = image.plane(c)[i];
+      sum += is_variance ? std::sqrt(value) : value;
+    }
+    const double mean = sum / image.channels();
+    out.plane(0)[i] = static_cast<Real>(is_variance ? mean * mean : mean);
+  }
+  return out;
+}
+
+Image with_channels(Image image, int channels, bool is_variance = false) {
+  if (image.empty() || image.channels() == channels) return image;
+  return channels == 1 ? averaged(image, is_variance) : repeated(image, channels);
+}
+
+/// Samples in each pixel: an image, or one number for all, or unknown.
+struct SampleCounts {
+  const Image* per_pixel = nullptr;
+  double everywhere = 0;
+
+  bool known() const { return per_pixel != nullptr || everywhere > 0; }
+  double at(std::size_t i) const { return per_pixel ? static_cast<double>(per_pixel->plane(0)[i]) : everywhere; }
+};
+
+Companion kind_of(const Layer& layer, VarianceKind asked) {
+  switch (asked) {
+    case VarianceKind::Mean:
+      return Companion::VarianceOfMean;
+    case VarianceKind::Sample:
+      return Companion::VarianceOfSample;
+    case VarianceKind::SecondMoment:
+      return Companion::SecondMoment;
+    case VarianceKind::Auto:
+      break;
+  }
+  return layer.companion;
+}
+
+/// Turns what a variance layer holds into the variance of the mean, in place.
+/// From the mean square m2 of n samples the unbiased one is (m2 - mean^2) / (n - 1), never below zero.
+void to_variance_of_mean(Image& variance, const Image& mean, Companion kind, const SampleCounts& counts) {
+  for (int c = 0; c < variance.channels(); ++c)
+    for (std::size_t i = 0; i < variance.pixels(); ++i) {
+      Real& v = variance.plane(c)[i];
+      const double n = counts.at(i);
+      if (kind == Companion::VarianceOfSample) {
+        v = static_cast<Real>(v / std::max(n, 1.0));
+      } else {
+        const double m = mean.plane(std::min(c, mean.channels() - 1))[i];
+        const double spread = v - m * m;
+        v = static_cast<Real>(spread < 0 ? 0 : spread / std::max(n - 1, 1.0));
+      }
+    }
+}
+
+struct PlannedPass {
+  PassChoice choice;
+  Image *mean = nullptr, *variance = nullptr, *half_a = nullptr, *half_b = nullptr;
+};
+
+class FrameBuilder {
+ public:
+  FrameBuilder(LayerChoice choice, const ReadOptions& options)
+      : options_(options), passes_(std::move(choice.passes)), reader_(result_.source, options.limits) {
+    result_.source = std::move(choice.source);
+    result_.notes = std::move(choice.notes);
+  }
+
+  ReadResult build() {
+    window_ = reader_.window_of(layer(passes_.front().mean));
+    plan();
+    reader_.read();
+    result_.frame.data_window = window_;
+    take_sample_counts();
+    for (PlannedPass& pass : planned_) place(pass);
+    if (alpha_) result_.frame.alpha = std::move(*alpha_);
+    return std::move(result_);
+  }
+
+ private:
+  const Layer& layer(int index) const { return result_.source.layers[static_cast<std::size_t>(index)]; }
+
+  void plan() {
+    const auto image = [&](int index) {
+      return index < 0 ? nullptr : reader_.plan(layer(index), layer(index).channels);
+    };
+    for (const PassChoice& p : passes_)
+      planned_.push_back({p, image(p.mean), image(p.variance), image(p.half_a), image(p.half_b)});
+    const Layer& beauty = layer(passes_.front().mean);
+    if (result_.source.alpha_layer == beauty.name) alpha_ = reader_.plan(beauty, {beauty.alpha});
+  }
+
+  Image take(Image* image, int index, int channels, bool is_variance = false) {
+    if (!image) return {};
+    return with_channels(cropped(std::move(*image), reader_.window_of(layer(index)), window_), channels, is_variance);
+  }
+
+  void take_sample_counts() {
+    const FileInfo& file = result_.source.files.front();
+    const auto metadata = samples_in_metadata(file, result_.source.view_layer);
+    counts_.everywhere = options_.samples > 0 ? options_.samples : metadata.value_or(0);
+    for (PlannedPass& pass : planned_) {
+      if (pass.choice.role != Role::SampleCount) continue;
+      Image counts = take(pass.mean, pass.choice.mean, 1);
+      if (is_sample_fraction(layer(pass.choice.mean))) {
+        if (counts_.everywhere <= 0) {
+          result_.notes.push_back(
+              fmt::format("{} is left out: it holds fractions of an unknown sample count; give --samples",
+                          layer(pass.choice.mean).name));
+          continue;
+        }
+        for (std::size_t i = 0; i < counts.pixels(); ++i)
+          counts.plane(0)[i] = static_cast<Real>(counts.plane(0)[i] * counts_.everywhere);
+      }
+      result_.frame.sample_count = std::move(counts);
+      counts_.per_pixel = &result_.frame.sample_count;
+    }
+  }
+
+  Image take_variance(PlannedPass& planned, const Image& mean) {
+    if (!planned.variance) return {};
+    const Layer& from = layer(planned.choice.variance);
+    const Companion kind = kind_of(from, options_.variance_kind);
+    Image variance = take(planned.variance, planned.choice.variance, mean.channels(), kind != Companion::SecondMoment);
+    if (kind == Companion::VarianceOfMean) return variance;
+    if (!counts_.known()) {
+      result_.notes.push_back(fmt::format(
+          "{} is left out: it is the {} and the sample count is unknown; give --samples", from.name, name_of(kind)));
+      return {};
+    }
+    to_variance_of_mean(variance, mean, kind, counts_);
+    return variance;
+  }
+
+  Pass take_pass(PlannedPass& planned) {
+    const int channels = channels_of(planned.choice.role);
+    Pass pass;
+    pass.name = layer(planned.choice.mean).name;
+    pass.mean = take(planned.mean, planned.choice.mean, channels);
+    pass.variance = take_variance(planned, pass.mean);
+    pass.half_a = take(planned.half_a, planned.choice.half_a, channels);
+    pass.half_b = take(planned.half_b, planned.choice.half_b, channels);
+    return pass;
+  }
+
+  void place(PlannedPass& planned) {
+    Frame& frame = result_.frame;
+    switch (planned.choice.role) {
+      case Role::Beauty:
+        frame.beauty = take_pass(planned);
+        break;
+      case Role::Prior:
+        frame.prior = take_pass(planned);
+        break;
+      case Role::Normal:
+        frame.features.push_back({FeatureKind::Normal, take_pass(planned)});
+        break;
+      case Role::Albedo:
+        frame.features.push_back({FeatureKind::Albedo, take_pass(planned)});
+        break;
+      case Role::Depth:
+        frame.features.push_back({FeatureKind::Depth, take_pass(planned)});
+        break;
+      case Role::Visibility:
+        frame.features.push_back({FeatureKind::Visibility, take_pass(planned)});
+        break;
+      case Role::Color:
+        frame.aovs.push_back(take_pass(planned));
+        break;
+      case Role::Alpha:
+        if (!alpha_) frame.alpha = take(planned.mean, planned.choice.mean, 1);
+        break;
+      case Role::SampleCount:
+      case Role::Other:
+        break;
+    }
+  }
+
+  const ReadOptions& options_;
+  std::vector<PassChoice> passes_;
+  ReadResult result_;
+  PartReader reader_;
+  std::vector<PlannedPass> planned_;
+  Rect window_;
+  Image* alpha_ = nullptr;
+  SampleCounts counts_;
+};
+
+}  // namespace
+
+ReadResult read_frame(const std::string& path, const ReadOptions& options) {
+  return FrameBuilder(choose_layers(path, options), options).build();
+}
+
+ReadResult plan_frame(const std::string& path, const ReadOptions& options) {
+  LayerChoice choice = choose_layers(path, options);
+  ReadResult result;
+  result.source = std::move(choice.source);
+  result.notes = std::move(choice.notes);
+  return result;
+}
+
+}  // namespace polyrecon

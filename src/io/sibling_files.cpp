@@ -1,0 +1,57 @@
+#include "io/sibling_files.h"
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <string_view>
+#include <system_error>
+
+namespace polyrecon {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::array<std::string_view, 4> kCompanionEndings{"", "Variance", "A", "B"};
+
+bool is_pass(const std::string& word) {
+  const auto known = classify_pass(word);
+  return word.size() > 2 && known && known->role != Role::Other;
+}
+
+/// The same with a companion's ending: "AlbedoVariance", "ColorA".
+bool is_pass_or_companion(const std::string& word) {
+  return std::any_of(kCompanionEndings.begin(), kCompanionEndings.end(), [&](std::string_view ending) {
+    return word.size() > ending.size() && word.compare(word.size() - ending.size(), ending.size(), ending) == 0 &&
+           is_pass(word.substr(0, word.size() - ending.size()));
+  });
+}
+
+}  // namespace
+
+std::string pass_in_file_name(const std::string& path) {
+  const std::string stem = fs::path(path).stem().string();
+  for (std::size_t begin = 0; begin < stem.size(); ++begin)
+    if (is_pass(stem.substr(begin))) return stem.substr(begin);
+  return {};
+}
+
+std::vector<SiblingFile> find_siblings(const std::string& path) {
+  const fs::path self(path);
+  const std::string pass = pass_in_file_name(path), stem = self.stem().string();
+  if (pass.empty()) return {};
+  const std::string shared = stem.substr(0, stem.size() - pass.size());
+  std::vector<SiblingFile> siblings;
+  std::error_code failure;
+  const fs::path folder = self.has_parent_path() ? self.parent_path() : fs::path(".");
+  for (fs::directory_iterator entry(folder, failure), end; !failure && entry != end; entry.increment(failure)) {
+    const std::string other = entry->path().stem().string();
+    if (entry->path().extension() != self.extension() || other == stem || other.compare(0, shared.size(), shared) != 0)
+      continue;
+    if (const std::string word = other.substr(shared.size()); is_pass_or_companion(word))
+      siblings.push_back({entry->path().string(), word});
+  }
+  std::sort(siblings.begin(), siblings.end(), [](const auto& a, const auto& b) { return a.path < b.path; });
+  return siblings;
+}
+
+}  // namespace polyrecon

@@ -1,0 +1,369 @@
+#include "io/write_result.h"
+
+#include <Iex.h>
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfDeepScanLineInputPart.h>
+#include <OpenEXR/ImfDeepScanLineOutputPart.h>
+#include <OpenEXR/ImfDeepTiledInputPart.h>
+#include <OpenEXR/ImfDeepTiledOutputPart.h>
+#include <OpenEXR/ImfFloatAttribute.h>
+#include <OpenEXR/ImfMultiPartInputFile.h>
+#include <OpenEXR/ImfOutputPart.h>
+#include <OpenEXR/ImfPartType.h>
+#include <OpenEXR/ImfStringAttribute.h>
+#include <OpenEXR/ImfThreading.h>
+#include <OpenEXR/ImfTiledInputPart.h>
+#include <OpenEXR/ImfTiledOutputPart.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <map>
+#include <stdexcept>
+#include <utility>
+
+#include "core/error.h"
+#include "io/atomic_file.h"
+#include "io/exr_attributes.h"
+#include "io/exr_bands.h"
+#include "io/exr_raw.h"
+#include "io/exr_single_part.h"
+
+namespace polyrecon {
+namespace {
+
+constexpr float kHalfMaximum = 65504;
+
+/// Where the new samples of one channel come from: a plane, or the mean of three.
+struct NewChannel {
+  const Image* image = nullptr;
+  int plane = 0;
+  bool mean = false;
+  std::string noisy_name;  ///< Channel that keeps the old samples; empty where they are not kept.
+
+  float at(std::size_t i) const {
+    if (!mean) return static_cast<float>(image->plane(plane)[i]);
+    double sum = 0;
+    for (int c = 0; c < image->channels(); ++c) sum += image->plane(c)[i];
+    return static_cast<float>(sum / image->channels());
+  }
+};
+
+using NewChannels = std::map<std::string, NewChannel>;  ///< By whole channel name.
+
+/// What happens to one part.
+struct PartPlan {
+  Imf::Header header;
+  NewChannels replaced;
+  bool copied_raw() const { return replaced.empty(); }
+};
+
+const Layer& layer_named(const FrameSource& source, const std::string& name) {
+  const auto found =
+      std::find_if(source.layers.begin(), source.layers.end(), [&](const Layer& l) { return l.name == name; });
+  if (found == source.layers.end() || found->file != 0)
+    throw Error(ExitCode::Missing, fmt::format("{}: no layer {} in this file to be replaced", source.path, name));
+  return *found;
+}
+
+/// "ViewLayer.Combined.R" -> "ViewLayer.Combined Noisy.R"; channels without a layer take the layer's pass.
+std::string noisy_name(const Layer& layer, const std::string& channel) {
+  const auto dot = channel.rfind('.');
+  if (dot == std::string::npos) return fmt::format("{} Noisy.{}", layer.pass, channel);
+  return fmt::format("{} Noisy{}", channel.substr(0, dot), channel.substr(dot));
+}
+
+std::vector<std::string> channels_to_replace(const Layer& layer, const Replacement& replacement) {
+  if (replacement.alpha && !layer.alpha.empty()) return {layer.alpha};
+  return layer.channels;
+}
+
+void plan_replacement(const FrameSource& source, const Replacement& replacement, const WriteOptions& options,
+                      std::vector<PartPlan>& parts) {
+  const Layer& layer = layer_named(source, replacement.layer);
+  PartPlan& part = parts[static_cast<std::size_t>(layer.part)];
+  const auto& window = part.header.dataWindow();
+  const auto channels = channels_to_replace(layer, replacement);
+  const Image& image = replacement.image;
+  const bool one_of_three = channels.size() == 1 && image.channels() == 3;
+  if (image.width() != window.max.x - window.min.x + 1 || image.height() != window.max.y - window.min.y + 1 ||
+      (static_cast<std::size_t>(image.channels()) != channels.size() && !one_of_three))
+    throw Error(ExitCode::Internal,
+                fmt::format("{}: the new image does not have the shape of layer {}", source.path, layer.name));
+  for (std::size_t c = 0; c < channels.size(); ++c) {
+    NewChannel channel{&image, static_cast<int>(c), one_of_three, {}};
+    if (options.keep_noisy) {
+      channel.noisy_name = noisy_name(layer, channels[c]);
+      part.header.channels().insert(channel.noisy_name, *part.header.channels().findChannel(channels[c]));
+    }
+    part.replaced[channels[c]] = std::move(channel);
+  }
+}
+
+/// Whether encoding the part's decoded samples again with its own compression could change them.
+bool is_lossy(const Imf::Header& header) {
+  const auto has = [&](Imf::PixelType type) {
+    for (auto c = header.channels().begin(); c != header.channels().end(); ++c)
+      if (c.channel().type == type) return true;
+    return false;
+  };
+  switch (header.compression()) {
+    case Imf::PXR24_COMPRESSION:
+      return has(Imf::FLOAT);
+    case Imf::B44_COMPRESSION:
+    case Imf::B44A_COMPRESSION:
+      return has(Imf::HALF);
+    case Imf::DWAA_COMPRESSION:
+    case Imf::DWAB_COMPRESSION:
+      return true;
+    default:
+      return false;
+  }
+}
+
+void add_provenance(Imf::Header& header, const Provenance& provenance) {
+  header.insert("polyrecon/version", Imf::StringAttribute(POLYRECON_VERSION));
+  if (!provenance.settings.empty()) header.insert("polyrecon/settings", Imf::StringAttribute(provenance.settings));
+  if (!provenance.input.empty()) header.insert("polyrecon/input", Imf::StringAttribute(provenance.input));
+  if (provenance.estimated_relative_mse >= 0)
+    header.insert("polyrecon/estimatedRelMSE",
+                  Imf::FloatAttribute(static_cast<float>(provenance.estimated_relative_mse)));
+}
+
+/// float -> the bits of the channel's type. Counts half values that had to be brought into range.
+void store(NativeChannel& channel, std::size_t i, float value, std::size_t& saturated) {
+  if (channel.type == Imf::HALF) {
+    if (std::abs(value) > kHalfMaximum) {
+      value = std::copysign(kHalfMaximum, value);
+      ++saturated;
+    }
+    const half h(value);
+    std::memcpy(channel.samples.data() + i * sizeof h, &h, sizeof h);
+  } else if (channel.type == Imf::FLOAT) {
+    std::memcpy(channel.samples.data() + i * sizeof value, &value, sizeof value);
+  } else {
+    const double whole = std::isfinite(value) ? std::round(std::max(value, 0.0f)) : 0;
+    const auto u = static_cast<unsigned int>(std::min<double>(whole, std::numeric_limits<unsigned int>::max()));
+    std::memcpy(channel.samples.data() + i * sizeof u, &u, sizeof u);
+  }
+}
+
+/// Brings a band of the input into the form of the output: new samples in, old ones to their noisy names.
+void apply(const NewChannels& replaced, NativeBand& old, NativeBand& band, int window_y0, std::size_t& saturated) {
+  for (NativeChannel& channel : band.channels)
+    if (NativeChannel* same = old.find(channel.name)) channel.samples = same->samples;
+  const std::size_t begin = static_cast<std::size_t>(old.y0 - window_y0) * static_cast<std::size_t>(old.width);
+  const std::size_t pixels = static_cast<std::size_t>(old.y1 - old.y0) * static_cast<std::size_t>(old.width);
+  for (const auto& [name, source] : replaced) {
+    NativeChannel* channel = band.find(name);
+    if (!source.noisy_name.empty()) band.find(source.noisy_name)->samples = channel->samples;
+    for (std::size_t i = 0; i < pixels; ++i) store(*channel, i, source.at(begin + i), saturated);
+  }
+}
+
+std::string part_title(const Imf::Header& header, int part) {
+  return header.hasName() ? fmt::format("part {} \"{}\"", part, header.name()) : fmt::format("part {}", part);
+}
+
+/// The input is read again while it is written: it must still be the file that was read before.
+void check_unchanged(const FrameSource& source) {
+  const FileInfo now = describe_file(source.path);
+  const FileInfo& then = source.files.front();
+  bool same = now.bytes == then.bytes && now.parts.size() == then.parts.size();
+  for (std::size_t p = 0; same && p < now.parts.size(); ++p) {
+    const auto &a = now.parts[p].channels, &b = then.parts[p].channels;
+    same = now.parts[p].data_window == then.parts[p].data_window &&
+           std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                      [](const ChannelInfo& x, const ChannelInfo& y) { return x.name == y.name && x.type == y.type; });
+  }
+  if (!same)
+    throw Error(ExitCode::BadInput, fmt::format("{}: was changed while it was worked on; run again", source.path));
+}
+
+/// One rewriting of a file; write() and verify() are the two halves of an atomic write.
+class Rewrite {
+ public:
+  Rewrite(const FrameSource& source, const std::vector<Replacement>& replacements, const WriteOptions& options)
+      : path_(source.path), input_(source.path.c_str(), Imf::globalThreadCount(), false) {
+    for (int p = 0; p < input_.parts(); ++p) parts_.push_back({input_.header(p), {}});
+    for (const Replacement& replacement : replacements) plan_replacement(source, replacement, options, parts_);
+    for (std::size_t p = 0; p < parts_.size(); ++p) {
+      if (parts_[p].copied_raw() || !is_lossy(parts_[p].header)) continue;
+      parts_[p].header.compression() = Imf::ZIP_COMPRESSION;
+      notes_.push_back(
+          fmt::format("{} is written with ZIP: its lossy compression would change the other channels again",
+                      part_title(parts_[p].header, static_cast<int>(p))));
+    }
+    add_provenance(parts_.front().header, options.provenance);
+  }
+
+  void write(const std::string& path) {
+    std::vector<Imf::Header> headers;
+    for (const PartPlan& part : parts_) headers.push_back(part.header);
+    saturated_ = 0;
+    Imf::MultiPartOutputFile output(path.c_str(), headers.data(), static_cast<int>(headers.size()), true);
+    for (int p = 0; p < static_cast<int>(parts_.size()); ++p)
+      parts_[static_cast<std::size_t>(p)].copied_raw() ? copy_raw(output, p) : write_changed(output, p);
+    if (saturated_ > 0)
+      notes_.push_back(fmt::format("{} half samples were beyond {} and are written as that", saturated_, kHalfMaximum));
+  }
+
+  void verify(const std::string& path) {
+    input_.flushPartCache();  // a part stays what it was first opened as, and copying opens tiled ones as such
+    Imf::MultiPartInputFile written(path.c_str(), Imf::globalThreadCount(), false);
+    for (int p = 0; p < static_cast<int>(parts_.size()); ++p) {
+      const PartPlan& part = parts_[static_cast<std::size_t>(p)];
+      const bool same = part.copied_raw() ? same_chunks(path_, path, p) : same_samples(written, p);
+      if (!same) throw std::runtime_error(fmt::format("{} differs when it is read back", part_title(part.header, p)));
+      if (part.copied_raw()) decode(p);
+    }
+  }
+
+  std::vector<std::string> take_notes() { return std::move(notes_); }
+
+ private:
+  void copy_raw(Imf::MultiPartOutputFile& output, int p) {
+    const std::string& type = input_.header(p).type();
+    if (type == Imf::DEEPSCANLINE) {
+      Imf::DeepScanLineInputPart from(input_, p);
+      Imf::DeepScanLineOutputPart(output, p).copyPixels(from);
+    } else if (type == Imf::DEEPTILE) {
+      Imf::DeepTiledInputPart from(input_, p);
+      Imf::DeepTiledOutputPart(output, p).copyPixels(from);
+    } else if (type == Imf::TILEDIMAGE) {
+      Imf::TiledInputPart from(input_, p);
+      Imf::TiledOutputPart(output, p).copyPixels(from);
+    } else {
+      Imf::InputPart from(input_, p);
+      Imf::OutputPart(output, p).copyPixels(from);
+    }
+  }
+
+  void make_band(Imf::InputPart& from, int p, NativeBand& band, std::size_t& saturated) {
+    NativeBand old(input_.header(p), band.y0, band.y1);
+    try {
+      read_band(from, old);
+    } catch (const Iex::BaseExc& problem) {
+      throw Error(ExitCode::BadInput,
+                  fmt::format("{}: incomplete or damaged: {} cannot be read at scanlines {} to {} ({})", path_,
+                              part_title(input_.header(p), p), old.y0, old.y1 - 1, first_line(problem.what())));
+    }
+    apply(parts_[static_cast<std::size_t>(p)].replaced, old, band, input_.header(p).dataWindow().min.y, saturated);
+  }
+
+  void write_changed(Imf::MultiPartOutputFile& output, int p) {
+    Imf::InputPart from(input_, p);
+    write_bands(output, p, [&](NativeBand& band) { make_band(from, p, band, saturated_); });
+  }
+
+  /// Decodes every band of the written part and compares it, bit for bit, with what it should be.
+  bool same_samples(Imf::MultiPartInputFile& written, int p) {
+    Imf::InputPart from(input_, p), back(written, p);
+    std::size_t ignored = 0;
+    for (const auto& [y0, y1] : bands_of(back.header())) {
+      NativeBand expected(back.header(), y0, y1), found(back.header(), y0, y1);
+      make_band(from, p, expected, ignored);
+      read_band(back, found);
+      for (std::size_t c = 0; c < found.channels.size(); ++c)
+        if (found.channels[c].samples != expected.channels[c].samples) return false;
+    }
+    return true;
+  }
+
+  /// A part that was copied unseen is decoded once, so that damage in it does not pass on in silence.
+  void decode(int p) {
+    const Imf::Header& header = input_.header(p);
+    bool plain = !Imf::isDeepData(header.type());
+    if (Imf::isTiled(header.type())) plain = plain && header.tileDescription().mode == Imf::ONE_LEVEL;
+    for (auto c = header.channels().begin(); c != header.channels().end(); ++c)
+      plain = plain && c.channel().xSampling == 1 && c.channel().ySampling == 1;
+    if (!plain) return;
+    Imf::InputPart from(input_, p);
+    std::size_t ignored = 0;
+    for (const auto& [y0, y1] : bands_of(header)) {
+      NativeBand band(header, y0, y1);
+      make_band(from, p, band, ignored);
+    }
+  }
+
+  std::string path_;
+  Imf::MultiPartInputFile input_;
+  std::vector<PartPlan> parts_;
+  std::size_t saturated_ = 0;
+  std::vector<std::string> notes_;
+};
+
+/// Inputs of other formats: the replaced layers alone go into a new file.
+std::vector<std::string> write_as_exr(const FrameSource& source, const std::vector<Replacement>& replacements,
+                                      const std::string& target, const WriteOptions& options) {
+  const PartInfo& part = source.files.front().parts.front();
+  std::vector<MapChannel> channels;
+  for (const Replacement& replacement : replacements) {
+    const Layer& layer = layer_named(source, replacement.layer);
+    const auto names = channels_to_replace(layer, replacement);
+    const bool mean = names.size() == 1 && replacement.image.channels() == 3;
+    for (std::size_t c = 0; c < names.size(); ++c) {
+      const NewChannel from{&replacement.image, static_cast<int>(c), mean, {}};
+      Image to(replacement.image.width(), replacement.image.height(), 1);
+      for (std::size_t i = 0; i < to.pixels(); ++i) to.plane(0)[i] = from.at(i);
+      channels.push_back({names[c], std::move(to)});
+    }
+  }
+  MapAttributes attributes;
+  attributes.strings = {{"polyrecon/settings", options.provenance.settings},
+                        {"polyrecon/input", options.provenance.input}};
+  if (options.provenance.estimated_relative_mse >= 0)
+    attributes.numbers = {{"polyrecon/estimatedRelMSE", options.provenance.estimated_relative_mse}};
+  write_maps(target, channels, part.data_window, part.display_window, attributes);
+  return {fmt::format("{} is no OpenEXR file: the result is written as one, with the reconstructed layers only",
+                      source.path)};
+}
+
+Imath::Box2i to_box(const Rect& r) { return {{r.x0, r.y0}, {r.x1 - 1, r.y1 - 1}}; }
+
+Imf::Header map_header(const std::vector<MapChannel>& channels, const Rect& data_window, const Rect& display_window,
+                       const MapAttributes& attributes) {
+  Imf::Header header(to_box(display_window), to_box(data_window));
+  header.compression() = Imf::ZIP_COMPRESSION;
+  header.setType(Imf::SCANLINEIMAGE);
+  for (const MapChannel& channel : channels) header.channels().insert(channel.name, Imf::Channel(Imf::FLOAT));
+  header.insert("polyrecon/version", Imf::StringAttribute(POLYRECON_VERSION));
+  for (const auto& [name, text] : attributes.strings)
+    if (!text.empty()) header.insert(name, Imf::StringAttribute(text));
+  for (const auto& [name, number] : attributes.numbers)
+    header.insert(name, Imf::FloatAttribute(static_cast<float>(number)));
+  return header;
+}
+
+void fill_map_band(const std::vector<MapChannel>& channels, const Rect& data_window, NativeBand& band) {
+  std::size_t ignored = 0;
+  const std::size_t begin = static_cast<std::size_t>(band.y0 - data_window.y0) * static_cast<std::size_t>(band.width);
+  const std::size_t pixels = static_cast<std::size_t>(band.y1 - band.y0) * static_cast<std::size_t>(band.width);
+  for (const MapChannel& from : channels) {
+    NativeChannel* to = band.find(from.name);
+    for (std::size_t i = 0; i < pixels; ++i) store(*to, i, static_cast<float>(from.image.plane(0)[begin + i]), ignored);
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> write_result(const FrameSource& source, const std::vector<Replacement>& replacements,
+                                      const std::string& target, const WriteOptions& options) {
+  if (source.files.front().format != "openexr") return write_as_exr(source, replacements, target, options);
+  check_unchanged(source);
+  Rewrite rewrite(source, replacements, options);
+  write_atomically(
+      target, [&](const std::string& path) { rewrite.write(path); },
+      [&](const std::string& path) { rewrite.verify(path); });
+  return rewrite.take_notes();
+}
+
+void write_maps(const std::string& target, const std::vector<MapChannel>& channels, const Rect& data_window,
+                const Rect& display_window, const MapAttributes& attributes) {
+  write_single_part(target, map_header(channels, data_window, display_window, attributes),
+                    [&](NativeBand& band) { fill_map_band(channels, data_window, band); });
+}
+
+}  // namespace polyrecon

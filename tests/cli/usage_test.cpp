@@ -1,0 +1,83 @@
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "cli/program.h"
+
+namespace polyrecon::testing {
+namespace {
+
+const std::vector<std::string> commands{"denoise", "inspect", "merge", "samplemap", "preview", "compare"};
+
+class Usage : public ProgramTest {};
+
+TEST_F(Usage, EveryCommandHasHelpWithExamples) {
+  for (const std::string& command : commands) {
+    const Outcome o = run({command, "--help"});
+    EXPECT_EQ(o.code, 0) << command;
+    EXPECT_TRUE(o.err.empty()) << o.err;
+    const std::size_t examples = o.out.find("Examples:");
+    ASSERT_NE(examples, std::string::npos) << command;
+    EXPECT_NE(o.out.find("polyrecon " + command + " ", examples), std::string::npos) << command;
+  }
+  const Outcome all = run({"--help"});
+  EXPECT_EQ(all.code, 0);
+  for (const std::string& command : commands) EXPECT_NE(all.out.find("\n  " + command), std::string::npos) << command;
+}
+
+TEST_F(Usage, TellsItsVersion) {
+  const Outcome o = run({"--version"});
+  EXPECT_EQ(o.code, 0);
+  EXPECT_EQ(o.out.compare(0, 10, "polyrecon "), 0) << o.out;
+}
+
+TEST_F(Usage, UnknownCommandsAndOptionsAreUsageErrors) {
+  std::vector<std::vector<std::string>> wrong{{}, {"clean"}, {"--nope"}};
+  for (const std::string& command : commands) wrong.push_back({command, "--nope"});
+  for (const std::string& command : commands) wrong.push_back({command});
+  for (const auto& arguments : wrong) {
+    const Outcome o = run(arguments);
+    EXPECT_EQ(o.code, 2) << o.err;
+    EXPECT_TRUE(is_one_error_line(o.err));
+    EXPECT_TRUE(o.out.empty()) << o.out;
+  }
+}
+
+TEST_F(Usage, MissingFilesAreNamed) {
+  const std::vector<std::vector<std::string>> all{{"denoise", "-i", "gone.exr", "-o", "out.exr"},
+                                                  {"inspect", "gone.exr"},
+                                                  {"merge", "gone.exr", "gone.exr", "-o", "out.exr"},
+                                                  {"samplemap", "-e", "gone.exr", "--budget", "4", "-o", "out.exr"},
+                                                  {"preview", "gone.exr", "-o", "out.png"},
+                                                  {"compare", "gone.exr", "gone.exr"}};
+  for (const auto& arguments : all) {
+    const Outcome o = run(arguments);
+    EXPECT_EQ(o.code, 4) << arguments[0];
+    EXPECT_TRUE(is_one_error_line(o.err));
+    EXPECT_NE(o.err.find("gone.exr"), std::string::npos) << o.err;
+  }
+  EXPECT_TRUE(files().empty());
+}
+
+TEST_F(Usage, DamagedFilesAreBadInput) {
+  write_render(path("whole.exr"));
+  const std::string whole = read_text(path("whole.exr"));
+  std::ofstream(path("cut.exr"), std::ios::binary) << whole.substr(0, whole.size() / 2);
+  std::ofstream(path("empty.exr"), std::ios::binary).flush();
+  std::ofstream(path("text.exr"), std::ios::binary) << "no picture at all\n";
+  for (const std::string name : {"cut.exr", "empty.exr", "text.exr"}) {
+    for (const std::vector<std::string>& arguments : {std::vector<std::string>{"denoise", "-i", name, "-o", "out.exr"},
+                                                      {"preview", name, "-o", "out.png"},
+                                                      {"compare", name, "whole.exr"}}) {
+      const Outcome o = run(arguments);
+      EXPECT_EQ(o.code, 3) << arguments[0] << " " << name << ": " << o.err;
+      EXPECT_TRUE(is_one_error_line(o.err));
+    }
+  }
+  EXPECT_FALSE(exists("out.exr"));
+  EXPECT_FALSE(exists("out.png"));
+}
+
+}  // namespace
+}  // namespace polyrecon::testing
