@@ -70,7 +70,8 @@ TEST(Select, OneCandidateIsTheResult) {
 /// double.
 TEST(Select, RiskAndSharesOfThreePixelsByHand) {
   const double a[] = {1.0, 1.4, 0.7}, b[] = {1.2, 0.9, 1.1}, brightness[] = {1.0, 2.0, 0.5};
-  const double f[2][2][3] = {{{1.1, 1.1, 1.1}, {1.0, 0.7, 0.9}}, {{0.8, 1.1, 1.3}, {1.3, 1.3, 1.3}}};  // candidate, half, pixel
+  const double f[2][2][3] = {{{1.1, 1.1, 1.1}, {1.0, 0.7, 0.9}},
+                             {{0.8, 1.1, 1.3}, {1.3, 1.3, 1.3}}};  // candidate, half, pixel
   const auto row = [](const double* v) { return image_of(1, 3, 3, [v](int, int y, int) { return v[y]; }); };
   HalfPair pair;
   pair.color = {row(a), row(b)};

@@ -280,8 +280,8 @@ TEST(Factorise, LapackSixKindsOfMatricesHaveResidualRatiosBelow30) {
     const MatrixXd q = p.q(), sx = s.asDiagonal() * p.x, sq = s.asDiagonal() * q;
     ASSERT_TRUE(q.allFinite());
     const double n = rows;
-    // Rounding of the stored samples, amplified by the condition of the leading columns, has to stay clear of the 1e-4 at which
-    // a column is dropped; else a dependent column may rightly be taken for one of its own.
+    // Rounding of the stored samples, amplified by the condition of the leading columns, has to stay clear of the 1e-4
+    // at which a column is dropped; else a dependent column may rightly be taken for one of its own.
     const Eigen::JacobiSVD<MatrixXd> svd(sx.leftCols(rank) / scale);
     if (svd.singularValues()(0) * eps < 0.1 * 1e-4 * svd.singularValues()(rank - 1)) {
       ++clear_ranks;

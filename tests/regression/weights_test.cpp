@@ -108,7 +108,8 @@ TEST(PatchDistances, HaveTheSameBitsWhetherCentresAreDenseOrSparse) {
       sparse.compute(guide, variance, guide.bounds(), {cx[k]}, {cy[k]}, 9, patch_radius);
       const Window a = window_at(dense, k, 9, everything), b = window_at(sparse, 0, 9, everything);
       ASSERT_EQ(a.count, b.count);
-      for (std::size_t j = 0; j < static_cast<std::size_t>(a.count); ++j) ASSERT_EQ(a.distance[j], b.distance[j]) << patch_radius;
+      for (std::size_t j = 0; j < static_cast<std::size_t>(a.count); ++j)
+        ASSERT_EQ(a.distance[j], b.distance[j]) << patch_radius;
     }
   }
 }
