@@ -107,6 +107,8 @@ std::string report_text(const RunReport& run) {
   text += line("outliers", fmt::format("{}, energy moved {}", r.outliers, rgb_text(r.outlier_energy)));
   text += line("energy (mean RGB)", fmt::format("{} -> {} ({:+.3f} %)", rgb_text(r.energy_before),
                                                 rgb_text(r.energy_after), 100 * energy_change(r)));
+  text += line("restored gain", fmt::format("{:+.3f} {:+.3f} {:+.3f} %", 100 * r.restored_gain[0],
+                                            100 * r.restored_gain[1], 100 * r.restored_gain[2]));
   text += line("estimated relMSE", fmt::format("{:.5g} (the windows' own estimate times {:.3g})",
                                                r.estimated_relative_mse, run.calibration));
   for (const std::string& note : run.notes) text += line("note", note);
@@ -145,6 +147,7 @@ Json report_json(const RunReport& run, const FrameSource& source) {
           {"energy",
            {{"before", rgb(r.energy_before)},
             {"after", rgb(r.energy_after)},
+            {"restored_gain", rgb(r.restored_gain)},
             {"relative_change", number(energy_change(r))}}},
           {"estimated_relmse", number(r.estimated_relative_mse)},
           {"error_calibration", number(run.calibration)},

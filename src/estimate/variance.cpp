@@ -86,9 +86,9 @@ Image variance_from_halves(const Pass& beauty) {
 }  // namespace
 
 NoiseVariance noise_variance(const Frame& frame, Progress& progress) {
-  if (!frame.beauty.variance.empty()) return {frame.beauty.variance, "from the file"};
-  if (frame.beauty.has_halves()) return {variance_from_halves(frame.beauty), "from the half buffers"};
-  return {estimate_variance(frame, progress), "estimated from the image"};
+  if (!frame.beauty.variance.empty()) return {frame.beauty.variance, "from the file", true};
+  if (frame.beauty.has_halves()) return {variance_from_halves(frame.beauty), "from the half buffers", true};
+  return {estimate_variance(frame, progress), "estimated from the image", false};
 }
 
 Image estimate_variance(const Frame& frame, Progress& progress) {

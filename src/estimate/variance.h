@@ -8,8 +8,9 @@
 namespace polyrecon {
 
 struct NoiseVariance {
-  Image variance;      ///< Of the beauty's mean, 3 channels, radiance squared.
-  std::string source;  ///< "from the file", "from the half buffers" or "estimated from the image".
+  Image variance;        ///< Of the beauty's mean, 3 channels, radiance squared.
+  std::string source;    ///< "from the file", "from the half buffers" or "estimated from the image".
+  bool measured = true;  ///< False where it was estimated from the image: then it knows regions, not single pixels.
 };
 
 /// The noise variance of the beauty: what the file says; else (A - B)^2 / 4 of the half buffers, smoothed; else

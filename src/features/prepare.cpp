@@ -8,7 +8,6 @@
 #include "core/parallel.h"
 #include "core/sanitise.h"
 #include "features/fission.h"
-#include "features/variance_floor.h"
 
 namespace polyrecon {
 namespace {
@@ -248,7 +247,6 @@ Prepared prepare(const Frame& frame, const Preparation& preparation, const Image
   pair.variance = variance;
   mend(pair.variance, mend_reach);
   make_non_negative(pair.variance);
-  pair.variance = floor_variance(pair.variance);
   for (int c = 0; c < 3; ++c)
     for (std::size_t i = 0; i < pair.variance.pixels(); ++i) {
       pair.variance.plane(c)[i] *= 2;  // of a half, from that of the mean

@@ -29,6 +29,12 @@ bool stands_out(const Image& own, int x, int y, int radius) {
   return true;
 }
 
+std::ptrdiff_t neighbour_of_median(std::vector<std::pair<Real, std::ptrdiff_t>>& neighbours) {
+  const auto middle = neighbours.begin() + static_cast<std::ptrdiff_t>(neighbours.size() / 2);
+  std::nth_element(neighbours.begin(), middle, neighbours.end());
+  return middle->second;
+}
+
 /// Index of the pixel of median brightness around (x, y) if the pixel of half h is an outlier, else -1.
 std::ptrdiff_t replacement_of(const HalfPair& pair, std::size_t h, int x, int y, bool independent,
                               const OutlierParams& p) {
@@ -57,13 +63,13 @@ std::ptrdiff_t replacement_of(const HalfPair& pair, std::size_t h, int x, int y,
   std::nth_element(witnesses.begin(), middle, witnesses.end());
   const Real median = *middle;
   const double excess = static_cast<double>(value) - static_cast<double>(median);
-  if (!(excess > p.height * (static_cast<double>(top) - static_cast<double>(median)))) return -1;
+  const double height = independent ? p.height : 2 * p.height;
+  if (!(excess > height * (static_cast<double>(top) - static_cast<double>(median)))) return -1;
+  if (!p.variance_is_measured) return neighbour_of_median(neighbours);
   double variance = 0;
   for (int c = 0; c < 3; ++c) variance += static_cast<double>(pair.variance.plane(c)[center]) / 3;
   if (!(excess * excess < p.reliability * p.reliability * variance)) return -1;
-  const auto half = neighbours.begin() + static_cast<std::ptrdiff_t>(neighbours.size() / 2);
-  std::nth_element(neighbours.begin(), half, neighbours.end());
-  return half->second;
+  return neighbour_of_median(neighbours);
 }
 
 Replacement find(const HalfPair& pair, std::size_t h, bool independent, const OutlierParams& p, Progress& progress) {

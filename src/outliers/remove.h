@@ -9,7 +9,8 @@
 namespace polyrecon {
 
 struct OutlierParams {
-  int neighbourhood = 2;  ///< Radius of the neighbourhood that an outlier stands out of, pixels.
+  int neighbourhood = 2;             ///< Radius of the neighbourhood that an outlier stands out of, pixels.
+  bool variance_is_measured = true;  ///< Otherwise the variance says nothing of single pixels and is not asked.
   double height = 3;  ///< How far above the median it stands, in units of (upper end of the neighbourhood - median).
   double reliability = 4;  ///< It is unreliable: its excess is below this many of its own standard deviations.
   int density_radius = 9;  ///< Where outliers are common within this radius they are the light itself and stay.

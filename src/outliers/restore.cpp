@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/parallel.h"
+#include "core/sanitise.h"
+
 namespace polyrecon {
 namespace {
 
@@ -88,6 +91,40 @@ void restore_energy(const std::vector<Outlier>& outliers, double max_gain, Image
             static_cast<Real>(yhat * gain[static_cast<std::size_t>(y) * row + static_cast<std::size_t>(x)]);
       }
   }
+}
+
+std::vector<double> channel_sums(const Image& image) {
+  std::vector<double> sums;
+  for (int c = 0; c < image.channels(); ++c)
+    sums.push_back(ordered_sum(static_cast<std::size_t>(image.height()), [&](std::size_t y) {
+      double row = 0;
+      const Real* values = image.row(c, static_cast<int>(y));
+      for (int x = 0; x < image.width(); ++x)
+        if (usable(values[x])) row += static_cast<double>(values[x]);
+      return row;
+    }));
+  return sums;
+}
+
+std::array<double, 3> restore_totals(const std::vector<double>& totals, double max_gain, Image& image) {
+  const std::vector<double> found = channel_sums(image);
+  const Image shape = image;
+  std::array<double, 3> gains{};
+  for (std::size_t c = 0; c < 3; ++c) {
+    const double positive = BoxSums(shape, static_cast<int>(c)).sum(image.bounds());
+    const double gain = positive > 0 ? (totals[c] - found[c]) / positive : 0;
+    if (!(std::abs(gain) <= max_gain)) continue;
+    gains[c] = gain;
+    for (std::size_t k = c; k < totals.size(); k += 3) {
+      const double part = (totals[k] - found[k]) / positive;
+      const Real* yhat = shape.plane(static_cast<int>(c));
+      Real* out = image.plane(static_cast<int>(k));
+      if (positive > 0)
+        for (std::size_t i = 0; i < image.pixels(); ++i)
+          out[i] += static_cast<Real>(part * std::max(static_cast<double>(yhat[i]), 0.0));
+    }
+  }
+  return gains;
 }
 
 }  // namespace polyrecon

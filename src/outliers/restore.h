@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "core/image.h"
@@ -14,5 +15,14 @@ namespace polyrecon {
 /// the shape of the beauty, so that layers that add up still do; a last single channel (alpha) is left alone. An
 /// outlier on an image that is all black gives its energy back where it was taken.
 void restore_energy(const std::vector<Outlier>& outliers, double max_gain, Image& image);
+
+/// The same for what the fit itself gained or lost: with Omega the whole image, every channel's sum becomes `totals`
+/// (one value a channel, as many as are to be restored). Only where the gain is at most max_gain in magnitude; a larger
+/// difference is not rounding or the pull of the weights but content (an input of both signs, a hole that was mended),
+/// and stays. Returns the gain of each of the first three channels.
+std::array<double, 3> restore_totals(const std::vector<double>& totals, double max_gain, Image& image);
+
+/// Sum of every channel over the usable pixels.
+std::vector<double> channel_sums(const Image& image);
 
 }  // namespace polyrecon

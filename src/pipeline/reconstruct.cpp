@@ -9,6 +9,7 @@
 #include "core/parallel.h"
 #include "estimate/variance.h"
 #include "features/prepare.h"
+#include "features/variance_floor.h"
 #include "outliers/remove.h"
 #include "outliers/restore.h"
 #include "pipeline/stage.h"
@@ -16,7 +17,8 @@
 namespace polyrecon {
 namespace {
 
-constexpr int smallest_level = 16;  // pixels; a smaller level has no window of its own
+constexpr int smallest_level = 16;       // pixels; a smaller level has no window of its own
+constexpr double max_total_gain = 0.05;  // more than what the weights' preference for ordinary pixels can lose
 constexpr double max_restored_gain =
     0.02;  // a change of brightness by 2 % over an area is about what can be seen (Weber)
 
@@ -107,19 +109,17 @@ Image channels_of(const Image& image, int first, int count) {
 }
 
 std::array<double, 3> energy_of(const Image& image) {
-  std::array<double, 3> energy{};
-  for (int c = 0; c < 3; ++c)
-    energy[static_cast<std::size_t>(c)] =
-        ordered_sum(static_cast<std::size_t>(image.height()),
-                    [&](std::size_t y) {
-                      double row = 0;
-                      const Real* values = image.row(c, static_cast<int>(y));
-                      for (int x = 0; x < image.width(); ++x)
-                        row += std::isfinite(values[x]) ? static_cast<double>(values[x]) : 0.0;
-                      return row;
-                    }) /
-        static_cast<double>(image.pixels());
-  return energy;
+  const std::vector<double> sums = channel_sums(image);
+  const auto pixels = static_cast<double>(image.pixels());
+  return {sums[0] / pixels, sums[1] / pixels, sums[2] / pixels};
+}
+
+/// Sums of the input's colour channels: beauty, then each AOV.
+std::vector<double> color_totals(const Frame& frame) {
+  std::vector<double> totals = channel_sums(frame.beauty.mean);
+  for (const Pass& aov : frame.aovs)
+    for (const double sum : channel_sums(aov.mean)) totals.push_back(sum);
+  return totals;
 }
 
 void note_fits(const FitCounters& counters, Report& report) {
@@ -169,9 +169,13 @@ Result reconstruct(const Frame& frame, const Params& params, Progress& progress)
   HalfPair& pair = prepared.pair;
   report.mended_pixels = prepared.mended_pixels;
   report.negative_pixels = prepared.negative_pixels;
+  const std::vector<double> totals = color_totals(frame);
   const auto outliers = timed(report, progress, "outliers", rows * 2, [&] {
-    return remove_outliers(pair, prepared.independent_halves, OutlierParams{}, progress);
+    OutlierParams outlier_params;
+    outlier_params.variance_is_measured = noise.measured;
+    return remove_outliers(pair, prepared.independent_halves, outlier_params, progress);
   });
+  pair.variance = floor_variance(pair.variance);  // now: an outlier's variance must not spread to its neighbours
   note_outliers(outliers, report);
 
   const std::size_t memory = stage_memory(frame, pair, params.max_memory);
@@ -184,6 +188,7 @@ Result reconstruct(const Frame& frame, const Params& params, Progress& progress)
   Image image = timed(report, progress, "energy", 1, [&] {
     Image out = average(pair, solved);
     restore_energy(outliers, max_restored_gain, out);
+    report.restored_gain = restore_totals(totals, max_total_gain, out);
     return out;
   });
   result.error = timed(report, progress, "error map", 1, [&] { return make_error_map(pair, noise.variance, solved); });

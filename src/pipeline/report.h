@@ -32,6 +32,7 @@ struct Report {
 
   std::size_t outliers = 0;                ///< Pixels replaced by equation (10)'s median.
   std::array<double, 3> outlier_energy{};  ///< Sum of e_o per channel, radiance x pixels.
+  std::array<double, 3> restored_gain{};   ///< Factor - 1 by which each channel was brought to the input's mean.
   std::array<double, 3> energy_before{};   ///< Mean of the noisy beauty per channel.
   std::array<double, 3> energy_after{};    ///< Mean of the result per channel.
   double estimated_relative_mse = 0;       ///< Mean of the error map's relative MSE.
