@@ -22,7 +22,7 @@ constexpr Real nan = std::numeric_limits<Real>::quiet_NaN();
 
 Prepared prepared(const Frame& frame) {
   Progress silent;
-  return prepare(frame, look_at(frame), frame.beauty.variance, true, silent);
+  return prepare(frame, look_at(frame), frame.beauty.variance, PrefilterParams{}, true, silent);
 }
 
 /// The reason for which the only feature of the scene was dropped; empty if it was not.
@@ -183,7 +183,9 @@ TEST(Prepare, AlphaIsTheLastChannelIfItIsAskedFor) {
   EXPECT_EQ(prepared(frame).pair.color[0].channels(), 4);
   EXPECT_EQ(prepared(frame).pair.color[1].at(3, 3, 3), Real(0.25));
   Progress silent;
-  EXPECT_EQ(prepare(frame, look_at(frame), frame.beauty.variance, false, silent).pair.color[0].channels(), 3);
+  EXPECT_EQ(
+      prepare(frame, look_at(frame), frame.beauty.variance, PrefilterParams{}, false, silent).pair.color[0].channels(),
+      3);
 }
 
 }  // namespace

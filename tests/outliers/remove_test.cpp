@@ -21,7 +21,7 @@ HalfPair quiet_pair() {
 
 /// A firefly: 50 times too bright in one half, with the variance that its samples have.
 void put_spike(HalfPair& pair, std::size_t half, int x, int y, double value = 50) {
-  for (int c = 0; c < pair.color[half].channels(); ++c)
+  for (int c = 0; c < pair.color[half].channels() / 3 * 3; ++c)
     pair.color[half].at(x, y, c) = static_cast<Real>(c < 3 ? value : value / 2);
   for (int c = 0; c < 3; ++c) pair.variance.at(x, y, c) = static_cast<Real>(value * value / 2);
 }

@@ -51,7 +51,10 @@ inline Scene make_scene(int width, int height, double noise, std::uint64_t seed)
         {}}},
       {FeatureKind::Depth,
        {"Depth",
-        image_of(width, height, 1, [&](int x, int y, int) { return 5 + 0.02 * y - (on_disk(x, y) ? 1 : 0); }),
+        image_of(width, height, 1,
+                 [&](int x, int y, int) {
+                   return 5 + 0.8 * std::sin(0.9 * x) * std::sin(0.7 * y) - (on_disk(x, y) ? 1 : 0);
+                 }),
         {},
         {},
         {}}}};
