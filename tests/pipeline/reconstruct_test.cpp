@@ -76,8 +76,8 @@ TEST(Reconstruct, TakesTheNoiseOutOfASceneOfKnownTruth) {
     const double before = test::relative_mse(scene.frame.beauty.mean, scene.truth);
     const double after = test::relative_mse(result.beauty, scene.truth);
     EXPECT_LT(after, 0.2 * before) << noise;
-    // The error that it states is on the safe side: blending cancels bias of opposite sign, and the coarser levels take some away,
-    // neither of which a window's own estimate knows. Measured 1.4 to 2.1 times the true one.
+    // The error that it states is on the safe side: blending cancels bias of opposite sign, and the coarser levels take
+    // some away, neither of which a window's own estimate knows. Measured 1.4 to 2.1 times the true one.
     EXPECT_GT(result.report.estimated_relative_mse, 0.7 * after) << noise;
     EXPECT_LT(result.report.estimated_relative_mse, 3 * after) << noise;
   }
@@ -280,8 +280,8 @@ TEST(Reconstruct, OneBadPixelIsFiniteAndStaysLocal) {
       const Result result = run(frame, params);
       EXPECT_TRUE(finite(result));
       const Rect far{4 + reach + 1, 0, 96, 32};
-      // Two things are of the whole frame: the gain that keeps its energy, reported, and the mean brightness against which relative
-      // errors are weighed, which is off by one pixel in 3072.
+      // Two things are of the whole frame: the gain that keeps its energy, reported, and the mean brightness against
+      // which relative errors are weighed, which is off by one pixel in 3072.
       EXPECT_LT(test::max_difference(without_gain(result, far), without_gain(clean, far)), 1e-4);
       EXPECT_LT(test::max_difference(result.beauty, clean.beauty), 2);
     }
