@@ -59,7 +59,7 @@ std::size_t stage_memory(const Frame& frame, const HalfPair& pair, std::size_t m
 }
 
 void require_memory(const Frame& frame, const HalfPair& pair, const Params& params, std::size_t available) {
-  const int halo = fit_halo(params.fit(params.first_bandwidths)) + select_halo(params.selection);
+  const int halo = stage_halo(params);
   const auto side =
       static_cast<std::size_t>(2 * block_size + 2 * ((halo + 2 * block_size - 1) / (2 * block_size)) * 2 * block_size);
   const std::size_t needed = std::min(side * side, pair.variance.pixels()) * stage_bytes_per_pixel(pair, params);
