@@ -175,7 +175,7 @@ void fit_window(Blending& b, Scratch& s, Real bandwidth, BlendSums& sums) {
   if (s.factor.rank < b.layout.columns()) ++b.counters.rank_deficient;
   if (!all_finite(s, b.responses())) {
     // A window whose fit overflowed says nothing; its pixels are left to the other windows and, last, to the input.
-    ++b.counters.fallen_back_to_mean;
+    ++b.counters.dropped;
     return;
   }
   ++b.counters.per_model[static_cast<std::size_t>(choice.model)];

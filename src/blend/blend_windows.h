@@ -41,7 +41,7 @@ struct BlendedFit {
 
 /// Counted over all windows; plain sums, so the order of the threads does not matter.
 struct FitCounters {
-  std::atomic<std::size_t> windows{0}, rank_deficient{0}, fallen_back_to_mean{0}, uncovered_pixels{0};
+  std::atomic<std::size_t> windows{0}, rank_deficient{0}, dropped{0}, uncovered_pixels{0};
   std::array<std::atomic<std::size_t>, BasisLayout::max_models> per_model{};
 };
 

@@ -176,7 +176,7 @@ void PatchDistances::window_of(std::size_t center, Real limit, Window& window) c
   const int y0 = std::max(cy - radius_, 0), y1 = std::min(cy + radius_, height_ - 1);
   std::size_t count = 0;
   for (int y = y0; y <= y1; ++y) {
-    const Real* row = distance + (y - cy + radius_) * side - cx + radius_;
+    const Real* row = distance + static_cast<std::ptrdiff_t>(y - cy + radius_) * side - cx + radius_;
     for (int x = x0; x <= x1; ++x) {
       const Real d = row[x];
       if (!(d < limit)) continue;
