@@ -200,6 +200,21 @@ TEST(Reconstruct, AovsThatAddUpStillDo) {
   }
 }
 
+/// A layer that is no part of the beauty: an albedo beside a beauty so dark that noise and splitting make it change its
+/// sign.
+TEST(Reconstruct, ALayerBesideADarkBeautyStaysWhatItIs) {
+  Scene scene = make_scene(48, 40, 0.3, 27);
+  Frame& frame = scene.frame;
+  test::Random random(27);
+  frame.beauty.half_a = frame.beauty.half_b = Image();
+  frame.beauty.mean = image_of(48, 40, 3, [&](int, int, int) { return 0.001 + 0.05 * random.normal(); });
+  frame.beauty.variance = Image(48, 40, 3, Real(0.0025));
+  frame.aovs = {{"Albedo", Image(48, 40, 3, Real(0.8)), {}, {}, {}}};
+  const Image layer = run(frame).aovs[0];
+  // The mean stays; what the halves are set apart by averages out but for the noise of a window.
+  EXPECT_LT(test::max_difference(layer, frame.aovs[0].mean), 0.2);
+}
+
 TEST(Reconstruct, AlphaIsKeptOrReconstructed) {
   Scene scene = make_scene(40, 36, 0.2, 9);
   scene.frame.alpha = image_of(40, 36, 1, [](int x, int, int) { return x < 20 ? 0.25 : 1; });
