@@ -299,7 +299,7 @@ TEST(FitAndBlend, CountsEveryWindowOnce) {
   EXPECT_EQ(counters.windows.load(), 2u * 10u * 6u);
   std::size_t per_model = 0;
   for (const auto& count : counters.per_model) per_model += count;
-  EXPECT_EQ(per_model + counters.fallen_back_to_mean, counters.windows.load());
+  EXPECT_EQ(per_model + counters.dropped, counters.windows.load());
   EXPECT_EQ(counters.uncovered_pixels.load(), 0u);
 }
 
