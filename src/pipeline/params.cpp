@@ -17,7 +17,7 @@ Params params_for(Quality quality) {
     params.stages = 1;
     params.levels = 2;
     params.stride = 6;
-    params.coverage = 1;
+    params.coverage = 0.5;
     params.max_order = 1;
     params.first_bandwidths = {Real(0.7)};
     params.cleaning.search_radius = 3;
