@@ -32,8 +32,10 @@ void raise(const Image& input, const Rect& around, int channel, Real by, int x, 
   image.at(x, y, channel) += by;
   const double beauty = sum_over(input, channel, around);
   if (beauty == 0) return;
+  // Part of the beauty is 0 to 1 of it; a layer that is none (an albedo) may be any multiple of a dark corner.
   for (int k = channel + 3; k < image.channels() / 3 * 3; k += 3)
-    image.at(x, y, k) += static_cast<Real>(static_cast<double>(by) * sum_over(input, k, around) / beauty);
+    image.at(x, y, k) +=
+        static_cast<Real>(static_cast<double>(by) * std::clamp(sum_over(input, k, around) / beauty, 0.0, 1.0));
 }
 
 }  // namespace

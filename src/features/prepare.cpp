@@ -182,7 +182,9 @@ std::array<Image, 2> split_like(const std::array<Image, 2>& beauty, const Pass& 
     for (std::size_t i = 0; i < mean.pixels(); ++i) {
       const Real a = beauty[0].plane(c)[i], b = beauty[1].plane(c)[i], sum = a + b;
       if (!(std::abs(sum) > std::numeric_limits<Real>::min())) continue;
-      const Real offset = mean.plane(c)[i] * ((a - b) / sum);
+      // Part of the beauty is 0 to 1 of it; a layer that is none (an albedo) may be any multiple of a dark pixel.
+      const Real share = std::clamp(2 * (mean.plane(c)[i] / sum), Real(0), Real(1));
+      const Real offset = share * (Real(0.5) * (a - b));
       halves[0].plane(c)[i] += offset;
       halves[1].plane(c)[i] -= offset;
     }

@@ -38,14 +38,14 @@ double error_change(const ColumnStatistics& channel, int column, double g, bool 
   return g * g * n - (2 * g - g * g) * channel.guess[a] * channel.guess[a];
 }
 
-double shrinkage_factor(const Channels& channels, int column, bool first_stage) {
-  if (column == 0) return 1;
-  const auto a = static_cast<std::size_t>(column);
+double shrinkage_factor(const Channels& channels, int begin, int end, bool first_stage) {
+  if (begin == 0) return 1;
   double energy = 0, noise = 0;
-  for (const ColumnStatistics& channel : channels) {
-    energy += first_stage ? channel.z[a] * channel.z[a] : channel.guess[a] * channel.guess[a];
-    noise += channel.variance[a];
-  }
+  for (const ColumnStatistics& channel : channels)
+    for (auto a = static_cast<std::size_t>(begin); a < static_cast<std::size_t>(end); ++a) {
+      energy += first_stage ? channel.z[a] * channel.z[a] : channel.guess[a] * channel.guess[a];
+      noise += channel.variance[a];
+    }
   if (!(energy > 0)) return 0;
   return first_stage ? std::max(0.0, 1 - noise / energy) : energy / (energy + noise);
 }
@@ -54,8 +54,14 @@ OrderChoice select_order(const Channels& channels, const BasisLayout& layout, do
                          double tolerance) {
   assert(weight_sum > 0);
   OrderChoice choice;
-  for (int a = 0; a < layout.columns(); ++a)
-    choice.factor[static_cast<std::size_t>(a)] = shrinkage_factor(channels, a, first_stage);
+  const int features_end = 1 + layout.features();
+  for (int a = 0; a < features_end; ++a)
+    choice.factor[static_cast<std::size_t>(a)] = shrinkage_factor(channels, a, a + 1, first_stage);
+  for (int order = 1; order <= layout.order(); ++order) {
+    const int begin = layout.columns(order), end = layout.columns(order + 1);
+    std::fill(choice.factor.begin() + begin, choice.factor.begin() + end,
+              shrinkage_factor(channels, begin, end, first_stage));
+  }
   const auto errors = nested_errors(channels, layout, choice.factor.data(), first_stage);
   const double least = *std::min_element(errors.begin(), errors.begin() + layout.models());
   while (errors[static_cast<std::size_t>(choice.model)] > least + tolerance * std::max(least, 0.0)) ++choice.model;

@@ -30,11 +30,14 @@ struct OrderChoice {
 /// For g = 1 this is the identity of Mallows' Cp: all nested models from one factorisation.
 double error_change(const ColumnStatistics& channel, int column, double g, bool first_stage);
 
-/// Factor that minimises the summed error_change of a column over the channels: the positive-part James-Stein factor
-/// max(0, 1 - n/e) in stage 1, Wiener's guess^2 / (guess^2 + n) later. The constant always enters whole.
-/// Departure from Moon et al. 2016, who let a column in whole or not at all.
-double shrinkage_factor(const std::array<ColumnStatistics, 3>& channels, int column, bool first_stage);
+/// Factor that minimises the error_change of the columns [begin, end) summed over the channels: the positive-part
+/// James-Stein factor max(0, 1 - n/e) in stage 1, Wiener's guess^2 / (guess^2 + n) later. The constant always enters
+/// whole. Departure from Moon et al. 2016, who let a column in whole or not at all.
+double shrinkage_factor(const std::array<ColumnStatistics, 3>& channels, int begin, int end, bool first_stage);
 
+/// Features have a factor each. The Taylor terms of one order share theirs: their sums do not depend on the axes that
+/// span them, so that a turned or transposed image gives a turned result.
+///
 /// Equation (7), k_opt = argmin_k of bias^2 + variance, over the nested models of layout, the error summed over
 /// channels. Of models whose error differs by less than tolerance (relative) the one of lowest order is taken.
 /// weight_sum is sum_i w_i > 0.

@@ -158,8 +158,12 @@ class Reference {
       energy += (wq.transpose() * value(first_ ? p_.response : p_.guess, c)).cwiseAbs2();
       noise += wq.cwiseAbs2().transpose() * value(p_.variance, c);
     }
-    for (Eigen::Index a = 0; a < q.cols(); ++a)
-      g(a) = energy(a) == 0 ? 0 : first_ ? std::max(0.0, 1 - noise(a) / energy(a)) : energy(a) / (energy(a) + noise(a));
+    for (Eigen::Index a = 0, end; a < q.cols(); a = end) {
+      // The constant and the features alone, then the Taylor terms of orders 1, 2, ... together: from 3, 5, 8, ... on.
+      end = a < 3 ? a + 1 : a == 3 ? 5 : a == 5 ? 8 : q.cols();
+      const double e = energy.segment(a, end - a).sum(), v = noise.segment(a, end - a).sum();
+      g.segment(a, end - a).setConstant(e == 0 ? 0 : first_ ? std::max(0.0, 1 - v / e) : e / (e + v));
+    }
     g(0) = 1;
     // Every model in turn, its error by explicit projection.
     VectorXd best_error, best_variance;

@@ -165,17 +165,20 @@ TEST(ShrinkageFactor, MinimisesTheSummedErrorChange) {
   for (int round = 0; round < 200; ++round) {
     Channels channels;
     for (ColumnStatistics& channel : channels) {
-      channel.z[1] = random.normal();
-      channel.guess[1] = random.normal();
-      channel.variance[1] = random.uniform(0, 2);
+      for (const std::size_t a : {1, 2}) {
+        channel.z[a] = random.normal();
+        channel.guess[a] = random.normal();
+        channel.variance[a] = random.uniform(0, 2);
+      }
     }
     for (const bool first_stage : {true, false}) {
       const auto change = [&](double g) {
         double sum = 0;
-        for (const ColumnStatistics& channel : channels) sum += error_change(channel, 1, g, first_stage);
+        for (const ColumnStatistics& channel : channels)
+          sum += error_change(channel, 1, g, first_stage) + error_change(channel, 2, g, first_stage);
         return sum;
       };
-      const double best = shrinkage_factor(channels, 1, first_stage);
+      const double best = shrinkage_factor(channels, 1, 3, first_stage);
       EXPECT_GE(best, 0);
       EXPECT_LE(best, 1);
       for (int k = 0; k <= 100; ++k) EXPECT_LE(change(best), change(0.01 * k) + 1e-12) << first_stage << " " << k;
@@ -193,12 +196,19 @@ TEST(ShrinkageFactor, ByHand) {
     channels[c].z[3] = 0.1;
     channels[c].variance[3] = 1;
   }
-  EXPECT_DOUBLE_EQ(shrinkage_factor(channels, 2, true), 2.0 / 3);
-  EXPECT_DOUBLE_EQ(shrinkage_factor(channels, 2, false), 0.75);
-  EXPECT_EQ(shrinkage_factor(channels, 3, true), 0);
-  EXPECT_EQ(shrinkage_factor(channels, 4, true), 0);  // no energy at all: a dropped column
-  EXPECT_EQ(shrinkage_factor(channels, 4, false), 0);
-  EXPECT_EQ(shrinkage_factor(channels, 0, true), 1);  // the constant always enters whole
+  EXPECT_DOUBLE_EQ(shrinkage_factor(channels, 2, 3, true), 2.0 / 3);
+  EXPECT_DOUBLE_EQ(shrinkage_factor(channels, 2, 3, false), 0.75);
+  EXPECT_EQ(shrinkage_factor(channels, 3, 4, true), 0);
+  EXPECT_EQ(shrinkage_factor(channels, 4, 5, true), 0);  // no energy at all: a dropped column
+  EXPECT_EQ(shrinkage_factor(channels, 4, 5, false), 0);
+  EXPECT_EQ(shrinkage_factor(channels, 0, 1, true), 1);  // the constant always enters whole
+}
+
+/// Factor of column a in the layout of Setting: features (1, 2) have one each, the Taylor terms of an order (3, 4 and 5
+/// to 7) share one.
+double group_factor(const Channels& channels, int a, bool first_stage) {
+  const int begin[] = {0, 1, 2, 3, 3, 5, 5, 5}, end[] = {1, 2, 3, 5, 5, 8, 8, 8};
+  return shrinkage_factor(channels, begin[a], end[a], first_stage);
 }
 
 TEST(SelectOrder, TakesTheModelOfLeastEstimatedErrorAndSaysHowLargeThatIs) {
@@ -218,7 +228,7 @@ TEST(SelectOrder, TakesTheModelOfLeastEstimatedErrorAndSaysHowLargeThatIs) {
       std::array<double, 3> error{}, variance{};
       for (int model = 0; model < s.layout.models(); ++model) {
         VectorXd g(s.layout.columns(model));
-        for (int a = 0; a < g.size(); ++a) g(a) = shrinkage_factor(channels, a, first_stage);
+        for (int a = 0; a < g.size(); ++a) g(a) = group_factor(channels, a, first_stage);
         const MatrixXd h = s.shrunken(g);
         double sum = 0;
         std::array<double, 3> e{}, v{};
@@ -243,7 +253,7 @@ TEST(SelectOrder, TakesTheModelOfLeastEstimatedErrorAndSaysHowLargeThatIs) {
       }
       for (int a = 0; a < BasisLayout::max_columns; ++a)
         EXPECT_EQ(choice.factor[static_cast<std::size_t>(a)],
-                  a < s.layout.columns(best) ? shrinkage_factor(channels, a, first_stage) : 0);
+                  a < s.layout.columns(best) ? group_factor(channels, a, first_stage) : 0);
     }
   }
 }
