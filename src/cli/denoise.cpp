@@ -186,6 +186,7 @@ void run(DenoiseOptions o) {
   for (const std::string& role : o.roles) o.read.map.push_back(parse_mapping(role));
   check(o);
   set_thread_limit(o.threads);
+  set_codec_threads(o.threads > 0 ? o.threads : processors());
   const Params params = params_of(o);
   o.read.limits.max_bytes = params.max_memory;
   const auto progress = make_progress(o.quiet ? ProgressStyle::None : o.progress);

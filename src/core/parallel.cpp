@@ -1,6 +1,7 @@
 #include "core/parallel.h"
 
 #include <tbb/global_control.h>
+#include <tbb/info.h>
 #include <tbb/parallel_for.h>
 
 #include <memory>
@@ -25,6 +26,8 @@ double ordered_sum(std::size_t count, const std::function<double(std::size_t)>& 
   for (const double t : terms) sum += t;
   return sum;
 }
+
+int processors() { return tbb::info::default_concurrency(); }
 
 void set_thread_limit(int threads) {
   static std::unique_ptr<tbb::global_control> limit;

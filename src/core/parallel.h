@@ -16,6 +16,9 @@ void parallel_for(std::size_t count, Progress& progress, const std::function<voi
 /// threads; make one term a row or a block, not a sample.
 double ordered_sum(std::size_t count, const std::function<double(std::size_t)>& term);
 
+/// Processors of this machine that the process may use; at least 1.
+int processors();
+
 /// Limits the threads used from here on in this process; 0 means all processors.
 void set_thread_limit(int threads);
 
