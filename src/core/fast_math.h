@@ -24,7 +24,7 @@ inline float exp_minus(float x) {
   p = p * r + 1.0f;
   std::int32_t bits;
   std::memcpy(&bits, &p, sizeof bits);
-  bits += static_cast<std::int32_t>(rounded) << 23;
+  bits += static_cast<std::int32_t>(rounded) * (1 << 23);
   std::memcpy(&p, &bits, sizeof p);
   return p;
 }
