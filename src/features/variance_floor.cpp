@@ -29,35 +29,69 @@ POLYRECON_SIMD void columns_of_5(const Real* const* rows, Real* median, Real* me
   }
 }
 
-/// medians, means: columns from radius before the first to radius after the last of the n results.
-POLYRECON_SIMD void floor_row(const Real* variance, const Real* medians, const Real* means, Real* out, int n) {
+/// in: from radius before the first to radius after the last of the n results.
+POLYRECON_SIMD void medians_along(const Real* in, Real* median, int n) {
+  for (int x = 0; x < n; ++x) median[x] = median_of_5(in[x], in[x + 1], in[x + 2], in[x + 3], in[x + 4]);
+}
+
+/// of_columns, of_rows: median of the columns' medians, of the rows' medians. means: of columns, as for medians_along.
+POLYRECON_SIMD void floor_row(const Real* variance, const Real* of_columns, const Real* of_rows, const Real* means,
+                              Real* out, int n) {
   for (int x = 0; x < n; ++x) {
-    const Real median = median_of_5(medians[x], medians[x + 1], medians[x + 2], medians[x + 3], medians[x + 4]);
+    const Real median = Real(0.5) * (of_columns[x] + of_rows[x]);
     const Real mean = (means[x] + means[x + 1] + means[x + 2] + means[x + 3] + means[x + 4]) * Real(0.2) * part_of_mean;
     const Real least = median > mean ? median : mean;
     out[x] = variance[x] > least ? variance[x] : least;
   }
 }
 
+/// The five rows around row y of a channel, the nearest one in place of those beyond the border.
+void rows_around(const Image& image, int c, int y, const Real** rows) {
+  for (int k = 0; k < side; ++k) rows[k] = image.row(c, std::clamp(y + k - radius, 0, image.height() - 1));
+}
+
+/// Repeats the first and the last of the values that stand radius inside a line.
+void repeat_ends(std::vector<Real>& line) {
+  std::fill_n(line.begin(), radius, line[radius]);
+  std::fill_n(line.end() - radius, radius, *(line.end() - radius - 1));
+}
+
+Image medians_of_rows(const Image& image) {
+  Image out(image.width(), image.height(), image.channels());
+  Progress silent;
+  parallel_for(static_cast<std::size_t>(out.height()), silent, [&](std::size_t row) {
+    std::vector<Real> line(static_cast<std::size_t>(image.width() + 2 * radius));
+    for (int c = 0; c < out.channels(); ++c) {
+      const Real* in = image.row(c, static_cast<int>(row));
+      std::copy(in, in + image.width(), line.begin() + radius);
+      repeat_ends(line);
+      medians_along(line.data(), out.row(c, static_cast<int>(row)), image.width());
+    }
+  });
+  return out;
+}
+
 }  // namespace
 
 Image floor_variance(const Image& variance) {
   Image out(variance.width(), variance.height(), variance.channels());
+  const Image row_medians = medians_of_rows(variance);
   const int width = variance.width();
   Progress silent;
   parallel_for(static_cast<std::size_t>(out.height()), silent, [&](std::size_t row) {
     const int y = static_cast<int>(row);
-    const auto padded = static_cast<std::size_t>(width + 2 * radius);
-    std::vector<Real> medians(padded), means(padded);
+    const auto columns = static_cast<std::size_t>(width), padded = columns + 2 * radius;
+    std::vector<Real> medians(padded), means(padded), of_columns(columns), of_rows(columns), unused(columns);
     for (int c = 0; c < out.channels(); ++c) {
       const Real* rows[side];
-      for (int k = 0; k < side; ++k) rows[k] = variance.row(c, std::clamp(y + k - radius, 0, variance.height() - 1));
+      rows_around(row_medians, c, y, rows);
+      columns_of_5(rows, of_rows.data(), unused.data(), width);
+      rows_around(variance, c, y, rows);
       columns_of_5(rows, medians.data() + radius, means.data() + radius, width);
-      for (std::vector<Real>* line : {&medians, &means}) {
-        std::fill_n(line->begin(), radius, (*line)[radius]);
-        std::fill_n(line->end() - radius, radius, *(line->end() - radius - 1));
-      }
-      floor_row(variance.row(c, y), medians.data(), means.data(), out.row(c, y), width);
+      repeat_ends(medians);
+      repeat_ends(means);
+      medians_along(medians.data(), of_columns.data(), width);
+      floor_row(variance.row(c, y), of_columns.data(), of_rows.data(), means.data(), out.row(c, y), width);
     }
   });
   return out;
