@@ -62,13 +62,13 @@ def ship_halves(merged, target):
         layer = name.rpartition(".")[0]
         if "Combined" in layer or "Denoising" in layer or "Shadow" in layer:
             kinds += ["-d", f"{name}={'float' if layer.endswith('Variance') else 'half'}"]
-    run(["oiiotool", str(merged), *kinds, "--compression", "zip", "-o", str(target)])
+    run(["oiiotool", "--nosoftwareattrib", str(merged), *kinds, "--compression", "zip", "-o", str(target)])
 
 
 def ship_reference(merged, target):
     """The beauty and the variance of its mean, both float: the score subtracts that variance."""
     keep = [f"ViewLayer.Combined{kind}.{c}" for kind in ("", " Variance") for c in "RGB"]
-    run(["oiiotool", str(merged), "--ch", ",".join(keep), "--compression", "zip", "-o", str(target)])
+    run(["oiiotool", "--nosoftwareattrib", str(merged), "--ch", ",".join(keep), "--compression", "zip", "-o", str(target)])
 
 
 def reference(tools, version, scene, spp):
