@@ -80,7 +80,8 @@ Image floor_variance(const Image& variance) {
   Progress silent;
   parallel_for(static_cast<std::size_t>(out.height()), silent, [&](std::size_t row) {
     const int y = static_cast<int>(row);
-    const auto columns = static_cast<std::size_t>(width), padded = columns + std::size_t{2 * radius};
+    const auto columns = static_cast<std::size_t>(width);
+    const std::size_t padded = columns + std::size_t{side} - 1;
     std::vector<Real> medians(padded), means(padded), of_columns(columns), of_rows(columns), unused(columns);
     for (int c = 0; c < out.channels(); ++c) {
       const Real* rows[side];
