@@ -67,6 +67,7 @@ def arguments():
     parser.add_argument(
         "--program", type=pathlib.Path, default=ROOT / "build" / "release" / "src" / "polyrecon", metavar="FILE"
     )
+    parser.add_argument("--write-frame", type=pathlib.Path, metavar="EXR", help="write the frame of the first size, and stop")
     parser.add_argument("--folder", type=pathlib.Path, help="where the frames go (default: a temporary folder)")
     return parser.parse_args()
 
@@ -198,6 +199,9 @@ def time_frames(args, folder):
 
 def main():
     args = arguments()
+    if args.write_frame:
+        make_frame(args.sample, *args.sizes[0], args.write_frame)
+        return
     if not shutil.which(args.program):
         sys.exit(f"{args.program}: not there; build it (cmake --preset release) or name it by --program")
     with tempfile.TemporaryDirectory(dir=args.folder, prefix="polyrecon_scaling_") as folder:
