@@ -175,7 +175,7 @@ void fit_window(Blending& b, Scratch& s, Real bandwidth, BlendSums& sums) {
   if (s.factor.rank < b.layout.columns()) ++b.counters.rank_deficient;
   if (!all_finite(s, b.responses())) {
     // A window whose fit overflowed says nothing; its pixels are left to the other windows and, last, to the input.
-    ++b.counters.fallen_back_to_mean;
+    ++b.counters.dropped;
     return;
   }
   ++b.counters.per_model[static_cast<std::size_t>(choice.model)];
@@ -283,7 +283,15 @@ std::vector<unsigned char> reached(const std::vector<unsigned char>& active, int
 
 }  // namespace
 
-int fit_halo(const FitParams& params) { return 3 * params.radius + params.patch_radius + 1; }
+int fit_halo(const FitParams& params) {
+  // One radius from a pixel to the centres that cover it and one to the pixels of their windows. A centre of a finer
+  // lattice is there or not by the centres that cover it, those by the ones of the lattice before: one radius for each
+  // lattice.
+  int lattices = 1;
+  for (int step = params.stride / 2; step >= 1; step /= 2) ++lattices;
+  const int radii = std::max(lattices, 2);
+  return radii * params.radius + params.patch_radius + 1;
+}
 
 std::vector<BlendedFit> fit_and_blend(const FitSource& source, const std::vector<unsigned char>& active,
                                       const FitParams& params, FitCounters& counters, Progress& progress) {
@@ -302,7 +310,8 @@ std::vector<BlendedFit> fit_and_blend(const FitSource& source, const std::vector
     for (int y = 0; y < height; ++y)
       for (int x = 0; x < width; ++x) {
         const std::size_t i = source.response->index(x, y);
-        const bool on_lattice = x % step == 0 && y % step == 0;
+        // Lattices begin anew in each block, so that a crop sees the same ones whatever the stride.
+        const bool on_lattice = x % block_size % step == 0 && y % block_size % step == 0;
         const bool lonely = static_cast<double>(plane.sums[(i + 1) * plane.channels - 1]) < params.coverage;
         is_center[i] = on_lattice && !done[i] && (step == params.stride ? needed[i] : active[i] && lonely);
         done[i] |= is_center[i];

@@ -41,7 +41,7 @@ struct BlendedFit {
 
 /// Counted over all windows; plain sums, so the order of the threads does not matter.
 struct FitCounters {
-  std::atomic<std::size_t> windows{0}, rank_deficient{0}, fallen_back_to_mean{0}, uncovered_pixels{0};
+  std::atomic<std::size_t> windows{0}, rank_deficient{0}, dropped{0}, uncovered_pixels{0};
   std::array<std::atomic<std::size_t>, BasisLayout::max_models> per_model{};
 };
 
@@ -49,8 +49,8 @@ struct FitCounters {
 /// twice it is worked with the same bits as the whole.
 constexpr int block_size = 64;
 
-/// Pixels around a region that fit_and_blend looks at: window + the windows that reach a pixel + patch, and once more
-/// where a pixel may become a centre of its own.
+/// Pixels around a region that fit_and_blend looks at: window + the windows that reach a pixel + patch, and more where
+/// lattices are many, since the centres of each depend on the ones before.
 int fit_halo(const FitParams& params);
 
 /// Fits a window (2) around every stride-th pixel, chooses its order (7) and blends the windows (3), for every

@@ -100,9 +100,10 @@ std::string report_text(const RunReport& run) {
   text += line("variance", r.variance_source);
   for (const Decision& d : r.decisions) text += line(d.effect, fmt::format("{}: {}", d.run ? "yes" : "no", d.reason));
   text += line("windows", windows_text(r));
-  text += line("fallbacks",
-               fmt::format("{} rank-deficient windows, {} to the mean, {} pixels to the input",
-                           r.rank_deficient_windows, r.windows_fallen_back_to_mean, r.pixels_fallen_back_to_input));
+  text +=
+      line("fallbacks",
+           fmt::format("{} rank-deficient windows, {} windows left out, {} pixels left to the input, {} pixels raised",
+                       r.rank_deficient_windows, r.dropped_windows, r.pixels_fallen_back_to_input, r.raised_pixels));
   text += line("input pixels", fmt::format("{} mended, {} negative", r.mended_pixels, r.negative_pixels));
   text += line("outliers", fmt::format("{}, energy moved {}", r.outliers, rgb_text(r.outlier_energy)));
   text += line("energy (mean RGB)", fmt::format("{} -> {} ({:+.3f} %)", rgb_text(r.energy_before),
@@ -140,7 +141,9 @@ Json report_json(const RunReport& run, const FrameSource& source) {
           {"peak_memory_bytes", run.peak_memory},
           {"windows", windows_json(r)},
           {"fallbacks",
-           {{"windows_to_mean", r.windows_fallen_back_to_mean}, {"pixels_to_input", r.pixels_fallen_back_to_input}}},
+           {{"windows_left_out", r.dropped_windows},
+            {"pixels_left_to_input", r.pixels_fallen_back_to_input},
+            {"pixels_raised", r.raised_pixels}}},
           {"mended_pixels", r.mended_pixels},
           {"negative_pixels", r.negative_pixels},
           {"outliers", {{"count", r.outliers}, {"energy", rgb(r.outlier_energy)}}},

@@ -13,7 +13,8 @@ inline float exp_minus(float x) {
   const float t = x * -1.44269504f;
   const float shifted = t + 12582912.0f;  // 1.5 * 2^23 rounds t to the nearest integer
   const float rounded = shifted - 12582912.0f;
-  const float r = (t - rounded) * 0.693147181f;
+  // ln 2 in two parts, the first short enough for an exact product: t itself has lost digits where x is large.
+  const float r = (-x - rounded * 0.693359375f) + rounded * 2.12194440e-4f;
   float p = 1.0f / 720;
   p = p * r + 1.0f / 120;
   p = p * r + 1.0f / 24;

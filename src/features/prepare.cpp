@@ -217,15 +217,19 @@ Preparation look_at(const Frame& frame) {
     throw Error(ExitCode::CheckFailed, "layer '" + frame.beauty.name + "': no finite pixel; render the frame again");
   const double brightness = mean_brightness(frame.beauty.mean);
   out.epsilon = brightness > 0 ? 0.09 * brightness * brightness : 1;
+  int channels = 0;
   for (std::size_t i = 0; i < frame.features.size(); ++i) {
     const Feature& feature = frame.features[i];
     const std::string effect = std::string("feature ") + kind_name(feature.kind);
     const FeatureLook look = look_at_feature(feature);
-    const std::string reason = reason_to_drop(look, feature);
+    std::string reason = reason_to_drop(look, feature);
+    if (reason.empty() && channels + feature.pass.mean.channels() > max_feature_channels)
+      reason = "the model is full: " + std::to_string(max_feature_channels) + " channels";
     if (!reason.empty()) {
       out.decisions.push_back({effect, false, reason});
       continue;
     }
+    channels += feature.pass.mean.channels();
     FeatureUse use;
     use.index = i;
     use.clean = look.noise > noise_floor * look.variance;

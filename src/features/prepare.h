@@ -26,8 +26,8 @@ struct Preparation {
   std::vector<Decision> decisions;
 };
 
-/// Drops features that are absent, not finite, constant, or nothing but noise, and says which of the others need
-/// cleaning. Throws Error{CheckFailed} where the beauty holds no usable pixel.
+/// Drops features that are absent, not finite, constant, nothing but noise, or more than a model holds, and says which
+/// of the others need cleaning. Throws Error{CheckFailed} where the beauty holds no usable pixel.
 Preparation look_at(const Frame& frame);
 
 struct Prepared {

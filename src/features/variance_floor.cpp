@@ -18,7 +18,7 @@ Image floor_variance(const Image& variance) {
   Progress silent;
   parallel_for(static_cast<std::size_t>(out.height()), silent, [&](std::size_t row) {
     const int y = static_cast<int>(row);
-    std::array<Real, (2 * radius + 1) * (2 * radius + 1)> around{};
+    std::array<Real, std::size_t{2 * radius + 1} * std::size_t{2 * radius + 1}> around{};
     for (int c = 0; c < out.channels(); ++c)
       for (int x = 0; x < out.width(); ++x) {
         const Rect area = intersect(grow({x, y, x + 1, y + 1}, radius), out.bounds());

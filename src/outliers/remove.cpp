@@ -105,7 +105,7 @@ bool rare(const Replacement& found, int width, int height, int x, int y, const O
 
 std::vector<Outlier> remove_outliers(HalfPair& pair, bool independent_halves, const OutlierParams& params,
                                      Progress& progress) {
-  const int width = pair.width(), height = pair.height(), channels = pair.color[0].channels();
+  const int width = pair.width(), height = pair.height(), channels = pair.color[0].channels() / 3 * 3;  // not alpha
   const std::array<Replacement, 2> found{find(pair, 0, independent_halves, params, progress),
                                          find(pair, 1, independent_halves, params, progress)};
   // Sources are read from the untouched images: an outlier may stand beside another.

@@ -19,9 +19,9 @@ struct OutlierParams {
 
 /// Finds the pixels of each half that stand far above what both halves say of their neighbourhood, and whose own
 /// variance says that they cannot be trusted; replaces them by the neighbour of median brightness, with all its
-/// channels (so that layers that add up still do), and its variance. A spike that both halves saw is a feature of the
-/// scene and stays; with independent_halves false the other half's own pixel is no witness. Returned in order of rows,
-/// half 0 first within a pixel.
+/// colour channels (so that layers that add up still do), and its variance; alpha stays. A spike that both halves saw
+/// is a feature of the scene and stays; with independent_halves false the other half's own pixel is no witness.
+/// Returned in order of rows, half 0 first within a pixel.
 std::vector<Outlier> remove_outliers(HalfPair& pair, bool independent_halves, const OutlierParams& params,
                                      Progress& progress);
 

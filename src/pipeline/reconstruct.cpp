@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "blend/levels.h"
+#include "blend/undershoot.h"
 #include "core/error.h"
 #include "core/parallel.h"
 #include "estimate/variance.h"
@@ -17,10 +18,9 @@
 namespace polyrecon {
 namespace {
 
-constexpr int smallest_level = 16;       // pixels; a smaller level has no window of its own
-constexpr double max_total_gain = 0.05;  // more than what the weights' preference for ordinary pixels can lose
-constexpr double max_restored_gain =
-    0.02;  // a change of brightness by 2 % over an area is about what can be seen (Weber)
+constexpr int smallest_level = 16;           // pixels; a smaller level has no window of its own
+constexpr double max_total_gain = 0.05;      // more than what the weights' preference for ordinary pixels can lose
+constexpr double max_restored_gain = 0.002;  // a fifth of the smallest step in brightness that can be seen (Weber)
 
 /// Runs a step, tells progress of it, and notes how long it took.
 template <typename Step>
@@ -59,7 +59,7 @@ std::size_t stage_memory(const Frame& frame, const HalfPair& pair, std::size_t m
 }
 
 void require_memory(const Frame& frame, const HalfPair& pair, const Params& params, std::size_t available) {
-  const int halo = fit_halo(params.fit(params.first_bandwidths)) + select_halo(params.selection);
+  const int halo = stage_halo(params);
   const auto side =
       static_cast<std::size_t>(2 * block_size + 2 * ((halo + 2 * block_size - 1) / (2 * block_size)) * 2 * block_size);
   const std::size_t needed = std::min(side * side, pair.variance.pixels()) * stage_bytes_per_pixel(pair, params);
@@ -86,6 +86,14 @@ Candidate solve_level(const HalfPair& pair, int level, const Params& params, std
     if (has_coarser) result = add_coarse(pair, std::move(result), coarse, params.selection);
   }
   return result;
+}
+
+Image noisy_mean(const HalfPair& pair) {
+  Image out = pair.color[0];
+  for (int c = 0; c < out.channels(); ++c)
+    for (std::size_t i = 0; i < out.pixels(); ++i)
+      out.plane(c)[i] = Real(0.5) * (out.plane(c)[i] + pair.color[1].plane(c)[i]);
+  return out;
 }
 
 /// The average of the halves; pixels without noise keep the input's exact value.
@@ -126,7 +134,7 @@ void note_fits(const FitCounters& counters, Report& report) {
   report.windows = counters.windows;
   for (std::size_t m = 0; m < report.windows_per_order.size(); ++m) report.windows_per_order[m] = counters.per_model[m];
   report.rank_deficient_windows = counters.rank_deficient;
-  report.windows_fallen_back_to_mean = counters.fallen_back_to_mean;
+  report.dropped_windows = counters.dropped;
   report.pixels_fallen_back_to_input = counters.uncovered_pixels;
 }
 
@@ -187,6 +195,7 @@ Result reconstruct(const Frame& frame, const Params& params, Progress& progress)
 
   Image image = timed(report, progress, "energy", 1, [&] {
     Image out = average(pair, solved);
+    report.raised_pixels = raise_undershoot(noisy_mean(pair), out);
     restore_energy(outliers, max_restored_gain, out);
     report.restored_gain = restore_totals(totals, max_total_gain, out);
     return out;

@@ -25,10 +25,11 @@ struct Report {
   std::size_t windows = 0;                         ///< Local fits made.
   std::array<std::size_t, 6> windows_per_order{};  ///< [0]: constant only; [k]: order k - 1 with features, k = 1..5.
   std::size_t rank_deficient_windows = 0;          ///< Fits in which a dependent column was dropped.
-  std::size_t windows_fallen_back_to_mean = 0;     ///< Fits that kept nothing but the weighted mean.
+  std::size_t dropped_windows = 0;                 ///< Fits that were not finite and left out.
   std::size_t pixels_fallen_back_to_input = 0;     ///< Pixels that no finite fit covered.
-  std::size_t mended_pixels = 0;                   ///< Non-finite input pixels replaced before the fit, all passes.
-  std::size_t negative_pixels = 0;                 ///< Beauty pixels with a negative channel (kept as they are).
+  std::size_t raised_pixels = 0;    ///< Pixels raised to the least input around them (blend/undershoot.h).
+  std::size_t mended_pixels = 0;    ///< Non-finite input pixels replaced before the fit, all passes.
+  std::size_t negative_pixels = 0;  ///< Beauty pixels with a negative channel (kept as they are).
 
   std::size_t outliers = 0;                ///< Pixels replaced by equation (10)'s median.
   std::array<double, 3> outlier_energy{};  ///< Sum of e_o per channel, radiance x pixels.

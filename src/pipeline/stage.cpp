@@ -10,6 +10,8 @@
 namespace polyrecon {
 namespace {
 
+constexpr double residual_sigma = 1;  // pixels over which the squared difference of a stage's halves is averaged
+
 /// Pixels that carry noise: where the halves are equal and no variance is known there is nothing to do.
 std::vector<unsigned char> noisy_pixels(const HalfPair& pair) {
   std::vector<unsigned char> noisy(pair.variance.pixels(), 0);
@@ -79,7 +81,7 @@ Image residual_variance(const Candidate& candidate) {
       const Real difference = candidate.half[0].plane(c)[i] - candidate.half[1].plane(c)[i];
       out.plane(c)[i] = difference * difference;
     }
-  return gaussian_blur(out, 1);
+  return gaussian_blur(out, residual_sigma);
 }
 
 Candidate stage_of_tile(const HalfPair& pair, const Candidate* before, const Params& params, FitCounters& counters,
@@ -121,6 +123,12 @@ void paste_candidate(const Candidate& part, const Tile& tile, Candidate& whole) 
 
 }  // namespace
 
+int stage_halo(const Params& params) {
+  // The guide's noise is final its blur inside a tile, every candidate fit_halo further in, the choice select_halo
+  // more.
+  return gaussian_reach(residual_sigma) + fit_halo(params.fit(params.first_bandwidths)) + select_halo(params.selection);
+}
+
 std::size_t stage_bytes_per_pixel(const HalfPair& pair, const Params& params) {
   const auto channels = static_cast<std::size_t>(pair.color[0].channels());
   const std::size_t fits =
@@ -132,8 +140,7 @@ std::size_t stage_bytes_per_pixel(const HalfPair& pair, const Params& params) {
 
 Candidate run_stage(const HalfPair& pair, const Candidate* before, const Params& params, std::size_t max_bytes,
                     FitCounters& counters, Progress& progress) {
-  // Every candidate is final fit_halo pixels inside a tile, the choice select_halo further in.
-  const int halo = fit_halo(params.fit(params.first_bandwidths)) + select_halo(params.selection);
+  const int halo = stage_halo(params);
   const auto tiles = make_tiles({0, 0, pair.width(), pair.height()}, halo, 2 * block_size,
                                 max_bytes / stage_bytes_per_pixel(pair, params));
   if (tiles.size() == 1) return stage_of_tile(pair, before, params, counters, progress);

@@ -15,6 +15,9 @@ namespace polyrecon {
 Candidate run_stage(const HalfPair& pair, const Candidate* before, const Params& params, std::size_t max_bytes,
                     FitCounters& counters, Progress& progress);
 
+/// Pixels around a tile that run_stage looks at.
+int stage_halo(const Params& params);
+
 /// Bytes that run_stage works with per pixel of a tile.
 std::size_t stage_bytes_per_pixel(const HalfPair& pair, const Params& params);
 

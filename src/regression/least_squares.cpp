@@ -15,19 +15,18 @@ using Matrix = double[max_columns][max_columns];
 // has cost it too many digits to stay orthogonal ("twice is enough", Giraud and Langou 2002).
 constexpr double drop_below = 1e-8, repeat_below = 1e-4;
 
-/// gram[a][b] = sum_j w_j x_a(j) x_b(j) for b <= a. Two by two columns, so that each load serves two products.
-POLYRECON_SIMD void gram_matrix(const Real* x, const Real* weighted, int columns, int rows, std::size_t stride,
-                                double (*gram)[max_columns]) {
+/// gram[a][b] = sum_j x_a(j) x_b(j) for b <= a. Two by two columns, so that each load serves two products.
+POLYRECON_SIMD void gram_matrix(const Real* x, int columns, int rows, std::size_t stride, double (*gram)[max_columns]) {
   for (int a = 0; a < columns; a += 2) {
-    const Real* wa0 = weighted + static_cast<std::size_t>(a) * stride;
-    const Real* wa1 = a + 1 < columns ? wa0 + stride : wa0;
+    const Real* xa0 = x + static_cast<std::size_t>(a) * stride;
+    const Real* xa1 = a + 1 < columns ? xa0 + stride : xa0;
     for (int b = 0; b <= a; b += 2) {
       const Real* xb0 = x + static_cast<std::size_t>(b) * stride;
       const Real* xb1 = b + 1 < columns ? xb0 + stride : xb0;
       double s00 = 0, s01 = 0, s10 = 0, s11 = 0;
 #pragma omp simd reduction(+ : s00, s01, s10, s11)
       for (int j = 0; j < rows; ++j) {
-        const double p = wa0[j], q = wa1[j], u = xb0[j], v = xb1[j];
+        const double p = xa0[j], q = xa1[j], u = xb0[j], v = xb1[j];
         s00 += p * u;
         s01 += p * v;
         s10 += q * u;
@@ -59,25 +58,47 @@ POLYRECON_SIMD void multiply(const Real* a, const Real* b, Real* product, int ro
   for (int j = 0; j < rows; ++j) product[j] = a[j] * b[j];
 }
 
+POLYRECON_SIMD void square_roots(const Real* in, Real* out, int rows) {
+  for (int j = 0; j < rows; ++j) out[j] = std::sqrt(in[j]);
+}
+
 POLYRECON_SIMD void scale(Real* y, Real factor, int rows) {
   for (int j = 0; j < rows; ++j) y[j] *= factor;
 }
 
-/// Cholesky of the Gram matrix, row by row. Returns in inverse[a] 1/l_aa, or 0 where column a is dropped; in ratio[a]
-/// the squared length that is left of column a, relative to its own.
-void nested_cholesky(const Matrix& gram, int columns, Matrix& l, double* inverse, double* ratio) {
-  for (int a = 0; a < columns; ++a) {
-    double rest = gram[a][a];
-    for (int b = 0; b < a; ++b) {
-      double sum = gram[a][b];
-      for (int c = 0; c < b; ++c) sum -= l[a][c] * l[b][c];
-      l[a][b] = sum * inverse[b];
-      rest -= l[a][b] * l[a][b];
-    }
-    ratio[a] = gram[a][a] > 0 ? rest / gram[a][a] : 0;
-    const bool keep = ratio[a] > drop_below && std::isnormal(rest);
-    inverse[a] = keep ? 1 / std::sqrt(rest) : 0;
-  }
+/// What is left of column a beside those before it.
+struct Remainder {
+  double ratio;    ///< Its squared length, relative to the column's own.
+  double inverse;  ///< 1 / length.
+  bool keep;
+};
+
+Remainder remainder_of(const Matrix& gram, const Matrix& l, int a) {
+  double rest = gram[a][a];
+  for (int b = 0; b < a; ++b) rest -= l[a][b] * l[a][b];
+  const double ratio = gram[a][a] > 0 ? rest / gram[a][a] : 0;
+  // The length and its inverse must be values of the storage type, or q overflows.
+  const bool keep = ratio > drop_below && std::isnormal(rest) && std::isnormal(static_cast<Real>(std::sqrt(rest)));
+  return {ratio, keep ? 1 / std::sqrt(rest) : 0, keep};
+}
+
+/// The inner product of column b > a with the part of column a that is orthogonal to those before it.
+double cholesky_entry(const Matrix& gram, const Matrix& l, int a, int b) {
+  double sum = gram[b][a];
+  for (int c = 0; c < a; ++c) sum -= l[b][c] * l[a][c];
+  return sum;
+}
+
+void normalised_remainder(const Window& window, const Matrix& l, int a, double inverse, NestedFactor& factor) {
+  const auto stride = static_cast<std::size_t>(window.stride);
+  const Real* xa = window.design.data() + static_cast<std::size_t>(a) * stride;
+  Real* qa = factor.q.data() + static_cast<std::size_t>(a) * stride;
+  std::copy(xa, xa + window.padded, qa);
+  for (int b = 0; b < a; ++b)
+    if (l[a][b] != 0)
+      subtract_scaled(qa, factor.q.data() + static_cast<std::size_t>(b) * stride, static_cast<Real>(l[a][b]),
+                      window.padded);
+  scale(qa, static_cast<Real>(inverse), window.padded);
 }
 
 /// A second sweep for a column that lost digits to cancellation; false if nothing is left of it.
@@ -124,30 +145,31 @@ void factorise(const Window& window, int columns, const Real* weight, NestedFact
   factor.columns = columns;
   factor.rank = 0;
   factor.q.resize(stride * static_cast<std::size_t>(columns));
+  factor.root.resize(stride);
+  square_roots(weight, factor.root.data(), window.padded);
+  // The Gram matrix of S X as it is rounded: that of (W X) and X, rounded apart, need not be positive definite.
   for (int a = 0; a < columns; ++a) {
     const std::size_t offset = static_cast<std::size_t>(a) * stride;
-    multiply(weight, window.design.data() + offset, factor.q.data() + offset, window.padded);
+    multiply(factor.root.data(), window.design.data() + offset, factor.q.data() + offset, window.padded);
   }
   Matrix gram, l;
-  double inverse[max_columns], ratio[max_columns];
-  gram_matrix(window.design.data(), factor.q.data(), columns, window.padded, stride, gram);
-  nested_cholesky(gram, columns, l, inverse, ratio);
+  gram_matrix(factor.q.data(), columns, window.padded, stride, gram);
   for (int a = 0; a < columns; ++a) {
-    Real* qa = factor.q.data() + static_cast<std::size_t>(a) * stride;
-    bool keep = inverse[a] != 0;
-    if (keep) {
-      const Real* xa = window.design.data() + static_cast<std::size_t>(a) * stride;
-      std::copy(xa, xa + window.padded, qa);
-      for (int b = 0; b < a; ++b)
-        if (l[a][b] != 0)
-          subtract_scaled(qa, factor.q.data() + static_cast<std::size_t>(b) * stride, static_cast<Real>(l[a][b]),
-                          window.padded);
-      scale(qa, static_cast<Real>(inverse[a]), window.padded);
-      if (ratio[a] < repeat_below) keep = orthogonalise_again(factor, window, weight, a);
-    }
+    const Remainder remainder = remainder_of(gram, l, a);
+    Real* const qa = factor.q.data() + static_cast<std::size_t>(a) * stride;
+    const bool again = remainder.ratio < repeat_below;
+    if (remainder.keep) normalised_remainder(window, l, a, remainder.inverse, factor);
+    const bool keep = remainder.keep && (!again || orthogonalise_again(factor, window, weight, a));
     if (!keep) std::fill(qa, qa + window.padded, Real(0));
     factor.kept[static_cast<std::size_t>(a)] = keep;
     factor.rank += keep;
+    for (int b = a + 1; b < columns; ++b) {
+      const Real* const xb = window.design.data() + static_cast<std::size_t>(b) * stride;
+      // A column that lost digits points elsewhere than the Gram matrix says: ask the column itself.
+      l[b][a] = !keep   ? 0
+                : again ? weighted_dot(weight, qa, xb, window.padded)
+                        : cholesky_entry(gram, l, a, b) * remainder.inverse;
+    }
   }
 }
 

@@ -17,6 +17,7 @@ struct NestedFactor {
   int rank = 0;                                       ///< Columns kept.
   std::array<bool, BasisLayout::max_columns> kept{};  ///< False where a column depends on those before it.
   std::vector<Real> q;                                ///< columns x window.stride; dropped columns are zero.
+  std::vector<Real> root;                             ///< sqrt(w), the diagonal of S.
 };
 
 /// Factorises the window's design under the weights w (window.padded of them, >= 0, zero beyond window.count). The Gram

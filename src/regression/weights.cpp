@@ -49,8 +49,12 @@ POLYRECON_SIMD void distances_to(const Real* a, const Real* const* b, Real* out,
   }
 }
 
-POLYRECON_SIMD void add_scaled(const Real* in, Real factor, Real* out, int n) {
-  for (int j = 0; j < n; ++j) out[j] += factor * in[j];
+POLYRECON_SIMD void add(const Real* in, Real* out, int n) {
+  for (int j = 0; j < n; ++j) out[j] += in[j];
+}
+
+POLYRECON_SIMD void scale(Real factor, Real* out, int n) {
+  for (int j = 0; j < n; ++j) out[j] *= factor;
 }
 
 POLYRECON_SIMD void exponential_weights(const Real* distance, Real inverse_square, Real* weight, int n) {
@@ -122,12 +126,14 @@ void PatchDistances::one_center(std::size_t center, int patch_radius) {
   const auto at = [&](int x, int y) {
     return static_cast<std::size_t>(y - loaded_.y0) * width + static_cast<std::size_t>(x - loaded_.x0);
   };
-  difference_.resize(static_cast<std::size_t>(side) * 2);
-  Real* const one = difference_.data() + side;
+  difference_.resize(static_cast<std::size_t>(side));
+  row_sums_.resize(static_cast<std::size_t>(side));
   Real* row = distance_.data() + center * static_cast<std::size_t>(side) * static_cast<std::size_t>(side);
   for (int dy = -radius_; dy <= radius_; ++dy, row += side) {
     std::fill(row, row + side, Real(0));
-    for (int py = -patch_radius; py <= patch_radius; ++py)
+    for (int py = -patch_radius; py <= patch_radius; ++py) {
+      // Summed and scaled in the order of offset_distances: which of the two is run must not show in any bit.
+      std::fill(row_sums_.begin(), row_sums_.end(), Real(0));
       for (int px = -patch_radius; px <= patch_radius; ++px) {
         const int x = center_x_[center] + px, y = center_y_[center] + py;
         const Real* b[6];
@@ -136,9 +142,12 @@ void PatchDistances::one_center(std::size_t center, int patch_radius) {
           a[c] = planes_[c * plane + at(x, y)];
           b[c] = planes_.data() + c * plane + at(x - radius_, y + dy);
         }
-        distances_to(a, b, one, side);
-        add_scaled(one, Real(1) / static_cast<Real>(patch * patch), row, side);
+        distances_to(a, b, difference_.data(), side);
+        add(difference_.data(), row_sums_.data(), side);
       }
+      scale(Real(1) / static_cast<Real>(patch * patch), row_sums_.data(), side);
+      add(row_sums_.data(), row, side);
+    }
   }
 }
 
@@ -167,7 +176,7 @@ void PatchDistances::window_of(std::size_t center, Real limit, Window& window) c
   const int y0 = std::max(cy - radius_, 0), y1 = std::min(cy + radius_, height_ - 1);
   std::size_t count = 0;
   for (int y = y0; y <= y1; ++y) {
-    const Real* row = distance + (y - cy + radius_) * side - cx + radius_;
+    const Real* row = distance + static_cast<std::ptrdiff_t>(y - cy + radius_) * side - cx + radius_;
     for (int x = x0; x <= x1; ++x) {
       const Real d = row[x];
       if (!(d < limit)) continue;

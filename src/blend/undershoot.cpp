@@ -1,0 +1,62 @@
+#include "blend/undershoot.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cstddef>
+
+#include "core/parallel.h"
+
+namespace polyrecon {
+namespace {
+
+constexpr int radius = 2;
+
+double sum_over(const Image& image, int channel, const Rect& area) {
+  double sum = 0;
+  for (int y = area.y0; y < area.y1; ++y)
+    for (int x = area.x0; x < area.x1; ++x) sum += static_cast<double>(image.at(x, y, channel));
+  return sum;
+}
+
+Real least_over(const Image& image, int channel, const Rect& area) {
+  Real least = image.at(area.x0, area.y0, channel);
+  for (int y = area.y0; y < area.y1; ++y) {
+    const Real* row = image.row(channel, y);
+    least = std::min(least, *std::min_element(row + area.x0, row + area.x1));
+  }
+  return least;
+}
+
+/// Raises the beauty's channel and, by their shares, that of the layers.
+void raise(const Image& input, const Rect& around, int channel, Real by, int x, int y, Image& image) {
+  image.at(x, y, channel) += by;
+  const double beauty = sum_over(input, channel, around);
+  if (beauty == 0) return;
+  for (int k = channel + 3; k < image.channels() / 3 * 3; k += 3)
+    image.at(x, y, k) += static_cast<Real>(static_cast<double>(by) * sum_over(input, k, around) / beauty);
+}
+
+}  // namespace
+
+std::size_t raise_undershoot(const Image& input, Image& image) {
+  std::atomic<std::size_t> raised{0};
+  Progress silent;
+  parallel_for(static_cast<std::size_t>(image.height()), silent, [&](std::size_t row) {
+    const int y = static_cast<int>(row);
+    for (int x = 0; x < image.width(); ++x) {
+      const Rect around = intersect(grow({x, y, x + 1, y + 1}, radius), image.bounds());
+      bool any = false;
+      for (int c = 0; c < 3; ++c) {
+        if (image.at(x, y, c) >= input.at(x, y, c)) continue;  // not below its own input: no need to look around
+        const Real least = least_over(input, c, around);
+        if (image.at(x, y, c) >= least) continue;
+        raise(input, around, c, least - image.at(x, y, c), x, y, image);
+        any = true;
+      }
+      raised += any;
+    }
+  });
+  return raised;
+}
+
+}  // namespace polyrecon

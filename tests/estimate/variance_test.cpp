@@ -1,0 +1,112 @@
+#include "estimate/variance.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "support/images.h"
+#include "support/scene.h"
+
+namespace polyrecon {
+namespace {
+
+constexpr int width = 96, height = 80;
+
+/// Mean over the image of estimate / truth.
+double mean_ratio(const Image& estimate, const Image& truth) {
+  double sum = 0;
+  for (int c = 0; c < 3; ++c)
+    for (std::size_t i = 0; i < truth.pixels(); ++i)
+      sum += static_cast<double>(estimate.plane(c)[i]) / static_cast<double>(truth.plane(c)[i]);
+  return sum / (3.0 * static_cast<double>(truth.pixels()));
+}
+
+NoiseVariance variance_of(const Frame& frame) {
+  Progress silent;
+  return noise_variance(frame, silent);
+}
+
+TEST(NoiseVariance, TakesWhatTheFileSays) {
+  const Frame frame = test::make_scene(20, 20, 0.2, 1).frame;
+  const NoiseVariance out = variance_of(frame);
+  EXPECT_EQ(out.source, "from the file");
+  EXPECT_TRUE(test::same_bits(out.variance, frame.beauty.variance));
+}
+
+/// (A - B)^2 / 4 has the variance of the mean as its expectation and one degree of freedom: standard deviation sqrt(2)
+/// of it. The noise of make_scene is smooth but for the steps of texture and disk, over which the blur averages: mean
+/// of the ratio within 4 standard errors sqrt(2 / 23040) = 0.009 and the bias of blurring v next to v' (v'/v up to 4 at
+/// the disk's rim): bounded by 10 %.
+TEST(NoiseVariance, FromTheHalvesIsThatOfTheMean) {
+  Frame frame = test::make_scene(width, height, 0.2, 2).frame;
+  const Image truth = frame.beauty.variance;
+  frame.beauty.variance = Image();
+  const NoiseVariance out = variance_of(frame);
+  EXPECT_EQ(out.source, "from the half buffers");
+  EXPECT_NEAR(mean_ratio(out.variance, truth), 1, 0.1);
+}
+
+TEST(NoiseVariance, FromTheHalvesOfUniformNoiseIsUnbiased) {
+  Frame frame = test::make_scene(width, height, 0.2, 3).frame;
+  const double sigma = 0.3;
+  test::Random random(30);
+  const auto half = [&](int, int, int) { return 1 + std::sqrt(2.0) * sigma * random.normal(); };
+  frame.beauty.half_a = test::image_of(width, height, 3, half);
+  frame.beauty.half_b = test::image_of(width, height, 3, half);
+  frame.beauty.variance = Image();
+  EXPECT_NEAR(mean_ratio(variance_of(frame).variance, Image(width, height, 3, Real(sigma * sigma))), 1,
+              4 * std::sqrt(2.0 / (3 * width * height)) + 0.01);
+}
+
+/// Uniform noise on a plane: the residual variance of each fit is chi^2 of 46 degrees of freedom over 46 (49 pixels,
+/// constant and plane; a median of those lies 1 - 2/(9 x 46), cubed, = 1.4 % below 1), and neighbouring votes share
+/// their pixels: within 5 %.
+TEST(NoiseVariance, FromTheImageOnAPlaneIsThatOfTheNoise) {
+  const double sigma = 0.1;
+  test::Random random(4);
+  Frame frame;
+  frame.beauty.mean = test::image_of(
+      width, height, 3, [&](int x, int y, int c) { return 1 + 0.01 * x - 0.02 * y + c + sigma * random.normal(); });
+  const NoiseVariance out = variance_of(frame);
+  EXPECT_EQ(out.source, "estimated from the image");
+  EXPECT_NEAR(mean_ratio(out.variance, Image(width, height, 3, Real(sigma * sigma))), 1, 0.05);
+}
+
+TEST(NoiseVariance, FromTheImageDoesNotTakeAnEdgeForNoise) {
+  const double sigma = 0.05;
+  test::Random random(5);
+  Frame frame;
+  frame.beauty.mean =
+      test::image_of(width, height, 3, [&](int x, int, int) { return (x < 48 ? 1 : 3) + sigma * random.normal(); });
+  const Image out = variance_of(frame).variance;
+  // The edge's own contribution would be 1 (a step of 2), 400 times the noise. Beyond the reach of the fits nothing of
+  // it shows.
+  for (int y = 0; y < height; ++y)
+    for (const int x : {5, 20, 36, 60, 80}) EXPECT_LT(out.at(x, y, 1), Real(2 * sigma * sigma)) << x;
+}
+
+TEST(NoiseVariance, FromTheImageOfASceneWithFeaturesIsOfTheRightSize) {
+  // Texture is in the albedo, the disk in normal and depth: what is left beside the noise is their product's curvature.
+  Frame frame = test::make_scene(width, height, 0.2, 6).frame;
+  const Image truth = frame.beauty.variance;
+  frame.beauty.variance = frame.beauty.half_a = frame.beauty.half_b = Image();
+  const double ratio = mean_ratio(variance_of(frame).variance, truth);
+  EXPECT_GT(ratio, 0.7);
+  EXPECT_LT(ratio, 1.5);
+}
+
+TEST(NoiseVariance, OfBadAndTinyImagesIsFiniteAndNotNegative) {
+  for (const auto& [w, h] : {std::pair{1, 1}, std::pair{1, 7}, std::pair{5, 1}, std::pair{3, 5}, std::pair{2, 2}}) {
+    Frame frame;
+    frame.beauty.mean = Image(w, h, 3, Real(1));
+    frame.beauty.mean.at(w - 1, h - 1, 0) = std::numeric_limits<Real>::quiet_NaN();
+    const Image out = variance_of(frame).variance;
+    EXPECT_TRUE(test::all_finite(out));
+    for (int c = 0; c < 3; ++c)
+      for (std::size_t i = 0; i < out.pixels(); ++i) EXPECT_GE(out.plane(c)[i], Real(0));
+  }
+}
+
+}  // namespace
+}  // namespace polyrecon

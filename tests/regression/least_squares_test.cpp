@@ -1,0 +1,327 @@
+#include "regression/least_squares.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <limits>
+
+#include "support/random.h"
+#include "support/regression.h"
+
+namespace polyrecon {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using test::normal_matrix;
+using test::padded;
+using test::q_of;
+using test::Random;
+using test::random_weights;
+using test::stored;
+using test::window_of;
+
+constexpr double eps = std::numeric_limits<Real>::epsilon();
+
+/// A design with its weights and factorisation; every number as stored, so that a reference sees what the code sees.
+struct Problem {
+  MatrixXd x;
+  VectorXd w;
+  Window window;
+  std::vector<Real> weight;
+  NestedFactor factor;
+
+  Problem(const MatrixXd& design, const VectorXd& weights)
+      : x(stored(design)), w(stored(weights)), window(window_of(design)), weight(padded(weights, window)) {
+    factorise(window, static_cast<int>(x.cols()), weight.data(), factor);
+  }
+
+  MatrixXd q() const { return q_of(factor, window); }
+  VectorXd coefficients(const VectorXd& y) const {
+    const auto response = padded(y, window);
+    VectorXd z(factor.columns);
+    project(factor, window, weight.data(), response.data(), z.data());
+    return z;
+  }
+};
+
+MatrixXd design_with_constant(int rows, int columns, Random& random) {
+  MatrixXd x = normal_matrix(rows, columns, random);
+  x.col(0).setOnes();
+  return x;
+}
+
+/// How far S^-1 Q is from orthonormal under the weights, over the kept columns; dropped ones must be zero.
+double orthonormality_error(const Problem& p) {
+  const MatrixXd q = p.q(), gram = q.transpose() * p.w.asDiagonal() * q;
+  double worst = 0;
+  for (int a = 0; a < gram.rows(); ++a)
+    for (int b = 0; b < gram.cols(); ++b) {
+      const double expected = a == b && p.factor.kept[static_cast<std::size_t>(a)] ? 1 : 0;
+      worst = std::max(worst, std::abs(gram(a, b) - expected));
+    }
+  return worst;
+}
+
+TEST(Factorise, ColumnsAreOrthonormalUnderTheWeights) {
+  Random random(1);
+  for (int round = 0; round < 20; ++round) {
+    const Problem p(design_with_constant(81, 15, random), random_weights(81, 0.3, random));
+    EXPECT_EQ(p.factor.rank, 15);
+    EXPECT_LT(orthonormality_error(p), 81 * eps);
+  }
+}
+
+TEST(Factorise, EveryPrefixIsTheWeightedLeastSquaresFitOfAllModelsAtOnce) {
+  Random random(2);
+  for (int round = 0; round < 10; ++round) {
+    const Problem p(design_with_constant(49, 12, random), random_weights(49, 0.3, random));
+    const VectorXd y = stored(normal_matrix(49, 1, random)), z = p.coefficients(y), s = p.w.cwiseSqrt();
+    const MatrixXd q = p.q();
+    for (int columns = 1; columns <= 12; ++columns) {
+      const MatrixXd x = p.x.leftCols(columns), sx = s.asDiagonal() * x;
+      const VectorXd expected = x * sx.colPivHouseholderQr().solve(s.asDiagonal() * y);
+      const VectorXd fit = q.leftCols(columns) * z.head(columns);
+      // Pixels of weight zero are extrapolated to, which amplifies rounding: relative to the largest value of the fit.
+      EXPECT_LT((fit - expected).cwiseAbs().maxCoeff(), 100 * eps * expected.cwiseAbs().maxCoeff())
+          << round << " " << columns;
+    }
+  }
+}
+
+TEST(Factorise, ProjectionMatrixIsThatOfEquations5And6) {
+  Random random(3);
+  const Problem p(design_with_constant(49, 9, random), random_weights(49, 0.25, random));
+  const MatrixXd q = p.q(), expected = test::projection_matrix(p.x, p.w);
+  const MatrixXd h = q * q.transpose() * p.w.asDiagonal();
+  EXPECT_LT((h - expected).cwiseAbs().maxCoeff(), 100 * eps * expected.cwiseAbs().maxCoeff());
+  EXPECT_NEAR(h.trace(), p.factor.rank, 49 * eps * 9);
+  EXPECT_LT((h * h - h).cwiseAbs().maxCoeff(), 100 * eps * expected.cwiseAbs().maxCoeff());
+}
+
+TEST(Factorise, LeverageLiesBetweenZeroAndOneAndSumsToTheRank) {
+  Random random(4);
+  for (int round = 0; round < 50; ++round) {
+    // Down to fewer pixels of weight than columns, where every leverage is 0 or 1.
+    const int rows = 3 + random.below(60), columns = 1 + random.below(20);
+    const Problem p(design_with_constant(rows, columns, random), random_weights(rows, 0.4, random));
+    const MatrixXd q = p.q();
+    double sum = 0;
+    for (int j = 0; j < rows; ++j) {
+      const double leverage = p.w(j) * q.row(j).squaredNorm();
+      EXPECT_GE(leverage, 0);
+      EXPECT_LE(leverage, 1 + 1000 * eps) << rows << " x " << columns;
+      sum += leverage;
+    }
+    EXPECT_NEAR(sum, p.factor.rank, 1000 * eps * std::max(p.factor.rank, 1));
+    EXPECT_LE(p.factor.rank, (p.w.array() > 0).count());
+  }
+}
+
+TEST(Factorise, LeaveOneOutResidualIsTheResidualOverOneMinusLeverage) {
+  Random random(5);
+  const Problem p(design_with_constant(30, 6, random), random_weights(30, 0, random));
+  const VectorXd y = stored(normal_matrix(30, 1, random)), z = p.coefficients(y), s = p.w.cwiseSqrt();
+  const MatrixXd q = p.q();
+  const VectorXd fit = q * z;
+  for (int j = 0; j < 30; ++j) {
+    VectorXd without = s;
+    without(j) = 0;
+    const MatrixXd sx = without.asDiagonal() * p.x;
+    const VectorXd beta = sx.colPivHouseholderQr().solve(without.asDiagonal() * y);
+    const double expected = y(j) - p.x.row(j).dot(beta);
+    const double leverage = p.w(j) * q.row(j).squaredNorm();
+    EXPECT_NEAR((y(j) - fit(j)) / (1 - leverage), expected,
+                200 * eps * std::max(1.0, std::abs(expected)) / (1 - leverage))
+        << j;
+  }
+}
+
+TEST(Factorise, PixelsOfWeightZeroHaveNoSay) {
+  Random random(6);
+  MatrixXd x = design_with_constant(49, 6, random);
+  VectorXd w = random_weights(49, 0.5, random), y = normal_matrix(49, 1, random);
+  const Problem p(x, w);
+  const VectorXd z = p.coefficients(y);
+  for (int j = 0; j < 49; ++j)
+    if (w(j) == 0) {
+      x.row(j) *= 1000;
+      y(j) = -1e6;
+    }
+  const Problem changed(x, w);
+  EXPECT_EQ((changed.coefficients(y) - z).cwiseAbs().maxCoeff(), 0);
+}
+
+TEST(Factorise, NoWeightAtAllLeavesNothing) {
+  Random random(7);
+  const Problem p(design_with_constant(25, 4, random), VectorXd::Zero(25));
+  EXPECT_EQ(p.factor.rank, 0);
+  EXPECT_EQ(p.q().cwiseAbs().maxCoeff(), 0);
+  EXPECT_EQ(p.coefficients(VectorXd::Ones(25)).cwiseAbs().maxCoeff(), 0);
+}
+
+TEST(Factorise, OnePixelOfWeightCarriesTheConstantAlone) {
+  Random random(8);
+  VectorXd w = VectorXd::Zero(25);
+  w(7) = 0.25;
+  const Problem p(design_with_constant(25, 5, random), w);
+  EXPECT_EQ(p.factor.rank, 1);
+  VectorXd y = VectorXd::Zero(25);
+  y(7) = 3;
+  // q_0 = 1/sqrt(w) = 2 everywhere, z_0 = w q y = 1.5: the fit is 3 at every pixel.
+  EXPECT_NEAR(p.coefficients(y)(0), 1.5, 1e-6);
+  EXPECT_NEAR(p.q()(3, 0), 2, 1e-6);
+}
+
+/// Columns 0 (constant) and 1 to 3 are sound; column 4 is the hard one, column 5 sound again.
+struct HardColumn {
+  const char* name;
+  VectorXd (*column)(const MatrixXd& sound, Random& random);
+  bool kept;
+};
+
+const HardColumn hard_columns[] = {
+    {"zero", [](const MatrixXd& x, Random&) -> VectorXd { return VectorXd::Zero(x.rows()); }, false},
+    {"constant", [](const MatrixXd& x, Random&) -> VectorXd { return VectorXd::Constant(x.rows(), 0.7); }, false},
+    {"duplicate", [](const MatrixXd& x, Random&) -> VectorXd { return x.col(2); }, false},
+    {"sum of two", [](const MatrixXd& x, Random&) -> VectorXd { return x.col(1) - 2 * x.col(3); }, false},
+    {"collinear to 1e-8",
+     [](const MatrixXd& x, Random& r) -> VectorXd {
+       return x.col(2) + 1e-8 * normal_matrix(static_cast<int>(x.rows()), 1, r);
+     },
+     false},
+    {"1e10",
+     [](const MatrixXd& x, Random& r) -> VectorXd { return 1e10 * normal_matrix(static_cast<int>(x.rows()), 1, r); },
+     true},
+    {"1e-10",
+     [](const MatrixXd& x, Random& r) -> VectorXd { return 1e-10 * normal_matrix(static_cast<int>(x.rows()), 1, r); },
+     true},
+    {"mostly sky",
+     [](const MatrixXd& x, Random&) -> VectorXd {
+       VectorXd c = x.col(1);
+       c.head(20).setConstant(1e10);
+       return c;
+     },
+     true},
+};
+
+TEST(Factorise, HardColumnsAreFiniteAndTheRankIsRight) {
+  for (const HardColumn& hard : hard_columns) {
+    SCOPED_TRACE(hard.name);
+    Random random(9);
+    MatrixXd x = design_with_constant(49, 6, random);
+    x.col(4) = hard.column(x, random);
+    const Problem p(x, random_weights(49, 0.2, random));
+    EXPECT_TRUE(p.q().allFinite());
+    EXPECT_EQ(p.factor.kept[4], hard.kept);
+    EXPECT_EQ(p.factor.rank, hard.kept ? 6 : 5);
+    EXPECT_LT(orthonormality_error(p), 1000 * eps);
+    const VectorXd y = stored(normal_matrix(49, 1, random));
+    EXPECT_TRUE(p.coefficients(y).allFinite());
+  }
+}
+
+TEST(Factorise, DenormalColumnsAreFinite) {
+  // A column of 1e-40: its samples hold a few bits only, so it may stay or go, but nothing may overflow.
+  for (const double size : {1e-36, 1e-39, 1e-41, 1.5e-45}) {
+    Random random(10);
+    MatrixXd x = design_with_constant(49, 5, random);
+    x.col(3) *= size;
+    const Problem p(x, random_weights(49, 0.2, random));
+    EXPECT_TRUE(p.q().allFinite()) << size;
+    EXPECT_LT(orthonormality_error(p), 1000 * eps) << size;
+    EXPECT_GE(p.factor.rank, 4) << size;
+  }
+}
+
+/// Departs from orthogonality most just above the threshold at which a column is dropped.
+TEST(Factorise, NearlyDependentColumnsStayOrthogonal) {
+  for (const double part : {1e-1, 1e-2, 3e-3, 1e-3, 5e-4, 2e-4}) {
+    Random random(11);
+    MatrixXd x = design_with_constant(81, 6, random);
+    x.col(4) = x.col(2) + x.col(3) + part * normal_matrix(81, 1, random);
+    const Problem p(x, random_weights(81, 0.2, random));
+    EXPECT_TRUE(p.factor.kept[4]) << part;
+    EXPECT_LT(orthonormality_error(p), 1000 * eps) << part;
+  }
+}
+
+/// rows x columns of the given rank with singular values in (0.1, 1), as LAPACK's xQRT15 makes them.
+MatrixXd matrix_of_rank(int rows, int columns, int rank, Random& random) {
+  const auto orthonormal = [&](int n) -> MatrixXd {
+    return normal_matrix(n, rank, random).householderQr().householderQ() * MatrixXd::Identity(n, rank);
+  };
+  const MatrixXd u = orthonormal(rows), v = orthonormal(columns);
+  VectorXd singular(rank);
+  for (int k = 0; k < rank; ++k) singular(k) = random.uniform(0.1, 1);
+  return u * singular.asDiagonal() * v.transpose();
+}
+
+/// The six kinds of matrices of LAPACK's least squares tests (xDRVLS): full rank and rank deficient, each unscaled,
+/// scaled near underflow and near overflow of the storage type. The ratios are LAPACK's (xQRT17 and xQRT01), to stay
+/// below 30.
+TEST(Factorise, LapackSixKindsOfMatricesHaveResidualRatiosBelow30) {
+  const std::uint64_t seed = 20160701;
+  RecordProperty("seed", std::to_string(seed));
+  Random random(seed);
+  int clear_ranks = 0;
+  const double small = static_cast<double>(std::numeric_limits<Real>::min()) / eps, scales[] = {1, small, 1 / small};
+  for (int instance = 0; instance < 500; ++instance) {
+    const double scale = scales[instance % 3];
+    const bool deficient = instance / 3 % 2 == 1;
+    const int rows = 20 + random.below(100), columns = 2 + random.below(18);
+    const int rank = deficient ? std::max(columns * 3 / 4, 1) : columns;
+    MatrixXd x = matrix_of_rank(rows, columns, rank, random);
+    x *= scale / x.cwiseAbs().maxCoeff();
+    const Problem p(x, random_weights(rows, 0.1, random));
+    SCOPED_TRACE("seed " + std::to_string(seed) + ", instance " + std::to_string(instance));
+    const VectorXd s = p.w.cwiseSqrt(), y = stored(normal_matrix(rows, 1, random)), z = p.coefficients(y);
+    const MatrixXd q = p.q(), sx = s.asDiagonal() * p.x, sq = s.asDiagonal() * q;
+    ASSERT_TRUE(q.allFinite());
+    const double n = rows;
+    // Rounding of the stored samples, amplified by the condition of the leading columns, has to stay clear of the 1e-4
+    // at which a column is dropped; else a dependent column may rightly be taken for one of its own.
+    const Eigen::JacobiSVD<MatrixXd> svd(sx.leftCols(rank) / scale);
+    if (svd.singularValues()(0) * eps < 0.1 * 1e-4 * svd.singularValues()(rank - 1)) {
+      ++clear_ranks;
+      EXPECT_EQ(p.factor.rank, rank);
+    }
+    EXPECT_LT(orthonormality_error(p) / (n * eps), 30);
+    EXPECT_LT((sx / scale - sq * (sq.transpose() * sx / scale)).norm() / (sx.norm() / scale * n * eps), 30);
+    const VectorXd residual = s.asDiagonal() * (y - q * z);
+    EXPECT_LT((residual.transpose() * sx / scale).norm() / (sx.norm() / scale * (s.asDiagonal() * y).norm() * n * eps),
+              30);
+  }
+  EXPECT_GT(clear_ranks, 400);
+}
+
+TEST(ProjectBeauty, IsProjectOfEachChannelAndTheVarianceOfItsCoefficients) {
+  Random random(12);
+  const MatrixXd x = design_with_constant(49, 8, random);
+  Problem p(x, random_weights(49, 0.3, random));
+  MatrixXd y = stored(normal_matrix(49, 3, random)), guess = stored(normal_matrix(49, 3, random));
+  MatrixXd variance = stored(normal_matrix(49, 3, random).cwiseAbs2());
+  for (int c = 0; c < 3; ++c)
+    for (int j = 0; j < 49; ++j) {
+      const auto at = static_cast<std::size_t>(c * p.window.stride + j);
+      p.window.response[at] = static_cast<Real>(y(j, c));
+      p.window.guess[at] = static_cast<Real>(guess(j, c));
+      p.window.noise_variance[at] = static_cast<Real>(variance(j, c));
+    }
+  double sums[9][BasisLayout::max_columns];
+  double *z[3] = {sums[0], sums[1], sums[2]}, *guess_z[3] = {sums[3], sums[4], sums[5]},
+         *s2[3] = {sums[6], sums[7], sums[8]};
+  project_beauty(p.factor, p.window, p.weight.data(), z, guess_z, s2);
+  // z = Q^T S S^-1 ... of y with noise of covariance D has covariance (w q)^T D (w q).
+  const MatrixXd wq = p.w.asDiagonal() * p.q();
+  for (int c = 0; c < 3; ++c)
+    for (int a = 0; a < 8; ++a) {
+      EXPECT_NEAR(z[c][a], wq.col(a).dot(y.col(c)), 1e-12);
+      EXPECT_NEAR(guess_z[c][a], wq.col(a).dot(guess.col(c)), 1e-12);
+      EXPECT_NEAR(s2[c][a], wq.col(a).cwiseAbs2().dot(variance.col(c)), 1e-12);
+    }
+}
+
+}  // namespace
+}  // namespace polyrecon

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <Eigen/Dense>
+
+#include "regression/least_squares.h"
+#include "regression/window.h"
+#include "support/random.h"
+
+namespace polyrecon::test {
+
+/// A window that holds the given design, one row a pixel; rows beyond its end are zero.
+inline Window window_of(const Eigen::MatrixXd& design) {
+  Window window;
+  int radius = 0;
+  while ((2 * radius + 1) * (2 * radius + 1) < design.rows()) ++radius;
+  window.reserve(radius, static_cast<int>(design.cols()), 3);
+  window.count = static_cast<int>(design.rows());
+  window.padded = (window.count + Window::lanes - 1) / Window::lanes * Window::lanes;
+  std::fill(window.design.begin(), window.design.end(), Real(0));
+  for (int a = 0; a < design.cols(); ++a)
+    for (int j = 0; j < design.rows(); ++j)
+      window.design[static_cast<std::size_t>(a * window.stride + j)] = static_cast<Real>(design(j, a));
+  return window;
+}
+
+/// The values as they are stored, as double.
+inline Eigen::MatrixXd stored(const Eigen::MatrixXd& m) { return m.cast<Real>().cast<double>(); }
+
+/// Weights or responses with the padding that a window wants.
+inline std::vector<Real> padded(const Eigen::VectorXd& v, const Window& window) {
+  std::vector<Real> out(static_cast<std::size_t>(window.stride), Real(0));
+  for (int j = 0; j < v.size(); ++j) out[static_cast<std::size_t>(j)] = static_cast<Real>(v(j));
+  return out;
+}
+
+/// S^-1 Q of a factorisation, pixels x columns.
+inline Eigen::MatrixXd q_of(const NestedFactor& factor, const Window& window) {
+  Eigen::MatrixXd q(window.count, factor.columns);
+  for (int a = 0; a < factor.columns; ++a)
+    for (int j = 0; j < window.count; ++j)
+      q(j, a) = static_cast<double>(factor.q[static_cast<std::size_t>(a * window.stride + j)]);
+  return q;
+}
+
+inline Eigen::MatrixXd normal_matrix(int rows, int columns, Random& random) {
+  Eigen::MatrixXd m(rows, columns);
+  for (int a = 0; a < columns; ++a)
+    for (int j = 0; j < rows; ++j) m(j, a) = random.normal();
+  return m;
+}
+
+/// Weights in (0, 1], some of them zero.
+inline Eigen::VectorXd random_weights(int rows, double zeros, Random& random) {
+  Eigen::VectorXd w(rows);
+  for (int j = 0; j < rows; ++j) w(j) = random.uniform() < zeros ? 0 : random.uniform(0.01, 1);
+  return w;
+}
+
+/// The projection matrix of equations (5) and (6) without any factor of ours: H = X (S X)^+ S, by a complete orthogonal
+/// decomposition, which finds the rank by itself.
+inline Eigen::MatrixXd projection_matrix(const Eigen::MatrixXd& x, const Eigen::VectorXd& w) {
+  const Eigen::VectorXd s = w.cwiseSqrt();
+  const Eigen::MatrixXd sx = s.asDiagonal() * x;
+  return x * sx.completeOrthogonalDecomposition().pseudoInverse() * s.asDiagonal();
+}
+
+}  // namespace polyrecon::test

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <tbb/task_arena.h>
+
+#include "core/parallel.h"
+
+namespace polyrecon::test {
+
+/// Runs work on exactly up to `threads` threads, more than there are processors if it has to be.
+template <typename Work>
+auto with_threads(int threads, const Work& work) {
+  set_thread_limit(threads);
+  tbb::task_arena arena(threads);
+  auto result = arena.execute(work);
+  set_thread_limit(0);
+  return result;
+}
+
+}  // namespace polyrecon::test
