@@ -19,6 +19,7 @@ import numpy as np
 import OpenImageIO as oiio
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
+OUT_OF_MEMORY = 33  # exit code: the limit is too low for the frame, said before any work
 BAND = 64  # rows written at a time: the largest frame need not fit into memory here
 
 EXAMPLES = """\
@@ -26,7 +27,7 @@ examples:
   tests/bench/scaling.py                                    # draft and standard, 0.25 to 16 Mpx
   tests/bench/scaling.py --sizes 1920x1080 --quality draft standard best
   tests/bench/scaling.py --sizes 640x400 --stages           # where the seconds go
-  tests/bench/scaling.py --sizes 5120x3200 --quality draft --max-memory 10G 12G
+  tests/bench/scaling.py --sizes 5120x3200 --quality draft --max-memory 4G 6G 12G
                                                             # memory is bounded, the picture stays the same to the bit
 """
 
@@ -58,8 +59,8 @@ def arguments():
         "--max-memory",
         nargs="+",
         metavar="SIZE",
-        default=["24G"],
-        help="limits to run each frame under (default: 24G, which tiles none of them); all must give the same picture",
+        default=["4G"],
+        help="limits to run each frame under (default: 4G, the program's own); all must give the same picture",
     )
     parser.add_argument("--threads", type=int, default=0, help="threads of the program (default: all processors)")
     parser.add_argument("--stages", action="store_true", help="print the seconds of each stage too")
@@ -67,7 +68,9 @@ def arguments():
     parser.add_argument(
         "--program", type=pathlib.Path, default=ROOT / "build" / "release" / "src" / "polyrecon", metavar="FILE"
     )
-    parser.add_argument("--write-frame", type=pathlib.Path, metavar="EXR", help="write the frame of the first size, and stop")
+    parser.add_argument(
+        "--write-frame", type=pathlib.Path, metavar="EXR", help="only write the frame of the first size to this file"
+    )
     parser.add_argument("--folder", type=pathlib.Path, help="where the frames go (default: a temporary folder)")
     return parser.parse_args()
 
@@ -114,7 +117,7 @@ def pixel_hash(path):
 
 
 def run(args, frame, quality, max_memory):
-    """One run in a process of its own: (report, its resource usage, hash of the picture); None where it was refused."""
+    """One run in a process of its own: its exit code, resource usage, report and the hash of the picture."""
     clean, report = frame.with_suffix(".clean.exr"), frame.with_suffix(".json")
     command = [args.program, "denoise", "-i", frame, "-o", clean, "--quality", quality, "--max-memory", max_memory]
     command += ["--report", report, "--progress", "none", "--quiet", "--threads", str(args.threads)]
@@ -122,10 +125,10 @@ def run(args, frame, quality, max_memory):
     _, status, usage = os.wait4(process.pid, 0)
     process.returncode = os.waitstatus_to_exitcode(status)
     if process.returncode:
-        return None
-    result = json.loads(report.read_text()), usage, pixel_hash(clean)
+        return process.returncode, usage, None, None
+    picture = pixel_hash(clean)
     clean.unlink()
-    return result
+    return 0, usage, json.loads(report.read_text()), picture
 
 
 def row(*cells):
@@ -133,24 +136,20 @@ def row(*cells):
 
 
 def header():
-    row("frame", "Mpx", "quality", "--max-memory", "reconstruction s", "all s", "CPU s", "us CPU / px", "px/s", "peak MB")
-    row("---", *["---:" if right else "---" for right in (1, 0, 1, 1, 1, 1, 1, 1, 1)])
+    row("frame", "Mpx", "quality", "--max-memory", "reconstruction s", "all s", "CPU s", "µs CPU/px", "px/s", "peak MB")
+    row("---", "---:", "---", *["---:"] * 7)
 
 
-def print_row(width, height, quality, max_memory, report, usage):
-    seconds, pixels, cpu = report["seconds"], width * height, usage.ru_utime + usage.ru_stime
-    row(
-        f"{width} x {height}",
-        f"{pixels / 1e6:.2f}",
-        quality,
-        max_memory,
-        f"{seconds['reconstruct']:.1f}",
-        f"{seconds['total']:.1f}",
-        f"{cpu:.1f}",
-        f"{cpu / pixels * 1e6:.1f}",
-        f"{report['pixels_per_second']:.0f}",
-        f"{usage.ru_maxrss * 1024 / 1e6:.0f}",
-    )
+def print_row(width, height, quality, max_memory, code, usage, report):
+    pixels, cpu = width * height, usage.ru_utime + usage.ru_stime
+    cells = [f"{width} x {height}", f"{pixels / 1e6:.2f}", quality, max_memory]
+    if code:
+        cells += [f"exit code {code}", "", f"{cpu:.1f}", "", ""]
+    else:
+        seconds = report["seconds"]
+        cells += [f"{seconds['reconstruct']:.1f}", f"{seconds['total']:.1f}", f"{cpu:.1f}"]
+        cells += [f"{cpu / pixels * 1e6:.1f}", f"{report['pixels_per_second']:.0f}"]
+    row(*cells, f"{usage.ru_maxrss * 1024 / 1e6:.0f}")
 
 
 def print_stages(runs):
@@ -168,32 +167,37 @@ def print_stages(runs):
         )
 
 
+def time_frame(args, frame, width, height, quality):
+    """Runs one frame under every limit of memory. Returns the reports, and whether all went as it should."""
+    good, reports, pictures = True, [], []
+    for max_memory in args.max_memory:
+        code, usage, report, picture = run(args, frame, quality, max_memory)
+        print_row(width, height, quality, max_memory, code, usage, report)
+        if code:
+            good = good and code == OUT_OF_MEMORY
+            continue
+        reports.append((f"{width} x {height}, {quality}", report))
+        pictures.append(picture)
+    if len(set(pictures)) > 1:
+        print(f"{width} x {height}, {quality}: the limit of memory shows in the picture", file=sys.stderr)
+    return reports, good and len(set(pictures)) <= 1
+
+
 def time_frames(args, folder):
-    """True if every run came through and the limits of memory did not show in any picture."""
-    good, runs = True, []
+    good, reports = True, []
     header()
     for width, height in args.sizes:
         frame = folder / f"frame_{width}x{height}.exr"
         make_frame(args.sample, width, height, frame)
         for quality in args.quality:
-            pictures = set()
-            for max_memory in args.max_memory:
-                done = run(args, frame, quality, max_memory)
-                if not done:
-                    good = False
-                    continue
-                report, usage, picture = done
-                print_row(width, height, quality, max_memory, report, usage)
-                runs.append((f"{width} x {height}, {quality}", report))
-                pictures.add(picture)
-            if len(pictures) > 1:
-                print(f"{width} x {height}, {quality}: the pictures differ", file=sys.stderr)
-                good = False
+            found, as_it_should = time_frame(args, frame, width, height, quality)
+            reports += found
+            good = good and as_it_should
         frame.unlink()
-    if args.stages and runs:
-        print_stages(runs)
+    if args.stages and reports:
+        print_stages(reports)
     if good and len(args.max_memory) > 1:
-        print("\nAll limits of memory gave the same picture, bit for bit.")
+        print("\nUnder every limit of memory that suffices the picture is the same, bit for bit.")
     return good
 
 

@@ -1,11 +1,11 @@
 #include "bench/synthetic.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
-#include <random>
 
 #include "regression/weights.h"
+#include "support/images.h"
+#include "support/random.h"
 
 namespace polyrecon::bench {
 namespace {
@@ -20,28 +20,27 @@ double light(int x, int y, int c) {
   return (x + y) % 160 < 80 ? smooth : 0.25 * smooth;  // the edge of a shadow
 }
 
+double radiance(int x, int y, int c) { return light(x, y, c) * texture(x, y); }
+
 double feature(int x, int y, int f) { return std::sin(0.03 * (f + 1) * x + f) * std::cos(0.02 * (8 - f) * y); }
 
 }  // namespace
 
 HalfPair synthetic_pair(int width, int height) {
-  std::mt19937 random(seed);
-  std::normal_distribution<double> normal;
-  HalfPair pair{{Image(width, height, 3), Image(width, height, 3)},
-                Image(width, height, 3),
-                {Image(width, height, feature_channels), Image(width, height, feature_channels)},
-                1e-3};
-  for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x) {
-      for (int c = 0; c < 3; ++c) {
-        const double mean = light(x, y, c) * texture(x, y), deviation = relative_noise * mean;
-        for (Image& half : pair.color) half.at(x, y, c) = static_cast<Real>(mean + deviation * normal(random));
-        pair.variance.at(x, y, c) = static_cast<Real>(deviation * deviation);
-      }
-      for (int f = 0; f < feature_channels; ++f)
-        for (Image& half : pair.features)
-          half.at(x, y, f) = static_cast<Real>(feature(x, y, f) + feature_noise * normal(random));
-    }
+  test::Random random(seed);
+  HalfPair pair;
+  for (Image& half : pair.color)
+    half = test::image_of(width, height, 3, [&](int x, int y, int c) {
+      return radiance(x, y, c) * (1 + relative_noise * random.normal());
+    });
+  pair.variance = test::image_of(width, height, 3, [](int x, int y, int c) {
+    const double deviation = relative_noise * radiance(x, y, c);
+    return deviation * deviation;
+  });
+  for (Image& half : pair.features)
+    half = test::image_of(width, height, feature_channels,
+                          [&](int x, int y, int f) { return feature(x, y, f) + feature_noise * random.normal(); });
+  pair.epsilon = 1e-3;
   return pair;
 }
 
