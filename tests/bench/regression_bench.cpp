@@ -1,0 +1,90 @@
+#include <benchmark/benchmark.h>
+
+#include <vector>
+
+#include "bench/synthetic.h"
+#include "blend/blend_windows.h"
+#include "pipeline/params.h"
+#include "regression/least_squares.h"
+#include "regression/weights.h"
+
+namespace polyrecon::bench {
+namespace {
+
+constexpr int window_pixels = 361;  // (2 * 9 + 1)^2: the window of the default radius
+
+void count_windows(benchmark::State& state, std::size_t windows) {
+  state.SetLabel("items are windows");
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(windows));
+}
+
+/// Argument: the stride of the centres. Sparse ones are worked one by one, dense ones share the sums of their patches.
+void patch_distances(benchmark::State& state) {
+  const Params params;
+  const HalfPair pair = synthetic_pair(2 * block_size, 2 * block_size);
+  const Rect block{block_size / 2, block_size / 2, block_size / 2 + block_size, block_size / 2 + block_size};
+  const Centers centers = lattice(block, static_cast<int>(state.range(0)));
+  PatchDistances distances;
+  for ([[maybe_unused]] const auto pass : state)
+    distances.compute(pair.color[1], pair.variance, block, centers.x, centers.y, params.radius, params.patch_radius);
+  count_windows(state, centers.x.size());
+}
+BENCHMARK(patch_distances)->ArgName("stride")->Arg(1)->Arg(2)->Arg(4)->Arg(6)->Unit(benchmark::kMicrosecond);
+
+/// A window with its weights, as the fit sees it.
+struct Problem {
+  Window window;
+  std::vector<Real> weight;
+};
+
+Problem problem_of(const BasisLayout& layout) {
+  const Params params;
+  Problem problem{full_window(synthetic_pair(block_size, block_size), layout, params.radius), {}};
+  problem.weight.resize(static_cast<std::size_t>(problem.window.stride));
+  // Wide enough that no pixel is cut, so that all of the window's columns are independent.
+  kernel_weights(problem.window, Real(4), problem.weight.data());
+  return problem;
+}
+
+bool is_whole(benchmark::State& state, const Problem& problem, const NestedFactor& factor) {
+  const bool whole = problem.window.count == window_pixels && factor.rank == factor.columns;
+  if (!whole) state.SkipWithError("the synthetic window is smaller or of less rank than it is meant to be");
+  return whole;
+}
+
+/// Argument: the Taylor order; 2 gives 14 columns, 4 gives 23.
+void factorise_window(benchmark::State& state) {
+  const BasisLayout layout(feature_channels, static_cast<int>(state.range(0)));
+  const Problem problem = problem_of(layout);
+  NestedFactor factor;
+  for ([[maybe_unused]] const auto pass : state) {
+    factorise(problem.window, layout.columns(), problem.weight.data(), factor);
+    benchmark::DoNotOptimize(factor.q.data());
+  }
+  if (!is_whole(state, problem, factor)) return;
+  state.counters["columns"] = layout.columns();
+  count_windows(state, 1);
+}
+BENCHMARK(factorise_window)->ArgName("order")->Arg(2)->Arg(4)->Unit(benchmark::kMicrosecond);
+
+/// Argument as above.
+void project_beauty_window(benchmark::State& state) {
+  const BasisLayout layout(feature_channels, static_cast<int>(state.range(0)));
+  const Problem problem = problem_of(layout);
+  NestedFactor factor;
+  factorise(problem.window, layout.columns(), problem.weight.data(), factor);
+  if (!is_whole(state, problem, factor)) return;
+  std::vector<double> sums(9 * static_cast<std::size_t>(layout.columns()));
+  double* column[9];
+  for (std::size_t k = 0; k < 9; ++k) column[k] = sums.data() + k * static_cast<std::size_t>(layout.columns());
+  for ([[maybe_unused]] const auto pass : state) {
+    project_beauty(factor, problem.window, problem.weight.data(), column, column + 3, column + 6);
+    benchmark::DoNotOptimize(sums.data());
+  }
+  state.counters["columns"] = layout.columns();
+  count_windows(state, 1);
+}
+BENCHMARK(project_beauty_window)->ArgName("order")->Arg(2)->Arg(4)->Unit(benchmark::kMicrosecond);
+
+}  // namespace
+}  // namespace polyrecon::bench
