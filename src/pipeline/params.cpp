@@ -16,8 +16,9 @@ Params params_for(Quality quality) {
   if (quality == Quality::Draft) {
     params.stages = 1;
     params.levels = 2;
-    params.stride = 6;
-    params.coverage = 0.5;
+    params.radius = 6;
+    params.stride = 5;
+    params.coverage = 0.25;
     params.max_order = 1;
     params.first_bandwidths = {Real(0.7)};
     params.cleaning.search_radius = 3;
