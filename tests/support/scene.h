@@ -61,7 +61,7 @@ inline Scene make_scene(int width, int height, double noise, std::uint64_t seed)
   return scene;
 }
 
-/// Mean of (image - truth)^2 / (truth^2 + 0.01), as DESIGN's relMSE.
+/// Mean of (image - truth)^2 / (truth^2 + 0.01), relMSE without a noisy reference.
 inline double relative_mse(const Image& image, const Image& truth) {
   double sum = 0;
   for (int c = 0; c < 3; ++c)
