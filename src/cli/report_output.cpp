@@ -110,8 +110,8 @@ std::string report_text(const RunReport& run) {
                                                 rgb_text(r.energy_after), 100 * energy_change(r)));
   text += line("restored gain", fmt::format("{:+.3f} {:+.3f} {:+.3f} %", 100 * r.restored_gain[0],
                                             100 * r.restored_gain[1], 100 * r.restored_gain[2]));
-  text += line("estimated relMSE", fmt::format("{:.5g} (the windows' variance times {:.3g})",
-                                               r.estimated_relative_mse, run.calibration));
+  text += line("estimated relMSE",
+               fmt::format("{:.5g} (the windows' variance times {:.3g})", r.estimated_relative_mse, run.calibration));
   for (const std::string& note : run.notes) text += line("note", note);
   return text;
 }
