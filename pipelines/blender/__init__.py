@@ -1,0 +1,1 @@
+"""Blender (Cycles) behind the interface of the loop: see README.md."""

@@ -1,0 +1,1 @@
+"""The adaptive loop, whatever the renderer: see README.md."""

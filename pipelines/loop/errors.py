@@ -1,0 +1,56 @@
+"""One kind of error for all drivers; its code is the exit code (README: Exit codes)."""
+
+import enum
+import signal
+import sys
+
+
+class ExitCode(enum.IntEnum):
+    DONE = 0
+    INTERNAL = 1
+    USAGE = 2
+    BAD_INPUT = 3
+    MISSING = 4
+    OUTPUT = 5
+    CHECK = 6
+    RENDERER = 7
+    MEMORY = 33
+    INTERRUPTED = 130
+    TERMINATED = 143
+
+
+class DriverError(Exception):
+    """Something that the user can mend. The text is one line: what, where, what to do."""
+
+    def __init__(self, code, text):
+        super().__init__(text)
+        self.code = ExitCode(code)
+
+
+class Terminated(BaseException):
+    """SIGTERM arrived: like KeyboardInterrupt, it unwinds through every `finally`."""
+
+
+def _terminate(*_):
+    raise Terminated
+
+
+def run_main(program, main, words=None):
+    """Runs main(words) and returns the exit code; every failure is one line on standard error that begins with the
+    program's name. What argparse says of wrong use (2) passes through."""
+    signal.signal(signal.SIGTERM, _terminate)
+    try:
+        main(words)
+        return ExitCode.DONE
+    except DriverError as error:
+        print(f"{program}: {error}", file=sys.stderr)
+        return error.code
+    except KeyboardInterrupt:
+        print(f"{program}: interrupted", file=sys.stderr)
+        return ExitCode.INTERRUPTED
+    except Terminated:
+        print(f"{program}: terminated", file=sys.stderr)
+        return ExitCode.TERMINATED
+    except MemoryError:
+        print(f"{program}: not enough memory", file=sys.stderr)
+        return ExitCode.MEMORY

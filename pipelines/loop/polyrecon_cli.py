@@ -1,0 +1,42 @@
+"""Finds and runs the polyrecon program."""
+
+import os
+import pathlib
+import shutil
+
+from . import process
+from .errors import DriverError, ExitCode
+
+BUILDS = ("release", "dev")
+
+
+def find_polyrecon(given=None):
+    """--polyrecon PATH, else $POLYRECON, else on the PATH, else the build of this checkout."""
+    named = given or os.environ.get("POLYRECON")
+    if named:
+        if not os.access(named, os.X_OK):
+            raise DriverError(ExitCode.MISSING, f"{named}: no such program (--polyrecon, $POLYRECON)")
+        return pathlib.Path(named).absolute()
+    if found := shutil.which("polyrecon"):
+        return pathlib.Path(found)
+    root = pathlib.Path(__file__).resolve().parents[2]
+    for build in BUILDS:
+        if os.access(program := root / "build" / build / "src" / "polyrecon", os.X_OK):
+            return program
+    raise DriverError(ExitCode.MISSING, "polyrecon is not on the PATH and not built here: name it by --polyrecon")
+
+
+class Polyrecon:
+    """polyrecon's commands as methods. A failure keeps the program's own exit code and line."""
+
+    def __init__(self, path=None):
+        self.program = find_polyrecon(path)
+
+    def run(self, command, *words):
+        """Runs one sub-command; returns what it printed."""
+        code, output, errors = process.run([self.program, command, *words])
+        if code != 0:
+            lines = [line for line in errors.splitlines() if line.strip()] or [f"ended with code {code}"]
+            known = code in ExitCode.__members__.values()
+            raise DriverError(code if known else ExitCode.INTERNAL, f"polyrecon {command}: {lines[-1]}")
+        return output

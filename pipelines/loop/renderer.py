@@ -1,0 +1,72 @@
+"""What the loop asks of a renderer. A renderer is one file with a subclass of Renderer; nothing else in the loop knows it.
+
+The terms:
+  sequence  The samples of a pixel, numbered from 0. Sample s of a pixel is always the same one, whichever pass draws it, so
+            the loop never asks for a number twice. A renderer without a sequence may use `first` as its seed, if different
+            numbers give independent samples.
+  part      One EXR of one pass over the whole frame, of any layout that `polyrecon merge` reads, the layers being the same
+            in all parts of a frame (further layers, in the first part only, are kept as they are). Every part has the
+            channel `Sample Count.X` (after the view layer's prefix where there is one: `ViewLayer.Sample Count.X`): how many
+            samples each pixel is the mean of, 0 where the pass has none; the values there do not count and may be 0.
+"""
+
+import abc
+import dataclasses
+import pathlib
+from typing import Optional
+
+import numpy as np
+
+
+@dataclasses.dataclass
+class Switch:
+    """Something that was switched off, or on, for the loop, since it cannot change the image or would spoil the samples."""
+
+    effect: str  # "motion blur"
+    setting: str  # "off"
+    reason: str  # "nothing moves within the shutter"
+    saves: str = ""  # "one synchronisation a pass"
+
+
+@dataclasses.dataclass
+class Audit:
+    """What the frame calls for."""
+
+    width: int
+    height: int
+    switches: list[Switch] = dataclasses.field(default_factory=list)  # printed, and a table of the report
+    passes: dict[str, str] = dataclasses.field(default_factory=dict)  # pass asked for -> why
+    notes: list[str] = dataclasses.field(default_factory=list)  # lines for the user
+    method: str = ""  # how extra samples are rendered, in a few words
+
+
+class Renderer(abc.ABC):
+    """One scene. Failures are raised as DriverError(ExitCode.RENDERER, one line); the driver can then be resumed."""
+
+    name = ""  # "Blender 5.0.1": for the report
+
+    @abc.abstractmethod
+    def begin(self, frame: Optional[int]) -> Audit:
+        """Opens a frame (None: the scene's own) and says what it calls for. Called once before the passes of a frame."""
+
+    @abc.abstractmethod
+    def uniform(self, first: int, samples: int, target: pathlib.Path) -> None:
+        """Renders samples first .. first + samples - 1 of every pixel and writes them as a part.
+
+        The first part of a frame may hold further layers that the user asked for."""
+
+    @abc.abstractmethod
+    def extra(self, first: int, counts: np.ndarray, target: pathlib.Path) -> int:
+        """Renders counts[y, x] samples of each pixel (integers, 0 or a power of two, row 0 at the top) and writes them as ONE
+        part. Uses numbers of the sequence from `first` on, as many as it likes; returns how many.
+
+        A renderer that cannot sample single pixels may take more than it is asked for; `Sample Count.X` says what was
+        taken, and must not depend on the values of the samples, else the picture would be biased."""
+
+    def cost(self) -> Optional[np.ndarray]:
+        """Seconds that a sample of each pixel takes, (height, width), up to a common factor, as known from the passes so
+        far; None: all alike."""
+        return None
+
+    def close(self) -> None:
+        """Ends what runs in the background. Called once, in every case."""
