@@ -5,6 +5,7 @@ cd "$(dirname "$0")/.."
 
 echo "== packages"
 samples/install_dependencies.sh --tests
+tests/pipelines/make_venv.sh
 
 echo "== clang-format"
 find src tests -name '*.cpp' -o -name '*.h' | xargs clang-format --dry-run -Werror

@@ -56,7 +56,10 @@ def write(path, channels, attributes=None):
     for name, value in (attributes or {}).items():
         spec.attribute(name, value)
     path = pathlib.Path(path)
-    handle, temporary = tempfile.mkstemp(suffix=".exr", prefix=f".{path.name}.", dir=path.parent)
+    try:
+        handle, temporary = tempfile.mkstemp(suffix=".exr", prefix=f".{path.name}.", dir=path.parent)
+    except OSError as error:
+        raise DriverError(ExitCode.OUTPUT, f"{path}: {error.strerror}") from error
     os.close(handle)
     try:
         file = oiio.ImageOutput.create(temporary)

@@ -39,4 +39,6 @@ def run(words, timeout=None, **options):
         return child.returncode, output, errors
     except BaseException:
         stop(child)
+        child.stdout.close()
+        child.stderr.close()
         raise

@@ -1,0 +1,14 @@
+#!/usr/bin/env bash
+# The Python of the drivers' tests, in build/venv: Debian's own with its packages (numpy, OpenImageIO, jinja2, rich), and
+# Blender 5 as a module beside them. Does nothing where it is there already.
+set -euo pipefail
+cd "$(dirname "$0")/../.."
+python=build/venv/bin/python3
+if ! [ -x "$python" ]; then
+  echo "making build/venv"
+  /usr/bin/python3 -m venv --system-site-packages build/venv
+fi
+# Debian's numpy is 1.24; bpy would bring a newer one, which Debian's OpenImageIO module would not load.
+"$python" -c 'import importlib.util as u, sys; sys.exit(not u.find_spec("bpy"))' ||
+  "$python" -m pip install --quiet --disable-pip-version-check --no-deps bpy==5.0.1
+"$python" -c 'import numpy, OpenImageIO, jinja2, rich'
