@@ -1,0 +1,117 @@
+#include "cli/denoise_options.h"
+
+#include <fmt/format.h>
+
+#include <map>
+
+#include "cli/choice.h"
+
+namespace polyrecon {
+namespace {
+
+const std::map<std::string, Quality> qualities{
+    {"draft", Quality::Draft}, {"standard", Quality::Standard}, {"best", Quality::Best}};
+const std::map<std::string, VarianceKind> variance_kinds{{"auto", VarianceKind::Auto},
+                                                         {"mean", VarianceKind::Mean},
+                                                         {"sample", VarianceKind::Sample},
+                                                         {"moment", VarianceKind::SecondMoment}};
+const std::map<std::string, ProgressStyle> progress_styles{
+    {"none", ProgressStyle::None}, {"bar", ProgressStyle::Bar}, {"json", ProgressStyle::Json}};
+
+template <typename Value>
+std::string key_of(const std::map<std::string, Value>& names, Value value) {
+  for (const auto& [name, v] : names)
+    if (v == value) return name;
+  return {};
+}
+
+void add_files(CLI::App& app, DenoiseOptions& o) {
+  app.add_option("-i,--input", o.input, "Noisy render: EXR, or what OpenImageIO reads")->required()->type_name("FILE");
+  app.add_option("-o,--output", o.output, "Clean EXR to write")->required()->type_name("FILE");
+  app.add_option("--error-map", o.error_map, "Write how wrong each pixel may still be")->type_name("FILE");
+  app.add_option("--order-map", o.order_map, "Write the polynomial order chosen for each pixel")->type_name("FILE");
+  app.add_option("--sample-map", o.sample_map, "Write where the next samples should go")->type_name("FILE");
+  app.add_option("--report", o.report, "Write the report as JSON")->type_name("FILE");
+}
+
+void add_input_options(CLI::App& app, DenoiseOptions& o) {
+  const std::string group = "Input";
+  app.add_option("-l,--aov", o.read.aovs, "Denoise this colour layer too, with the beauty's windows (repeatable)")
+      ->type_name("LAYER")
+      ->expected(1)
+      ->take_all()
+      ->group(group);
+  app.add_option("--map", o.roles, "Give a role to a layer by hand: albedo=ViewLayer.MyAlbedo (repeatable)")
+      ->type_name("ROLE=LAYER")
+      ->expected(1)
+      ->take_all()
+      ->group(group);
+  app.add_option("--view-layer", o.read.view_layer, "View layer to denoise, in place of the first one")
+      ->type_name("NAME")
+      ->group(group);
+  add_choice(app, "--variance-kind", o.read.variance_kind, variance_kinds,
+             "What variance layers hold: auto, mean (of the pixel), sample (of one sample), moment (mean square)")
+      ->group(group);
+  app.add_option("--samples", o.read.samples, "Samples per pixel, where the file does not tell")
+      ->check(CLI::PositiveNumber)
+      ->group(group);
+}
+
+void add_method_options(CLI::App& app, DenoiseOptions& o) {
+  const std::string group = "Reconstruction";
+  add_choice(app, "--quality", o.quality, qualities, "draft, standard or best")->group(group);
+  app.add_option("--stages", o.stages, "Rounds of error estimation, 1 to 4, in place of what the quality takes")
+      ->group(group);
+  app.add_option("--order", o.order, "Highest polynomial order, 0 to 4, in place of what the quality takes")
+      ->group(group);
+  app.add_flag("--alpha", o.alpha, "Denoise alpha too, in place of keeping it")->group(group);
+  app.add_flag("--keep-noisy", o.keep_noisy, "Keep what is replaced, under '<layer> Noisy'")->group(group);
+}
+
+void add_run_options(CLI::App& app, DenoiseOptions& o) {
+  const std::string group = "Run";
+  app.add_option("-t,--threads", o.threads, "Threads to use; 0: all processors")
+      ->check(CLI::Range(0, 4096))
+      ->capture_default_str()
+      ->group(group);
+  app.add_option("--max-memory", o.max_memory, "Memory to stay within, in bytes or as 512M, 4G")
+      ->transform(CLI::AsSizeValue(false).description(""))
+      ->type_name("SIZE")
+      ->group(group);
+  add_choice(app, "--progress", o.progress, progress_styles,
+             "none, bar or json (one object per line), on standard error; a bar on a terminal")
+      ->group(group);
+  app.add_flag("-q,--quiet", o.quiet, "Print nothing but errors")->group(group);
+}
+
+}  // namespace
+
+Params params_of(const DenoiseOptions& o) {
+  Params params = params_for(o.quality);
+  if (o.stages) params.stages = *o.stages;
+  if (o.order) params.max_order = *o.order;
+  if (o.max_memory) params.max_memory = *o.max_memory;
+  params.reconstruct_alpha = o.alpha;
+  return params;
+}
+
+std::string settings_text(const DenoiseOptions& o) {
+  const Params params = params_of(o);
+  std::string text = fmt::format("--quality {} --stages {} --order {} --variance-kind {}", key_of(qualities, o.quality),
+                                 params.stages, params.max_order, key_of(variance_kinds, o.read.variance_kind));
+  if (params.reconstruct_alpha) text += " --alpha";
+  if (!o.read.view_layer.empty()) text += " --view-layer '" + o.read.view_layer + "'";
+  for (const std::string& aov : o.read.aovs) text += " --aov '" + aov + "'";
+  for (const std::string& role : o.roles) text += " --map '" + role + "'";
+  return text;
+}
+
+void add_denoise_options(CLI::App& app, DenoiseOptions& options) {
+  add_files(app, options);
+  add_input_options(app, options);
+  add_method_options(app, options);
+  add_sample_map_options(app, options.sampling);
+  add_run_options(app, options);
+}
+
+}  // namespace polyrecon

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/progress_output.h"
+#include "cli/sample_map_options.h"
+#include "io/read_frame.h"
+#include "pipeline/params.h"
+
+namespace polyrecon {
+
+/// What the command line of `denoise` says.
+struct DenoiseOptions {
+  std::string input, output, error_map, order_map, sample_map, report;
+  std::vector<std::string> roles;  ///< "role=LAYER"
+  ReadOptions read;
+  Quality quality = Quality::Standard;
+  std::optional<int> stages, order;  ///< In place of what the quality says.
+  std::optional<std::size_t> max_memory;
+  bool alpha = false;
+  SampleMapOptions sampling;
+  bool sampling_given = false;
+  bool keep_noisy = false, quiet = false;
+  int threads = 0;
+  ProgressStyle progress = ProgressStyle::Auto;
+};
+
+/// Adds all options of the command.
+void add_denoise_options(CLI::App& app, DenoiseOptions& options);
+
+/// The reconstruction's parameters that the options ask for.
+Params params_of(const DenoiseOptions& options);
+
+/// What the result depends on, in the words of the command line; goes into the file and the report.
+std::string settings_text(const DenoiseOptions& options);
+
+}  // namespace polyrecon
