@@ -20,7 +20,7 @@ import bpy  # noqa: E402  (exists only inside Blender)
 def arguments():
     words = sys.argv[sys.argv.index("--") + 1 :] if "--" in sys.argv else sys.argv[1:]
     parser = argparse.ArgumentParser(prog="render.py")
-    parser.add_argument("scene", choices=("study", "glass", "lighthouse"))
+    parser.add_argument("scene", choices=("study", "glass", "lighthouse", "gallery", "meadow", "fan"))
     parser.add_argument("out")
     parser.add_argument("--size", default="320x180")
     parser.add_argument("--spp", type=int, default=16)
