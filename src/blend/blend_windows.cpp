@@ -187,12 +187,11 @@ void work_block(Blending& b, const Rect& block, Scratch& s, std::vector<BlendSum
   s.window.reserve(p.radius, b.layout.columns(), b.source.response->channels());
   s.weight.resize(static_cast<std::size_t>(s.window.stride));
   s.fit.resize(static_cast<std::size_t>(s.window.stride) * b.responses());
-  s.distances.compute(*b.source.guide, *b.source.guide_variance, block, s.center_x, s.center_y, p.radius,
-                      p.patch_radius);
+  s.distances.load(*b.source.guide, *b.source.guide_variance, block, p.radius, p.patch_radius);
   const Real widest = *std::max_element(p.bandwidths.begin(), p.bandwidths.end());
   const WindowSource source{b.source.response, b.source.noise_variance, b.source.features, b.source.guess};
   for (std::size_t k = 0; k < s.center_x.size(); ++k) {
-    s.distances.window_of(k, cut_exponent * widest * widest, s.window);
+    s.distances.window_of(s.center_x[k], s.center_y[k], cut_exponent * widest * widest, s.window);
     if (s.window.count == 0) continue;
     gather(source, b.layout, s.center_x[k], s.center_y[k], p.radius, s.window);
     for (std::size_t h = 0; h < p.bandwidths.size(); ++h) fit_window(b, s, p.bandwidths[h], sums[h]);

@@ -13,48 +13,17 @@ namespace {
 /// than the rounding of float data, at any exposure.
 constexpr Real relative_epsilon = Real(1e-10);
 
-/// Noise-aware squared difference of single pixels, over RGB. a and b hold rows of the six planes.
-POLYRECON_SIMD void pixel_distances(const Real* const* a, const Real* const* b, Real* out, int n) {
+constexpr int row_lanes = 8;  ///< Rows around a centre are padded to whole vectors of this many samples.
+
+/// Adds the noise-aware squared differences between pixel a and a row of pixels; a and b: the planes of `load`.
+POLYRECON_SIMD void add_differences(const Real* a, const Real* const* b, Real* out, int n) {
+  const Real ar = a[0], ag = a[1], ab = a[2], an = a[3], as = a[4];
+  const Real *br = b[0], *bg = b[1], *bb = b[2], *bn = b[3], *bs = b[4];
   for (int j = 0; j < n; ++j) {
-    Real excess = 0, scale = std::numeric_limits<Real>::min();
-    for (int c = 0; c < 3; ++c) {
-      const Real pa = a[c][j], pb = b[c][j], va = a[c + 3][j], vb = b[c + 3][j];
-      const Real difference = pa - pb;
-      excess += difference * difference - (va + (va < vb ? va : vb));
-      scale += va + vb + relative_epsilon * (pa * pa + pb * pb);
-    }
-    out[j] = excess / scale;
+    const Real dr = ar - br[j], dg = ag - bg[j], db = ab - bb[j];
+    const Real noise = an + (an < bn[j] ? an : bn[j]);
+    out[j] += (dr * dr + dg * dg + db * db - noise) / (as + bs[j]);
   }
-}
-
-/// out[j] = factor x sum of in[j], in[j + step], ... (count of them).
-POLYRECON_SIMD void add_strided(const Real* in, std::ptrdiff_t step, int count, Real factor, Real* out, int n) {
-  for (int j = 0; j < n; ++j) out[j] = in[j];
-  for (int k = 1; k < count; ++k)
-    for (int j = 0; j < n; ++j) out[j] += in[j + k * step];
-  for (int j = 0; j < n; ++j) out[j] *= factor;
-}
-
-/// The same for one pixel a against a row of pixels.
-POLYRECON_SIMD void distances_to(const Real* a, const Real* const* b, Real* out, int n) {
-  for (int j = 0; j < n; ++j) {
-    Real excess = 0, scale = std::numeric_limits<Real>::min();
-    for (int c = 0; c < 3; ++c) {
-      const Real pa = a[c], pb = b[c][j], va = a[c + 3], vb = b[c + 3][j];
-      const Real difference = pa - pb;
-      excess += difference * difference - (va + (va < vb ? va : vb));
-      scale += va + vb + relative_epsilon * (pa * pa + pb * pb);
-    }
-    out[j] = excess / scale;
-  }
-}
-
-POLYRECON_SIMD void add(const Real* in, Real* out, int n) {
-  for (int j = 0; j < n; ++j) out[j] += in[j];
-}
-
-POLYRECON_SIMD void scale(Real factor, Real* out, int n) {
-  for (int j = 0; j < n; ++j) out[j] *= factor;
 }
 
 POLYRECON_SIMD void exponential_weights(const Real* distance, Real inverse_square, Real* weight, int n) {
@@ -67,122 +36,76 @@ POLYRECON_SIMD void exponential_weights(const Real* distance, Real inverse_squar
 
 }  // namespace
 
-void PatchDistances::load(const Image& guide, const Image& variance, const Rect& area) {
-  loaded_ = area;
-  const auto width = static_cast<std::size_t>(area.width()), plane = area.area();
-  planes_.resize(6 * plane);
-  for (int c = 0; c < 6; ++c) {
-    const Image& image = c < 3 ? guide : variance;
-    for (int y = area.y0; y < area.y1; ++y) {
-      const Real* row = image.row(c % 3, std::clamp(y, 0, height_ - 1));
-      Real* out = planes_.data() + static_cast<std::size_t>(c) * plane + static_cast<std::size_t>(y - area.y0) * width;
-      for (int x = area.x0; x < area.x1; ++x) *out++ = row[std::clamp(x, 0, width_ - 1)];
-    }
-  }
-}
-
-void PatchDistances::offset_distances(int dx, int dy, const Rect& area, int patch_radius) {
-  const auto width = static_cast<std::size_t>(loaded_.width()), plane = loaded_.area();
-  const int columns = area.width(), patch = 2 * patch_radius + 1;
-  const auto at = [&](int x, int y) {
-    return static_cast<std::size_t>(y - loaded_.y0) * width + static_cast<std::size_t>(x - loaded_.x0);
-  };
-  for (int y = area.y0; y < area.y1; ++y) {
-    const Real *a[6], *b[6];
-    for (std::size_t c = 0; c < 6; ++c) {
-      a[c] = planes_.data() + c * plane + at(area.x0, y);
-      b[c] = planes_.data() + c * plane + at(area.x0 + dx, y + dy);
-    }
-    const std::size_t row = static_cast<std::size_t>(y - area.y0) * static_cast<std::size_t>(columns);
-    pixel_distances(a, b, difference_.data() + row, columns);
-    add_strided(difference_.data() + row, 1, patch, Real(1) / static_cast<Real>(patch * patch), row_sums_.data() + row,
-                columns - patch + 1);
-  }
-  for (int y = 0; y + patch <= area.height(); ++y) {
-    const std::size_t row = static_cast<std::size_t>(y) * static_cast<std::size_t>(columns);
-    add_strided(row_sums_.data() + row, columns, patch, 1, difference_.data() + row, columns - patch + 1);
-  }
-}
-
-void PatchDistances::all_centers(const Rect& block, int patch_radius) {
-  const Rect area = grow(block, patch_radius);
-  difference_.resize(area.area());
-  row_sums_.resize(area.area());
-  const std::size_t window_size = distance_.size() / center_x_.size();
-  std::size_t offset = 0;
-  for (int dy = -radius_; dy <= radius_; ++dy)
-    for (int dx = -radius_; dx <= radius_; ++dx, ++offset) {
-      offset_distances(dx, dy, area, patch_radius);
-      for (std::size_t k = 0; k < center_x_.size(); ++k)
-        distance_[k * window_size + offset] =
-            difference_[static_cast<std::size_t>(center_y_[k] - block.y0) * static_cast<std::size_t>(area.width()) +
-                        static_cast<std::size_t>(center_x_[k] - block.x0)];
-    }
-}
-
-void PatchDistances::one_center(std::size_t center, int patch_radius) {
-  const int side = 2 * radius_ + 1, patch = 2 * patch_radius + 1;
-  const auto width = static_cast<std::size_t>(loaded_.width()), plane = loaded_.area();
-  const auto at = [&](int x, int y) {
-    return static_cast<std::size_t>(y - loaded_.y0) * width + static_cast<std::size_t>(x - loaded_.x0);
-  };
-  difference_.resize(static_cast<std::size_t>(side));
-  row_sums_.resize(static_cast<std::size_t>(side));
-  Real* row = distance_.data() + center * static_cast<std::size_t>(side) * static_cast<std::size_t>(side);
-  for (int dy = -radius_; dy <= radius_; ++dy, row += side) {
-    std::fill(row, row + side, Real(0));
-    for (int py = -patch_radius; py <= patch_radius; ++py) {
-      // Summed and scaled in the order of offset_distances: which of the two is run must not show in any bit.
-      std::fill(row_sums_.begin(), row_sums_.end(), Real(0));
-      for (int px = -patch_radius; px <= patch_radius; ++px) {
-        const int x = center_x_[center] + px, y = center_y_[center] + py;
-        const Real* b[6];
-        Real a[6];
-        for (std::size_t c = 0; c < 6; ++c) {
-          a[c] = planes_[c * plane + at(x, y)];
-          b[c] = planes_.data() + c * plane + at(x - radius_, y + dy);
-        }
-        distances_to(a, b, difference_.data(), side);
-        add(difference_.data(), row_sums_.data(), side);
-      }
-      scale(Real(1) / static_cast<Real>(patch * patch), row_sums_.data(), side);
-      add(row_sums_.data(), row, side);
-    }
-  }
-}
-
-void PatchDistances::compute(const Image& guide, const Image& variance, const Rect& block,
-                             const std::vector<int>& center_x, const std::vector<int>& center_y, int window_radius,
-                             int patch_radius) {
+void PatchDistances::load(const Image& guide, const Image& variance, const Rect& block, int window_radius,
+                          int patch_radius) {
   radius_ = window_radius;
-  width_ = guide.width();
-  height_ = guide.height();
-  center_x_ = center_x;
-  center_y_ = center_y;
-  const int side = 2 * window_radius + 1, patch = 2 * patch_radius + 1;
-  distance_.resize(center_x.size() * static_cast<std::size_t>(side) * static_cast<std::size_t>(side));
-  load(guide, variance, grow(block, window_radius + patch_radius));
-  // Sums shared between the patches of a whole block pay only where centres are dense.
-  if (center_x.size() * static_cast<std::size_t>(patch * patch) > block.area())
-    all_centers(block, patch_radius);
-  else
-    for (std::size_t k = 0; k < center_x.size(); ++k) one_center(k, patch_radius);
+  patch_radius_ = patch_radius;
+  bounds_ = guide.bounds();
+  loaded_ = grow(block, window_radius + patch_radius);
+  loaded_planes_.resize(planes * loaded_.area());
+  Real* out[planes];
+  for (std::size_t p = 0; p < planes; ++p) out[p] = loaded_planes_.data() + p * loaded_.area();
+  for (int y = loaded_.y0; y < loaded_.y1; ++y)
+    for (int x = loaded_.x0; x < loaded_.x1; ++x) {
+      const int u = std::clamp(x, 0, bounds_.x1 - 1), v = std::clamp(y, 0, bounds_.y1 - 1);
+      Real noise = 0, square = 0;
+      for (int c = 0; c < 3; ++c) {
+        const Real color = guide.at(u, v, c);
+        *out[c]++ = color;
+        noise += variance.at(u, v, c);
+        square += color * color;
+      }
+      *out[3]++ = noise;
+      *out[4]++ = noise + relative_epsilon * square + std::numeric_limits<Real>::min();
+    }
 }
 
-void PatchDistances::window_of(std::size_t center, Real limit, Window& window) const {
-  const int side = 2 * radius_ + 1, cx = center_x_[center], cy = center_y_[center];
-  const Real* distance = distance_.data() + center * static_cast<std::size_t>(side) * static_cast<std::size_t>(side);
-  const int x0 = std::max(cx - radius_, 0), x1 = std::min(cx + radius_, width_ - 1);
-  const int y0 = std::max(cy - radius_, 0), y1 = std::min(cy + radius_, height_ - 1);
+void PatchDistances::surround(int center_x, int center_y) {
+  const int reach = radius_ + patch_radius_, side = 2 * reach + 1;
+  pitch_ = (side + row_lanes - 1) / row_lanes * row_lanes;
+  const std::size_t size = static_cast<std::size_t>(side) * static_cast<std::size_t>(pitch_);
+  const auto width = static_cast<std::size_t>(loaded_.width());
+  const std::size_t first = static_cast<std::size_t>(center_y - reach - loaded_.y0) * width +
+                            static_cast<std::size_t>(center_x - reach - loaded_.x0);
+  around_.resize(planes * size);
+  for (std::size_t p = 0; p < planes; ++p)
+    for (std::size_t y = 0; y < static_cast<std::size_t>(side); ++y)
+      std::copy_n(loaded_planes_.data() + p * loaded_.area() + first + y * width, side,
+                  around_.data() + p * size + y * static_cast<std::size_t>(pitch_));
+}
+
+void PatchDistances::sum_patches() {
+  const int side = 2 * radius_ + 1, patch = 2 * patch_radius_ + 1;
+  const std::size_t size = around_.size() / planes;
+  const int pixels = (side - 1) * pitch_ + side;  // ends with the last pixel of the last row: the next plane follows
+  distance_.assign(static_cast<std::size_t>(pixels), Real(0));
+  for (int py = 0; py < patch; ++py)
+    for (int px = 0; px < patch; ++px) {
+      const auto center = static_cast<std::size_t>((radius_ + py) * pitch_ + radius_ + px);
+      const Real* b[planes];
+      Real a[planes];
+      for (std::size_t p = 0; p < planes; ++p) {
+        a[p] = around_[p * size + center];
+        b[p] = around_.data() + p * size + py * pitch_ + px;
+      }
+      add_differences(a, b, distance_.data(), pixels);
+    }
+}
+
+void PatchDistances::window_of(int center_x, int center_y, Real limit, Window& window) {
+  surround(center_x, center_y);
+  sum_patches();
+  const auto patch_area = static_cast<Real>((2 * patch_radius_ + 1) * (2 * patch_radius_ + 1));
+  const Rect inside = intersect(grow({center_x, center_y, center_x + 1, center_y + 1}, radius_), bounds_);
   std::size_t count = 0;
-  for (int y = y0; y <= y1; ++y) {
-    const Real* row = distance + static_cast<std::ptrdiff_t>(y - cy + radius_) * side - cx + radius_;
-    for (int x = x0; x <= x1; ++x) {
+  for (int y = inside.y0; y < inside.y1; ++y) {
+    const Real* row = distance_.data() + (y - center_y + radius_) * pitch_ - center_x + radius_;
+    for (int x = inside.x0; x < inside.x1; ++x) {
       const Real d = row[x];
-      if (!(d < limit)) continue;
+      if (!(d < limit * patch_area)) continue;
       window.x[count] = x;
       window.y[count] = y;
-      window.distance[count] = d > 0 ? d : 0;
+      window.distance[count] = d > 0 ? d / patch_area : 0;
       ++count;
     }
   }

@@ -95,14 +95,15 @@ class Reference {
     const int r = params_.patch_radius;
     for (int py = -r; py <= r; ++py)
       for (int px = -r; px <= r; ++px) {
-        double excess = 0, scale = 0;
+        double square = 0, va = 0, vb = 0, floor = 0;
         for (int c = 0; c < 3; ++c) {
           const double a = at(p_.guide, cx + px, cy + py, c), b = at(p_.guide, x + px, y + py, c);
-          const double va = at(p_.variance, cx + px, cy + py, c), vb = at(p_.variance, x + px, y + py, c);
-          excess += (a - b) * (a - b) - va - std::min(va, vb);
-          scale += va + vb + 1e-10 * (a * a + b * b);
+          square += (a - b) * (a - b);
+          va += at(p_.variance, cx + px, cy + py, c);
+          vb += at(p_.variance, x + px, y + py, c);
+          floor += 1e-10 * (a * a + b * b);
         }
-        sum += excess / scale;
+        sum += (square - va - std::min(va, vb)) / (va + vb + floor);
       }
     return std::max(sum / ((2 * r + 1) * (2 * r + 1)), 0.0);
   }

@@ -36,82 +36,47 @@ double distance(const Pictures& p, int cx, int cy, int x, int y, int patch_radiu
       const auto at = [&](const Image& image, int u, int v, int c) {
         return static_cast<double>(image.at(std::clamp(u + px, 0, width - 1), std::clamp(v + py, 0, height - 1), c));
       };
-      double excess = 0, scale = static_cast<double>(std::numeric_limits<Real>::min());
+      double square = 0, va = 0, vb = 0, scale = 2 * static_cast<double>(std::numeric_limits<Real>::min());
       for (int c = 0; c < 3; ++c) {
         const double a = at(p.guide, cx, cy, c), b = at(p.guide, x, y, c);
-        const double va = at(p.variance, cx, cy, c), vb = at(p.variance, x, y, c);
-        excess += (a - b) * (a - b) - (va + std::min(va, vb));
-        scale += va + vb + 1e-10 * (a * a + b * b);
+        square += (a - b) * (a - b);
+        va += at(p.variance, cx, cy, c);
+        vb += at(p.variance, x, y, c);
+        scale += 1e-10 * (a * a + b * b);
       }
-      sum += excess / scale;
+      sum += (square - (va + std::min(va, vb))) / (scale + va + vb);
     }
   return sum / ((2 * patch_radius + 1) * (2 * patch_radius + 1));
 }
 
-Window window_at(const PatchDistances& distances, std::size_t center, int radius, Real limit) {
+/// The window around a centre, of all pixels whose distance is below limit.
+Window window_at(const Pictures& p, int cx, int cy, int radius, int patch_radius, Real limit) {
+  PatchDistances distances;
+  distances.load(p.guide, p.variance, {0, 0, width, height}, radius, patch_radius);
   Window window;
   window.reserve(radius, 1, 3);
-  distances.window_of(center, limit, window);
+  distances.window_of(cx, cy, limit, window);
   window.padded = (window.count + Window::lanes - 1) / Window::lanes * Window::lanes;
   return window;
 }
 
 constexpr Real everything = std::numeric_limits<Real>::max();
 
-/// Checks all windows of the given centres against the definition.
-void check(const Pictures& p, const std::vector<int>& cx, const std::vector<int>& cy, int radius, int patch_radius) {
-  PatchDistances distances;
-  distances.compute(p.guide, p.variance, {0, 0, width, height}, cx, cy, radius, patch_radius);
-  for (std::size_t k = 0; k < cx.size(); ++k) {
-    const Window window = window_at(distances, k, radius, everything);
-    const Rect inside = intersect(grow({cx[k], cy[k], cx[k] + 1, cy[k] + 1}, radius), p.guide.bounds());
-    ASSERT_EQ(static_cast<std::size_t>(window.count), inside.area());
-    for (std::size_t j = 0; j < inside.area(); ++j) {
-      const double expected = std::max(distance(p, cx[k], cy[k], window.x[j], window.y[j], patch_radius), 0.0);
-      ASSERT_NEAR(static_cast<double>(window.distance[j]), expected, 1e-5 * std::max(1.0, expected))
-          << cx[k] << " " << cy[k] << " -> " << window.x[j] << " " << window.y[j];
-    }
-  }
-}
-
-TEST(PatchDistances, AreTheirDefinitionWhereCentresAreDense) {
-  std::vector<int> cx, cy;
-  for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x) {
-      cx.push_back(x);
-      cy.push_back(y);
-    }
-  for (const int patch_radius : {0, 1, 2}) check(noisy_pictures(), cx, cy, 3, patch_radius);
-}
-
-TEST(PatchDistances, AreTheirDefinitionWhereCentresAreSparse) {
-  // Corners, a border and the middle; 5 centres x 9 pixels of patch are fewer than the block's 143 pixels.
-  for (const int patch_radius : {0, 1, 2})
-    check(noisy_pictures(), {0, width - 1, 0, width - 1, 6}, {0, 0, height - 1, height - 1, 5}, 3, patch_radius);
-}
-
-/// Wide enough for the vector units: there a compiler that fuses products and sums has more than one way to.
-TEST(PatchDistances, HaveTheSameBitsWhetherCentresAreDenseOrSparse) {
-  test::Random random(4);
-  const Image guide = image_of(48, 40, 3, [&](int, int, int) { return 1 + 0.2 * random.normal(); });
-  const Image variance = image_of(48, 40, 3, [&](int, int, int) { return 0.04 * (0.5 + random.uniform()); });
-  for (const int patch_radius : {0, 1, 2}) {
-    std::vector<int> cx, cy;
-    for (int y = 0; y < 40; ++y)
-      for (int x = 0; x < 48; ++x) {
-        cx.push_back(x);
-        cy.push_back(y);
-      }
-    PatchDistances dense, sparse;
-    dense.compute(guide, variance, guide.bounds(), cx, cy, 9, patch_radius);
-    for (std::size_t k = 0; k < cx.size(); k += 37) {
-      sparse.compute(guide, variance, guide.bounds(), {cx[k]}, {cy[k]}, 9, patch_radius);
-      const Window a = window_at(dense, k, 9, everything), b = window_at(sparse, 0, 9, everything);
-      ASSERT_EQ(a.count, b.count);
-      for (std::size_t j = 0; j < static_cast<std::size_t>(a.count); ++j)
-        ASSERT_EQ(a.distance[j], b.distance[j]) << patch_radius;
-    }
-  }
+TEST(PatchDistances, AreTheirDefinition) {
+  const Pictures p = noisy_pictures();
+  for (const int radius : {1, 3, 9})
+    for (const int patch_radius : {0, 1, 2})
+      for (int cy = 0; cy < height; ++cy)
+        for (int cx = 0; cx < width; ++cx) {
+          const Window window = window_at(p, cx, cy, radius, patch_radius, everything);
+          const Rect inside = intersect(grow({cx, cy, cx + 1, cy + 1}, radius), p.guide.bounds());
+          ASSERT_EQ(static_cast<std::size_t>(window.count), inside.area());
+          for (std::size_t j = 0; j < inside.area(); ++j) {
+            const double expected = std::max(distance(p, cx, cy, window.x[j], window.y[j], patch_radius), 0.0);
+            ASSERT_NEAR(static_cast<double>(window.distance[j]), expected, 1e-5 * std::max(1.0, expected))
+                << cx << " " << cy << " -> " << window.x[j] << " " << window.y[j];
+          }
+        }
 }
 
 TEST(PatchDistances, OfLikePixelsAreZeroOnAverageWhateverTheNoise) {
@@ -136,10 +101,7 @@ TEST(PatchDistances, HaveTheSameBitsAtAnyExposure) {
   const Pictures p = noisy_pictures();
   for (const double exposure : {0x1p-10, 0x1p10}) {
     const Pictures scaled{test::times(p.guide, exposure), test::times(p.variance, exposure * exposure)};
-    PatchDistances a, b;
-    a.compute(p.guide, p.variance, p.guide.bounds(), {6}, {5}, 4, 1);
-    b.compute(scaled.guide, scaled.variance, p.guide.bounds(), {6}, {5}, 4, 1);
-    const Window wa = window_at(a, 0, 4, everything), wb = window_at(b, 0, 4, everything);
+    const Window wa = window_at(p, 6, 5, 4, 1, everything), wb = window_at(scaled, 6, 5, 4, 1, everything);
     ASSERT_EQ(wa.count, wb.count);
     for (std::size_t j = 0; j < static_cast<std::size_t>(wa.count); ++j) EXPECT_EQ(wa.distance[j], wb.distance[j]);
   }
@@ -150,9 +112,7 @@ TEST(PatchDistances, WithoutNoiseOnlyEqualPatchesAreAlike) {
   // own column.
   const Pictures p{image_of(width, height, 3, [](int x, int, int) { return x < 6 ? 1 : 1.001; }),
                    Image(width, height, 3)};
-  PatchDistances distances;
-  distances.compute(p.guide, p.variance, p.guide.bounds(), {2}, {5}, 4, 1);
-  const Window window = window_at(distances, 0, 4, cut_exponent);
+  const Window window = window_at(p, 2, 5, 4, 1, cut_exponent);
   EXPECT_EQ(window.count, 5 * 9);  // columns 0 to 4: those whose patch lies in the left half
   for (std::size_t j = 0; j < static_cast<std::size_t>(window.count); ++j) {
     EXPECT_LT(window.x[j], 5);
@@ -162,18 +122,14 @@ TEST(PatchDistances, WithoutNoiseOnlyEqualPatchesAreAlike) {
 
 TEST(PatchDistances, OfABlackImageAreZero) {
   const Pictures p{Image(width, height, 3), Image(width, height, 3)};
-  PatchDistances distances;
-  distances.compute(p.guide, p.variance, p.guide.bounds(), {0}, {0}, 2, 1);
-  const Window window = window_at(distances, 0, 2, cut_exponent);
+  const Window window = window_at(p, 0, 0, 2, 1, cut_exponent);
   EXPECT_EQ(window.count, 9);
   EXPECT_EQ(window.distance[8], Real(0));
 }
 
 TEST(PatchDistances, TheLimitLeavesPixelsOut) {
   const Pictures p = noisy_pictures();
-  PatchDistances distances;
-  distances.compute(p.guide, p.variance, p.guide.bounds(), {6}, {5}, 3, 1);
-  const Window all = window_at(distances, 0, 3, everything), some = window_at(distances, 0, 3, Real(0.5));
+  const Window all = window_at(p, 6, 5, 3, 1, everything), some = window_at(p, 6, 5, 3, 1, Real(0.5));
   int below = 0;
   for (std::size_t j = 0; j < static_cast<std::size_t>(all.count); ++j) below += all.distance[j] < Real(0.5);
   EXPECT_EQ(some.count, below);
