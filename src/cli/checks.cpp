@@ -2,6 +2,8 @@
 
 #include <filesystem>
 #include <fstream>
+#include <set>
+#include <utility>
 
 #include "core/error.h"
 #include "io/atomic_file.h"
@@ -29,7 +31,7 @@ void require_readable(const std::string& path) {
   if (!std::ifstream(path)) throw Error(ExitCode::BadInput, path + ": cannot be opened, check its permissions");
 }
 
-void require_outputs(const std::vector<std::string>& inputs, const std::vector<NamedPath>& outputs) {
+void require_different_files(const std::vector<std::string>& inputs, const std::vector<NamedPath>& outputs) {
   for (std::size_t i = 0; i < outputs.size(); ++i) {
     const NamedPath& output = outputs[i];
     if (output.path.empty() && output.option == "-o") throw Error(ExitCode::Usage, "-o needs the name of a file");
@@ -41,8 +43,23 @@ void require_outputs(const std::vector<std::string>& inputs, const std::vector<N
       if (!outputs[j].path.empty() && same_file(output.path, outputs[j].path))
         throw Error(ExitCode::Usage, output.path + ": named by both " + outputs[j].option + " and " + output.option);
   }
-  for (const NamedPath& output : outputs)
-    if (!output.path.empty()) check_writable(output.path);
+}
+
+void require_writable(const std::vector<std::string>& outputs) {
+  std::set<std::pair<fs::path, bool>> tried;
+  for (const std::string& output : outputs) {
+    std::error_code ignored;
+    // What a folder takes it takes for every name but one that is a folder itself.
+    if (!output.empty() && tried.emplace(fs::path(output).parent_path(), fs::is_directory(output, ignored)).second)
+      check_writable(output);
+  }
+}
+
+void require_outputs(const std::vector<std::string>& inputs, const std::vector<NamedPath>& outputs) {
+  require_different_files(inputs, outputs);
+  std::vector<std::string> paths;
+  for (const NamedPath& output : outputs) paths.push_back(output.path);
+  require_writable(paths);
 }
 
 }  // namespace polyrecon

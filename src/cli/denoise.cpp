@@ -1,9 +1,17 @@
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <exception>
 #include <memory>
+#include <vector>
 
 #include "cli/checks.h"
 #include "cli/commands.h"
 #include "cli/denoise_frame.h"
 #include "cli/denoise_options.h"
+#include "cli/fetch_frame.h"
+#include "cli/frame_files.h"
+#include "cli/sequence.h"
 #include "core/error.h"
 #include "core/parallel.h"
 #include "io/exr_file.h"
@@ -11,29 +19,51 @@
 namespace polyrecon {
 namespace {
 
-/// Everything that can be refused without reading the input.
-void check(const DenoiseOptions& o) {
+/// Everything that can be refused without reading an input.
+void check(const DenoiseOptions& o, const std::vector<FrameFiles>& frames) {
   validate(params_of(o));
   if (o.sample_map.empty() && o.sampling_given)
     throw Error(ExitCode::Usage, "--budget, --target, --export and the like need --sample-map");
   if (!o.sample_map.empty()) check_sample_map_options(o.sampling);
-  require_readable(o.input);
-  require_outputs({o.input, o.sampling.cost}, {{"-o", o.output},
-                                               {"--error-map", o.error_map},
-                                               {"--order-map", o.order_map},
-                                               {"--sample-map", o.sample_map},
-                                               {"--report", o.report}});
+  std::vector<std::string> outputs;
+  for (const FrameFiles& files : frames) {
+    require_different_files({files.input, o.sampling.cost}, {{"-o", files.output},
+                                                             {"--error-map", files.error_map},
+                                                             {"--order-map", files.order_map},
+                                                             {"--sample-map", files.sample_map},
+                                                             {"--report", files.report}});
+    outputs.insert(outputs.end(), {files.output, files.error_map, files.order_map, files.sample_map, files.report});
+  }
+  if (!is_sequence(o) && o.wait <= 0) require_readable(frames.front().input);
+  require_writable(outputs);
+}
+
+void work(const std::vector<FrameFiles>& frames, const DenoiseOptions& o, RunProgress& progress) {
+  if (o.dry_run) return show_plan(frames, o);
+  if (is_sequence(o)) return run_sequence(frames, o, progress);
+  progress.frame(frames.front().label(), 0, 1);
+  const auto loaded = fetch_frame(frames.front(), o, [&] { return progress.cancelled(); });
+  if (loaded)
+    denoise_frame(frames.front(), *loaded, o, progress);
+  else if (!o.quiet)
+    std::fputs(fmt::format("{}: finished already\n", o.output).c_str(), stdout);
+  progress.frame("", 1, 1);
 }
 
 void run(DenoiseOptions o) {
   for (const std::string& role : o.roles) o.read.map.push_back(parse_mapping(role));
-  check(o);
-  set_thread_limit(o.threads);
-  set_codec_threads(o.threads > 0 ? o.threads : processors());
   o.read.limits.max_bytes = params_of(o).max_memory;
   const auto progress = make_progress(o.quiet ? ProgressStyle::None : o.progress);
-  const FrameFiles files{o.input, o.output, o.error_map, o.order_map, o.sample_map, o.report};
-  denoise_frame(files, load_frame(o.input, o), o, *progress);
+  try {
+    const std::vector<FrameFiles> frames = list_frames(o);
+    check(o, frames);
+    set_thread_limit(o.threads);
+    set_codec_threads(o.threads > 0 ? o.threads : processors());
+    work(frames, o, *progress);
+  } catch (const std::exception& error) {
+    progress->failed(error.what());
+    throw;
+  }
 }
 
 }  // namespace
@@ -48,6 +78,7 @@ void setup_denoise(CLI::App& app, Command& chosen) {
       "  polyrecon denoise -i render.exr -o clean.exr --error-map error.exr --report report.json\n"
       "  polyrecon denoise -i render.exr -o clean.exr --sample-map samples.exr --budget 32\n"
       "  polyrecon denoise -i render.exr -o clean.exr --aov 'Diffuse Direct' --aov 'Glossy Direct' --quality best\n"
+      "  polyrecon denoise -i shot.####.exr -o clean/shot.####.exr --frames 1-10,20-40x2 --skip-existing\n"
       "  polyrecon denoise -i render.exr -o clean.exr --map albedo=ViewLayer.MyAlbedo --progress json");
   sub->callback([sub, o, &chosen] {
     o->sampling_given = any_sample_map_option(*sub);

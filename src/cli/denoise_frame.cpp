@@ -4,11 +4,11 @@
 
 #include <chrono>
 #include <cstdio>
-#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <vector>
 
+#include "cli/finished.h"
 #include "cli/map_files.h"
 #include "cli/report_output.h"
 #include "core/error.h"
@@ -51,10 +51,6 @@ std::vector<Replacement> replacements(const ReadResult& in, const Result& result
   return list;
 }
 
-std::string identity(const FrameSource& source) {
-  return fmt::format("{}, {} bytes", std::filesystem::path(source.path).filename().string(), source.files[0].bytes);
-}
-
 /// Samples per pixel: of the file's layer, else the number that the command line or the metadata tell; empty where
 /// unknown.
 Image sample_counts(const DenoiseOptions& o, const ReadResult& in) {
@@ -71,7 +67,7 @@ std::vector<std::string> write_all(const FrameFiles& files, const DenoiseOptions
   const std::string picture = picture_layer(in);
   WriteOptions options;
   options.keep_noisy = o.keep_noisy;
-  options.provenance = {settings_text(o), identity(in.source), result.report.estimated_relative_mse};
+  options.provenance = {settings_text(o), input_identity(files, in.source), result.report.estimated_relative_mse};
   std::vector<std::string> notes =
       write_result(in.source, replacements(in, result, picture, o.alpha), files.output, options);
   const MapWindows windows = windows_of(in, picture);

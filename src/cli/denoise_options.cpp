@@ -15,8 +15,10 @@ const std::map<std::string, VarianceKind> variance_kinds{{"auto", VarianceKind::
                                                          {"mean", VarianceKind::Mean},
                                                          {"sample", VarianceKind::Sample},
                                                          {"moment", VarianceKind::SecondMoment}};
-const std::map<std::string, ProgressStyle> progress_styles{
-    {"none", ProgressStyle::None}, {"bar", ProgressStyle::Bar}, {"json", ProgressStyle::Json}};
+const std::map<std::string, ProgressStyle> progress_styles{{"none", ProgressStyle::None},
+                                                           {"bar", ProgressStyle::Bar},
+                                                           {"json", ProgressStyle::Json},
+                                                           {"openjd", ProgressStyle::OpenJd}};
 
 template <typename Value>
 std::string key_of(const std::map<std::string, Value>& names, Value value) {
@@ -26,8 +28,14 @@ std::string key_of(const std::map<std::string, Value>& names, Value value) {
 }
 
 void add_files(CLI::App& app, DenoiseOptions& o) {
-  app.add_option("-i,--input", o.input, "Noisy render: EXR, or what OpenImageIO reads")->required()->type_name("FILE");
-  app.add_option("-o,--output", o.output, "Clean EXR to write")->required()->type_name("FILE");
+  app.add_option("-i,--input", o.inputs,
+                 "Noisy render: EXR, or what OpenImageIO reads; a sequence as shot.####.exr or "
+                 "shot.%04d.exr, or a list of files")
+      ->required()
+      ->type_name("FILE");
+  app.add_option("-o,--output", o.output, "Clean EXR to write; #### or %04d for a sequence, a folder for a list")
+      ->required()
+      ->type_name("FILE");
   app.add_option("--error-map", o.error_map, "Write how wrong each pixel may still be")->type_name("FILE");
   app.add_option("--order-map", o.order_map, "Write the polynomial order chosen for each pixel")->type_name("FILE");
   app.add_option("--sample-map", o.sample_map, "Write where the next samples should go")->type_name("FILE");
@@ -79,9 +87,27 @@ void add_run_options(CLI::App& app, DenoiseOptions& o) {
       ->type_name("SIZE")
       ->group(group);
   add_choice(app, "--progress", o.progress, progress_styles,
-             "none, bar or json (one object per line), on standard error; a bar on a terminal")
+             "none, bar, json (one object per line) or openjd (Open Job Description), on standard error; a bar on a "
+             "terminal")
       ->group(group);
   app.add_flag("-q,--quiet", o.quiet, "Print nothing but errors")->group(group);
+}
+
+void add_sequence_options(CLI::App& app, DenoiseOptions& o) {
+  const std::string group = "Sequences";
+  app.add_option("--frames", o.frames, "Frames of a sequence, 1-10,20-40x2; all that are there without it")
+      ->check([](const std::string& text) { return std::string(text.empty() ? "is empty" : ""); }, "", "")
+      ->type_name("RANGES")
+      ->group(group);
+  app.add_flag("--skip-existing", o.skip_existing,
+               "Leave frames alone whose result was made from the same input, settings and version")
+      ->group(group);
+  app.add_option("--wait", o.wait, "Seconds to wait for an input that is still being written, from its last change")
+      ->check(CLI::NonNegativeNumber)
+      ->type_name("SECONDS")
+      ->group(group);
+  app.add_flag("--strict", o.strict, "Stop at the first frame that is missing or broken")->group(group);
+  app.add_flag("--dry-run", o.dry_run, "Say what would be done, and check that the inputs are there")->group(group);
 }
 
 }  // namespace
@@ -103,12 +129,16 @@ std::string settings_text(const DenoiseOptions& o) {
   if (!o.read.view_layer.empty()) text += " --view-layer '" + o.read.view_layer + "'";
   for (const std::string& aov : o.read.aovs) text += " --aov '" + aov + "'";
   for (const std::string& role : o.roles) text += " --map '" + role + "'";
+  if (o.read.samples > 0) text += fmt::format(" --samples {:g}", o.read.samples);
+  if (o.keep_noisy) text += " --keep-noisy";
+  if (!o.sample_map.empty()) text += sample_map_settings(o.sampling);
   return text;
 }
 
 void add_denoise_options(CLI::App& app, DenoiseOptions& options) {
   add_files(app, options);
   add_input_options(app, options);
+  add_sequence_options(app, options);
   add_method_options(app, options);
   add_sample_map_options(app, options.sampling);
   add_run_options(app, options);

@@ -15,7 +15,9 @@ namespace polyrecon {
 
 /// What the command line of `denoise` says.
 struct DenoiseOptions {
-  std::string input, output, error_map, order_map, sample_map, report;
+  std::vector<std::string> inputs;
+  std::string output, error_map, order_map, sample_map, report;
+  std::string frames;              ///< "1-10,20-40x2"; empty: every frame that is there.
   std::vector<std::string> roles;  ///< "role=LAYER"
   ReadOptions read;
   Quality quality = Quality::Standard;
@@ -25,6 +27,8 @@ struct DenoiseOptions {
   SampleMapOptions sampling;
   bool sampling_given = false;
   bool keep_noisy = false, quiet = false;
+  bool strict = false, skip_existing = false, dry_run = false;
+  double wait = 0;  ///< Seconds that an input may stay unreadable without change.
   int threads = 0;
   ProgressStyle progress = ProgressStyle::Auto;
 };

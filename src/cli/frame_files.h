@@ -1,12 +1,28 @@
 #pragma once
 
+#include <optional>
 #include <string>
+#include <vector>
 
 namespace polyrecon {
 
 /// The files of one frame that `denoise` reads and writes; a path is empty where it was not asked for.
 struct FrameFiles {
   std::string input, output, error_map, order_map, sample_map, report;
+  std::optional<int> frame;  ///< Its number in a sequence.
+
+  /// How messages name it: "frame 12", or the input's path.
+  std::string label() const;
 };
+
+struct DenoiseOptions;
+
+/// The work that the options ask for, in order: one file, the frames of a pattern, or a list of files whose results go
+/// into a folder or into a pattern that takes the number in each file's name. Throws Error{Usage} where names
+/// contradict each other, Error{Missing} where a pattern without --frames matches no file.
+std::vector<FrameFiles> list_frames(const DenoiseOptions& options);
+
+/// Whether the options ask for more than one plain file: then a frame that fails does not end the work.
+bool is_sequence(const DenoiseOptions& options);
 
 }  // namespace polyrecon

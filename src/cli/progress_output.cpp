@@ -20,7 +20,7 @@ volatile std::sig_atomic_t arrived = 0;
 extern "C" void remember_signal(int signal) { arrived = signal; }
 
 /// Cancels on a signal, says nothing.
-class SignalProgress : public Progress {
+class SignalProgress : public RunProgress {
  public:
   bool cancelled() const override { return arrived != 0; }
 };
@@ -69,6 +69,11 @@ class ShownProgress : public SignalProgress {
   Clock::time_point begun_, shown_;
 };
 
+void put(const std::string& line) {
+  std::fputs((line + "\n").c_str(), stderr);
+  std::fflush(stderr);
+}
+
 class BarProgress final : public ShownProgress {
  protected:
   void show(Event event) override {
@@ -81,6 +86,11 @@ class BarProgress final : public ShownProgress {
         fmt::format("{:<24} [{:<30}] {:3.0f} %  {:6.1f} s", stage(), std::string(filled, '#'), 100 * part, seconds());
     std::fputs(fmt::format("{}{}{}", terminal_ ? "\r" : "", line, finished ? "\n" : "").c_str(), stderr);
     std::fflush(stderr);
+  }
+
+ public:
+  void frame(const std::string& label, std::size_t done, std::size_t total) override {
+    if (total > 1 && done < total) put(fmt::format("{} ({} of {})", label, done + 1, total));
   }
 
  private:
@@ -96,12 +106,54 @@ class JsonProgress final : public ShownProgress {
                                       {"done", event == Event::End ? total() : done()},
                                       {"total", total()},
                                       {"seconds", seconds()}};
-    std::fputs((line.dump() + "\n").c_str(), stderr);
-    std::fflush(stderr);
+    put(line.dump());
+  }
+
+ public:
+  void frame(const std::string& label, std::size_t done, std::size_t total) override {
+    if (total < 2) return;
+    put(nlohmann::ordered_json{{"event", "frame"}, {"frame", label}, {"done", done}, {"total", total}}.dump());
   }
 };
 
+/// https://github.com/OpenJobDescription/openjd-specifications/wiki/How-Jobs-Are-Run: lines that the session reads from
+/// the task's output. The percentage is of the whole run and never falls.
+class OpenJdProgress final : public ShownProgress {
+ protected:
+  void show(Event event) override {
+    // The fits take nearly all of a frame's time; what comes before and after them is worth a few percent.
+    constexpr double fits_begin = 0.05, fits_end = 0.95;
+    if (stage() != "polynomials" || !total()) return;
+    const double part = event == Event::End ? 1.0 : static_cast<double>(done()) / static_cast<double>(total());
+    tell((static_cast<double>(frames_done_) + fits_begin + part * (fits_end - fits_begin)) /
+         static_cast<double>(frames_));
+  }
+
+ public:
+  void frame(const std::string& label, std::size_t done, std::size_t total) override {
+    frames_done_ = done;
+    frames_ = total;
+    if (done < total) put(fmt::format("openjd_status: {} ({} of {})", label, done + 1, total));
+    tell(static_cast<double>(done) / static_cast<double>(total));
+  }
+  void failed(const std::string& message) override { put("openjd_fail: " + message); }
+
+ private:
+  void tell(double part) {
+    if (100 * part < told_ + 0.1) return;
+    told_ = 100 * part;
+    put(fmt::format("openjd_progress: {:.1f}", told_));
+  }
+
+  std::size_t frames_done_ = 0, frames_ = 1;
+  double told_ = -1;
+};
+
 }  // namespace
+
+void RunProgress::frame(const std::string& /*label*/, std::size_t /*done*/, std::size_t /*total*/) {}
+
+void RunProgress::failed(const std::string& /*message*/) {}
 
 void catch_signals() {
   struct sigaction action = {};
@@ -113,13 +165,15 @@ void catch_signals() {
 
 int caught_signal() { return arrived; }
 
-std::unique_ptr<Progress> make_progress(ProgressStyle style) {
+std::unique_ptr<RunProgress> make_progress(ProgressStyle style) {
   if (style == ProgressStyle::Auto) style = ::isatty(STDERR_FILENO) != 0 ? ProgressStyle::Bar : ProgressStyle::None;
   switch (style) {
     case ProgressStyle::Bar:
       return std::make_unique<BarProgress>();
     case ProgressStyle::Json:
       return std::make_unique<JsonProgress>();
+    case ProgressStyle::OpenJd:
+      return std::make_unique<OpenJdProgress>();
     case ProgressStyle::Auto:
     case ProgressStyle::None:
       break;

@@ -81,6 +81,16 @@ bool any_sample_map_option(const CLI::App& app) {
   return std::any_of(names.begin(), names.end(), [&](const char* name) { return app.count(name) > 0; });
 }
 
+std::string sample_map_settings(const SampleMapOptions& o) {
+  std::string text = o.params.target > 0 ? fmt::format(" --target {:g}", o.params.target)
+                                         : fmt::format(" --budget {:g}", o.params.budget);
+  text += fmt::format(" --max-samples {:g} --frame {} --seed {}", o.params.max_samples, o.frame, o.seed);
+  if (!o.cost.empty()) text += " --cost '" + o.cost + "'";
+  for (const auto& [name, format] : formats)
+    if (format == o.format) text += " --export " + name;
+  return text;
+}
+
 void check_sample_map_options(const SampleMapOptions& options) {
   if (options.params.budget <= 0 && options.params.target <= 0)
     throw Error(ExitCode::Usage, "a sample map needs --budget or --target");

@@ -24,6 +24,9 @@ void add_sample_map_options(CLI::App& app, SampleMapOptions& options);
 /// Whether any option that only makes sense with a sample map was given.
 bool any_sample_map_option(const CLI::App& app);
 
+/// The options that the map depends on, in the words of the command line, each after a blank.
+std::string sample_map_settings(const SampleMapOptions& options);
+
 /// Throws Error{Usage} for values that contradict each other and Error{Missing} where the cost file is not there.
 void check_sample_map_options(const SampleMapOptions& options);
 

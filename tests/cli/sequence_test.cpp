@@ -1,0 +1,232 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "cli/program.h"
+
+namespace polyrecon::testing {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::UnorderedElementsAre;
+
+constexpr int width = 24, height = 16;
+
+class Sequence : public ProgramTest {
+ protected:
+  Sequence() { std::filesystem::create_directory(path("out")); }
+
+  void render(const std::string& name) const { write_render(path(name), width, height); }
+
+  void render_frames(int first, int last) const {
+    for (int n = first; n <= last; ++n) render("shot.000" + std::to_string(n) + ".exr");
+  }
+
+  Outcome denoise(const std::vector<std::string>& more) const {
+    std::vector<std::string> arguments{"denoise",           "-i",        "shot.####.exr", "-o",
+                                       "out/shot.####.exr", "--quality", "draft"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run(arguments);
+  }
+
+  std::vector<std::string> results() const {
+    std::vector<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(folder_ / "out"))
+      names.push_back(entry.path().filename().string());
+    return names;
+  }
+
+  auto time_of(const std::string& name) const { return std::filesystem::last_write_time(folder_ / name); }
+};
+
+/// The frames that a dry run names, in order.
+std::vector<std::string> planned(const std::string& out) {
+  std::vector<std::string> inputs;
+  for (std::size_t at = 0; (at = out.find(": shot.", at)) != std::string::npos; ++at)
+    inputs.push_back(out.substr(at + 7, out.find(".exr", at) - at - 7));
+  return inputs;
+}
+
+void cut_last_byte(const std::string& path) {
+  std::filesystem::resize_file(path, std::filesystem::file_size(path) - 1);
+}
+
+TEST_F(Sequence, RangesAndPatternsNameFrames) {
+  for (const int n : {1, 2, 3, 4, 5, 10, 12345})
+    render(n == 12345 ? "shot.12345.exr" : n == 10 ? "shot.0010.exr" : "shot.000" + std::to_string(n) + ".exr");
+  using Names = std::vector<std::string>;
+  EXPECT_EQ(planned(denoise({"--dry-run"}).out), (Names{"0001", "0002", "0003", "0004", "0005", "0010", "12345"}));
+  EXPECT_EQ(planned(denoise({"--dry-run", "--frames", "1-5x2,4,2-4"}).out),
+            (Names{"0001", "0003", "0005", "0004", "0002"}));
+  EXPECT_EQ(planned(denoise({"--dry-run", "--frames", "10"}).out), (Names{"0010"}));
+  EXPECT_EQ(planned(run({"denoise", "-i", "shot.%04d.exr", "-o", "out/%d.exr", "--dry-run", "--frames", "3"}).out),
+            (Names{"0003"}));
+  EXPECT_TRUE(results().empty());
+}
+
+TEST_F(Sequence, RefusesRangesAndNamesThatMakeNoSense) {
+  render_frames(1, 2);
+  for (const char* frames : {"", "1-", "a", "3-1", "1-3x0", "1,,2", "1-99999999", "99999999999"})
+    EXPECT_EQ(denoise({"--frames", frames}).code, 2) << frames;
+  EXPECT_EQ(run({"denoise", "-i", "shot.####.exr", "-o", "out/one.exr"}).code, 2);
+  EXPECT_EQ(run({"denoise", "-i", "shot.####.exr", "-o", "shot.####.exr"}).code, 2);
+  EXPECT_EQ(run({"denoise", "-i", "shot.####.exr", "-o", "out/####.exr", "--error-map", "out/####.exr"}).code, 2);
+  EXPECT_EQ(run({"denoise", "-i", "shot.0001.exr", "-o", "out/a.exr", "--frames", "1"}).code, 2);
+  EXPECT_EQ(run({"denoise", "-i", "shot.0001.exr", "shot.0002.exr", "-o", "out/a.exr"}).code, 2);
+  EXPECT_EQ(run({"denoise", "-i", "none.####.exr", "-o", "out/####.exr"}).code, 4);
+  EXPECT_TRUE(results().empty());
+}
+
+TEST_F(Sequence, AFileWhoseNameLooksLikeAPatternIsAFile) {
+  render("a#b.exr");
+  ASSERT_EQ(run({"denoise", "-i", "a#b.exr", "-o", "out/c#.exr", "--quality", "draft"}).code, 0);
+  EXPECT_THAT(results(), UnorderedElementsAre("c#.exr"));
+}
+
+TEST_F(Sequence, FramesThatFailAreListedAndTheOthersGoOn) {
+  render_frames(1, 5);
+  std::filesystem::remove(path("shot.0002.exr"));
+  cut_last_byte(path("shot.0004.exr"));
+  const Outcome o = denoise({"--frames", "1-5", "--error-map", "out/error.####.exr", "--report", "out/####.json"});
+  EXPECT_EQ(o.code, 4) << o.err;
+  EXPECT_THAT(results(),
+              UnorderedElementsAre("shot.0001.exr", "shot.0003.exr", "shot.0005.exr", "error.0001.exr",
+                                   "error.0003.exr", "error.0005.exr", "0001.json", "0003.json", "0005.json"));
+  EXPECT_THAT(o.err, HasSubstr("frame 2: shot.0002.exr: no such file\n"));
+  EXPECT_THAT(o.err, HasSubstr("frame 4: shot.0004.exr"));
+  EXPECT_THAT(o.err, HasSubstr("2 of 5 frames are missing or broken: 2,4\n"));
+  EXPECT_THAT(o.out, HasSubstr("3 written, 0 skipped, 2 failed"));
+}
+
+TEST_F(Sequence, StrictStopsAtTheFirstFrameThatFails) {
+  render_frames(1, 3);
+  cut_last_byte(path("shot.0002.exr"));
+  const Outcome o = denoise({"--strict"});
+  EXPECT_EQ(o.code, 3);
+  EXPECT_TRUE(is_one_error_line(o.err)) << o.err;
+  EXPECT_THAT(results(), UnorderedElementsAre("shot.0001.exr"));
+}
+
+TEST_F(Sequence, AListOfFilesGoesIntoAFolder) {
+  render("a.exr");
+  render("b7.exr");
+  ASSERT_EQ(run({"denoise", "-i", "a.exr", "b7.exr", "-o", "out", "--quality", "draft", "-q"}).code, 0);
+  EXPECT_THAT(results(), UnorderedElementsAre("a.exr", "b7.exr"));
+  EXPECT_EQ(run({"denoise", "-i", "a.exr", "b7.exr", "-o", "out/####.exr", "--dry-run"}).code, 2);  // a has no number
+}
+
+TEST_F(Sequence, SkipsOnlyWhatIsTheSameAndWhole) {
+  render_frames(1, 3);
+  ASSERT_EQ(denoise({}).code, 0);
+  const auto first = time_of("out/shot.0001.exr");
+  const auto skipped = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"--skip-existing"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Outcome o = denoise(arguments);
+    EXPECT_EQ(o.code, 0) << o.err;
+    const std::size_t at = o.out.rfind(" skipped");
+    return at == std::string::npos ? -1 : o.out[at - 1] - '0';
+  };
+  EXPECT_EQ(skipped({}), 3);
+  EXPECT_EQ(time_of("out/shot.0001.exr"), first);
+  // A copy of the input under the same name is the same input.
+  std::filesystem::copy_file(path("shot.0001.exr"), path("copy.exr"));
+  std::filesystem::rename(path("copy.exr"), path("shot.0001.exr"));
+  EXPECT_EQ(skipped({}), 3);
+  // Another render of the same length, a damaged result, a missing map, other settings.
+  std::filesystem::copy_file(path("shot.0003.exr"), path("shot.0002.exr"),
+                             std::filesystem::copy_options::overwrite_existing);
+  {
+    std::fstream file(path("shot.0002.exr"), std::ios::in | std::ios::out | std::ios::binary);
+    file.seekp(-1, std::ios::end);
+    file.put('\x55');
+  }
+  if (run({"inspect", "shot.0002.exr"}).code == 0) {
+    EXPECT_EQ(skipped({}), 2);
+  }
+  ASSERT_EQ(denoise({"--skip-existing", "--frames", "1,3"}).code, 0);
+  cut_last_byte(path("out/shot.0003.exr"));
+  EXPECT_EQ(skipped({"--frames", "1,3"}), 1);
+  EXPECT_EQ(skipped({"--frames", "1,3"}), 2);
+  EXPECT_EQ(skipped({"--frames", "1,3", "--error-map", "out/error.####.exr"}), 0);
+  EXPECT_EQ(skipped({"--frames", "1,3", "--error-map", "out/error.####.exr"}), 2);
+  EXPECT_EQ(skipped({"--frames", "1,3", "--order", "0"}), 0);
+}
+
+TEST_F(Sequence, WaitsForARenderThatIsStillBeingWritten) {
+  render("whole.exr");
+  const std::string bytes = read_text(path("whole.exr"));
+  std::ofstream(path("shot.0001.exr"), std::ios::binary) << bytes.substr(0, bytes.size() / 2);
+  const pid_t child = start({"denoise", "-i", "shot.####.exr", "-o", "out/shot.####.exr", "--frames", "1-2",
+                             "--quality", "draft", "--wait", "30"});
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  std::ofstream(path("shot.0001.exr"), std::ios::binary) << bytes;
+  std::ofstream(path("new.exr"), std::ios::binary) << bytes;
+  std::filesystem::rename(path("new.exr"), path("shot.0002.exr"));
+  EXPECT_EQ(finish(child).code, 0) << read_text(path("stderr"));
+  EXPECT_THAT(results(), UnorderedElementsAre("shot.0001.exr", "shot.0002.exr"));
+}
+
+TEST_F(Sequence, GivesUpWaitingAndStopsOnASignal) {
+  EXPECT_EQ(run({"denoise", "-i", "shot.0001.exr", "-o", "out/a.exr", "--wait", "0.2"}).code, 4);
+  const pid_t child = start({"denoise", "-i", "shot.0001.exr", "-o", "out/a.exr", "--wait", "60"});
+  std::this_thread::sleep_for(std::chrono::milliseconds(500));
+  ::kill(child, SIGTERM);
+  EXPECT_EQ(finish(child).code, 143);
+}
+
+TEST_F(Sequence, AFrameWithoutAPassIsWorkedAndCounted) {
+  render_frames(1, 2);
+  write_exr(path("shot.0003.exr"), width + 2, height,
+            {"ViewLayer.Combined.R", "ViewLayer.Combined.G", "ViewLayer.Combined.B"},
+            [](int x, int y, int c) { return 0.5 + 0.01 * ((7 * x + 3 * y + c) % 5); });
+  const Outcome o = denoise({"--report", "out/####.json"});
+  EXPECT_EQ(o.code, 0) << o.err;
+  EXPECT_THAT(o.out, HasSubstr("1 without all that the first frame has: 3"));
+  const auto report = nlohmann::json::parse(read_text(path("out/0003.json")));
+  EXPECT_THAT(report["notes"].dump(), HasSubstr("no albedo, which frame 1 has"));
+  EXPECT_THAT(report["notes"].dump(), HasSubstr("26 x 16 pixels, frame 1 has 24 x 16"));
+}
+
+TEST_F(Sequence, TheFrameNumberGoesIntoTheSampleMap) {
+  render("shot.0007.exr");
+  ASSERT_EQ(denoise({"--sample-map", "out/samples.####.exr", "--budget", "4"}).code, 0);
+  EXPECT_EQ(load(path("out/samples.0007.exr")).spec().get_float_attribute("frame"), 7);
+}
+
+TEST_F(Sequence, OpenJdProgressRisesTo100AndTellsFailure) {
+  render_frames(1, 3);
+  const Outcome o = denoise({"--progress", "openjd"});
+  ASSERT_EQ(o.code, 0);
+  EXPECT_THAT(o.err, HasSubstr("openjd_status: frame 2 (2 of 3)\n"));
+  double last = -1;
+  std::istringstream lines(o.err);
+  const std::string key = "openjd_progress: ";
+  for (std::string line; std::getline(lines, line);) {
+    if (line.compare(0, key.size(), key) != 0) continue;
+    const double percent = std::stod(line.substr(key.size()));
+    EXPECT_GT(percent, last) << line;
+    last = percent;
+  }
+  EXPECT_EQ(last, 100);
+  const Outcome failed = denoise({"--progress", "openjd", "--frames", "8-9"});
+  EXPECT_EQ(failed.code, 4);
+  EXPECT_THAT(failed.err, HasSubstr("openjd_fail: 2 of 2 frames are missing or broken: 8,9\n"));
+}
+
+TEST_F(Sequence, JsonProgressNamesTheFrame) {
+  render_frames(1, 2);
+  const Outcome o = denoise({"--progress", "json"});
+  ASSERT_EQ(o.code, 0);
+  EXPECT_THAT(o.err, HasSubstr(R"({"event":"frame","frame":"frame 2","done":1,"total":2})"));
+}
+
+}  // namespace
+}  // namespace polyrecon::testing
