@@ -1,0 +1,1 @@
+"""POV-Ray behind the loop's interface, and its passes: see README.md."""

@@ -1,0 +1,176 @@
+"""One POV-Ray scene as it is rendered here: the user's file and options, never changed, and POV-Ray on it.
+
+Every render has a wrapper of ours as its input, which #includes the user's scene and adds lines of its own at the end. What
+POV-Ray cannot take on a command line or in a string (quotes, a leading '-', spaces) never reaches it: it runs in the
+scene's folder and is given names in a work folder of ours, where the scene is a symbolic link.
+"""
+
+import dataclasses
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import tempfile
+
+import numpy as np
+import OpenImageIO as oiio
+
+from ..loop import process
+from ..loop.errors import DriverError, ExitCode
+
+# POV-Ray's own configuration (/etc/povray/3.7/povray.conf) lets it write there.
+WORK_PARENT = pathlib.Path("/tmp")
+# Last word on the command line, after the user's: linear EXR, one ray a (sub)pixel, no window, no waiting, no old file.
+FORCED = ("+FE", "-A", "-D", "-P", "-C", "Fatal_Console=on", "Render_Console=on")
+
+
+@dataclasses.dataclass(frozen=True)
+class Crop:
+    """Pixels x0 <= x < x1, y0 <= y < y1 of the frame, row 0 at the top."""
+
+    x0: int
+    y0: int
+    x1: int
+    y1: int
+
+    @property
+    def width(self):
+        return self.x1 - self.x0
+
+    @property
+    def height(self):
+        return self.y1 - self.y0
+
+
+class Scene:
+    """A scene file with the options that it is to be rendered with. Use it in a `with`: the work folder goes with it."""
+
+    def __init__(self, path, options=(), povray="povray", timeout=None):
+        self.path = pathlib.Path(path).absolute()
+        if not self.path.is_file():
+            raise DriverError(ExitCode.MISSING, f"{path}: no such scene")
+        self.program = shutil.which(povray)
+        if not self.program:
+            raise DriverError(ExitCode.MISSING, f"{povray}: no such program (Debian: apt-get install povray; --povray)")
+        self.timeout = timeout
+        self.messages = ""  # what POV-Ray wrote in its last run
+        self.work = pathlib.Path(tempfile.mkdtemp(prefix="polyrecon-povray-", dir=WORK_PARENT))
+        try:
+            (self.work / "scene.pov").symlink_to(self.path)
+            self.options = self._safe_options(options)
+            self.width, self.height = self._resolution()
+        except BaseException:
+            self.close()
+            raise
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.close()
+
+    def close(self):
+        shutil.rmtree(self.work, ignore_errors=True)
+
+    def render(self, scale=1, tail="", options=(), crop=None, size=None):
+        """Renders scale x scale subpixels of each pixel; `tail` is scene text to add, `size` another (width, height) than
+        the frame's. Returns radiance (linear), float32 (scale * height, scale * width, 3), of the crop or the whole."""
+        width, height = size or (self.width, self.height)
+        crop = crop or Crop(0, 0, width, height)
+        target = self.work / "render.exr"
+        words = [f"+W{scale * width}", f"+H{scale * height}"]
+        words += [f"+SC{scale * crop.x0 + 1}", f"+EC{scale * crop.x1}", f"+SR{scale * crop.y0 + 1}", f"+ER{scale * crop.y1}"]
+        self._run([*options, *words], tail, target)
+        try:
+            return _read_rgb(self._only_output(target), scale, crop)
+        finally:
+            for file in self.work.glob("render*.exr"):
+                file.unlink()
+
+    def debug(self, tail, marker, options=()):
+        """What `tail` printed by #debug on lines that begin with `marker`, from a render of one pixel; [] where POV-Ray
+        did not take the tail."""
+        try:
+            self.render(1, tail, ("Debug_Console=on", *options), Crop(0, 0, 1, 1))
+        except DriverError:
+            return []
+        return [line[len(marker) :].strip() for line in self.messages.splitlines() if line.startswith(marker)]
+
+    def _run(self, options, tail, target):
+        wrapper = self.work / "wrapper.pov"
+        wrapper.write_text(f'#include "{self.work}/scene.pov"\n{tail}\n')
+        words = [self.program, f"+L{self.work}/caller", *self.options, *FORCED, *options, f"+I{wrapper}", f"+O{target}"]
+        try:
+            code, output, errors = process.run(words, timeout=self.timeout, cwd=self.path.parent)
+        except subprocess.TimeoutExpired:
+            raise DriverError(ExitCode.RENDERER, f"{self.path}: POV-Ray took over {self.timeout:g} s (--timeout)") from None
+        self.messages = output + errors
+        if code != 0:
+            raise DriverError(ExitCode.RENDERER, f"{self.path}: POV-Ray ended with code {code}: {self._why()}")
+
+    def _only_output(self, target):
+        """The one file that was written: POV-Ray puts the frame's number into the name where there is an animation."""
+        files = sorted(self.work.glob("render*.exr"))
+        if not files:
+            raise DriverError(ExitCode.RENDERER, f"{self.path}: POV-Ray wrote no image")
+        if len(files) > 1:
+            raise DriverError(
+                ExitCode.USAGE, f"{self.path}: the options ask for {len(files)} frames: choose one by +SFn +EFn"
+            )
+        return files[0]
+
+    def _why(self):
+        """The first error that POV-Ray printed, on one line; it wraps its messages at 80 columns."""
+        unwrapped = re.sub(r"\n +(?=\S)", " ", self.messages)
+        lines = [line.strip() for line in unwrapped.splitlines() if re.search(r"\b(?:[Ee]rror|[Pp]roblem|[Ff]ailed)\b", line)]
+        text = " ".join(lines[:2]) or (self.messages.strip().splitlines() or ["it said nothing"])[-1]
+        return text.replace(f"{self.work}/scene.pov", self.path.name)
+
+    def _safe_options(self, options):
+        """The user's options with paths that hold from the scene's folder: libraries (+L), .ini files and the caller's
+        folder become links in the work folder."""
+        (self.work / "caller").symlink_to(pathlib.Path.cwd())
+        return [self._safe_option(word, number) for number, word in enumerate(options)]
+
+    def _safe_option(self, word, number):
+        library = re.match(r"(?i)([+-]L|Library_Path=)(.+)$", word, re.DOTALL)
+        if library:
+            return library[1] + self._link(library[2].strip('"'), f"library{number}")
+        ini = re.match(r"(?is)([^+\-=][^=]*?)(\[[^\]]*\])?$", word)  # name.ini or name.ini[section]
+        if ini and pathlib.Path(ini[1]).is_file():
+            return self._link(ini[1], f"options{number}.ini") + (ini[2] or "")
+        if not word.startswith(("+", "-")) and "=" not in word:
+            raise DriverError(ExitCode.MISSING, f"{word}: no such .ini file (what follows -- are POV-Ray's options)")
+        return word
+
+    def _link(self, path, name):
+        (self.work / name).symlink_to(pathlib.Path(path).absolute())
+        return str(self.work / name)
+
+    def _resolution(self):
+        """Width and height that the options ask for, as POV-Ray itself understood them. The render of one pixel also
+        tells whether the scene can be parsed at all."""
+        target = self.work / "render.exr"
+        self._run(["+SC1", "+EC1", "+SR1", "+ER1"], "", target)
+        found = re.search(r"Image resolution\W+(\d+) by (\d+)", self.messages)
+        if not found:
+            raise DriverError(ExitCode.RENDERER, f"{self.path}: POV-Ray did not say the image's size")
+        self._only_output(target).unlink()
+        return int(found[1]), int(found[2])
+
+
+def _read_rgb(path, scale, crop):
+    """The crop out of a file of the whole frame: POV-Ray leaves the rest empty."""
+    file = oiio.ImageInput.open(os.fspath(path))
+    if not file:
+        raise DriverError(ExitCode.RENDERER, f"{path}: {oiio.geterror()}")
+    try:
+        y0, y1 = scale * crop.y0, scale * crop.y1
+        pixels = file.read_scanlines(0, 0, y0, y1, 0, 0, 3, "float")
+        if pixels is None:
+            raise DriverError(ExitCode.RENDERER, f"{path}: {file.geterror()}")
+        pixels = np.asarray(pixels, np.float32).reshape(y1 - y0, file.spec().width, 3)
+        return np.ascontiguousarray(pixels[:, scale * crop.x0 : scale * crop.x1])
+    finally:
+        file.close()

@@ -1,0 +1,44 @@
+"""From subpixels to pixels: mean, variance of the mean, two halves.
+
+POV-Ray's noise repeats from run to run, so the samples of a pixel are its subpixels: a grid of n x n in one render.
+"""
+
+import dataclasses
+
+import numpy as np
+
+
+@dataclasses.dataclass
+class Estimate:
+    """Pixels from n x n subpixels, arrays (height, width, channels)."""
+
+    mean: np.ndarray
+    variance: np.ndarray  # of the mean; zero where there is one subpixel
+    a: np.ndarray  # mean of the white fields of the chessboard of subpixels
+    b: np.ndarray  # of the black ones
+
+
+def blocks(image, n):
+    """(n * height, n * width, channels) -> (height, width, n, n, channels), a view."""
+    height, width, channels = image.shape[0] // n, image.shape[1] // n, image.shape[2]
+    return image.reshape(height, n, width, n, channels).swapaxes(1, 2)
+
+
+def estimate(image, n):
+    """Means, variances and halves of the pixels of an image of subpixels.
+
+    The grid is a stratified sample: what changes evenly across the pixel adds next to nothing to the error of the mean,
+    but all of its variance to the plain sample variance. So the variance of a subpixel is taken from differences of
+    neighbours, E (y_i - y_j)^2 / 2, as in collapsed strata (Cochran, Sampling Techniques, 5A.12): too high still by what
+    changes from one subpixel to the next, hence on the safe side. The halves are the two colours of a chessboard: each
+    covers the whole pixel, and no row or column is in one half more than in the other.
+    """
+    subpixels = np.asarray(blocks(image, n), np.float64)
+    mean = subpixels.mean((2, 3))
+    if n == 1:
+        return Estimate(mean, np.zeros_like(mean), mean, mean)
+    vertical = ((subpixels[:, :, 1:] - subpixels[:, :, :-1]) ** 2).mean((2, 3))
+    horizontal = ((subpixels[:, :, :, 1:] - subpixels[:, :, :, :-1]) ** 2).mean((2, 3))
+    white = np.add.outer(np.arange(n), np.arange(n)) % 2 == 0
+    halves = (subpixels[:, :, field].mean(2) for field in (white, ~white))
+    return Estimate(mean, (vertical + horizontal) / (4 * n * n), *halves)
