@@ -12,6 +12,7 @@ import re
 import shutil
 import subprocess
 import tempfile
+import time
 
 import numpy as np
 import OpenImageIO as oiio
@@ -21,8 +22,8 @@ from ..loop.errors import DriverError, ExitCode
 
 # POV-Ray's own configuration (/etc/povray/3.7/povray.conf) lets it write there.
 WORK_PARENT = pathlib.Path("/tmp")
-# Last word on the command line, after the user's: linear EXR, one ray a (sub)pixel, no window, no waiting, no old file.
-FORCED = ("+FE", "-A", "-D", "-P", "-C", "Fatal_Console=on", "Render_Console=on")
+# Last word on the command line, after the user's: linear EXR without alpha, one ray a (sub)pixel, no window, no waiting, no old file.
+FORCED = ("+FE", "-UA", "-A", "-D", "-P", "-C", "Fatal_Console=on", "Render_Console=on")
 
 
 @dataclasses.dataclass(frozen=True)
@@ -59,7 +60,9 @@ class Scene:
         try:
             (self.work / "scene.pov").symlink_to(self.path)
             self.options = self._safe_options(options)
+            begun = time.monotonic()
             self.width, self.height = self._resolution()
+            self.parse_seconds = time.monotonic() - begun  # what every render costs before its first pixel
         except BaseException:
             self.close()
             raise

@@ -17,6 +17,13 @@ class Estimate:
     a: np.ndarray  # mean of the white fields of the chessboard of subpixels
     b: np.ndarray  # of the black ones
 
+    def crop(self, rows, columns):
+        return Estimate(*(planes[rows, columns] for planes in (self.mean, self.variance, self.a, self.b)))
+
+    def paste(self, rows, columns, part):
+        for name in ("mean", "variance", "a", "b"):
+            getattr(self, name)[rows, columns] = getattr(part, name)
+
 
 def blocks(image, n):
     """(n * height, n * width, channels) -> (height, width, n, n, channels), a view."""
@@ -42,3 +49,11 @@ def estimate(image, n):
     white = np.add.outer(np.arange(n), np.arange(n)) % 2 == 0
     halves = (subpixels[:, :, field].mean(2) for field in (white, ~white))
     return Estimate(mean, (vertical + horizontal) / (4 * n * n), *halves)
+
+
+def join(first, count, second, more):
+    """Two estimates of the same pixels from disjoint samples, `count` and `more` of each pixel, as one."""
+    total = count + more
+    mean, a, b = ((count * getattr(first, k) + more * getattr(second, k)) / total for k in ("mean", "a", "b"))
+    variance = (count**2 * first.variance + more**2 * second.variance) / total**2
+    return Estimate(mean, variance, a, b)
