@@ -22,6 +22,7 @@ from typing import Optional
 
 import numpy as np
 
+from .scene import Shot
 from .subpixels import Estimate, estimate
 
 PROBE_SIDE = 64  # pixels of the longer side of the small renders that decide which passes are worth having
@@ -30,6 +31,7 @@ HALF_STEP = 2.0**-11  # and rounds to these, relative
 AXES = ("x", "y", "z")
 LAMP = 2.0  # brightness of our lamps: above the scene's, but focal blur takes more rays where the image is brighter
 SURFACES = ("+Q3",)
+PLAIN = ("", SURFACES)
 FLAT = "global_settings { max_trace_level 1 }"  # no reflections, nothing seen through glass
 
 SEEN_SHARE = 0.02  # a pass that answers in fewer pixels than this is not worth its renders
@@ -74,26 +76,29 @@ class Plan:
 
 
 class Lamps:
-    """Renders of one scene at one size, in POV-Ray's working gamma. Renders that several passes share are made once."""
+    """Renders of one scene at one size, in POV-Ray's working gamma. """
 
     def __init__(self, scene, gamma=1.0, scale=1, size=None, crop=None):
         self._scene, self._where, self.gamma = scene, dict(scale=scale, size=size, crop=crop), gamma
-        self._kept = {}
+        self._kept = {}  # the plain render, which several passes share
 
-    def image(self, tail="", options=SURFACES):
-        """(height, width, 3), working gamma."""
-        if (tail, options) not in self._kept:
-            linear = self._scene.render(tail=tail, options=options, **self._where)
-            self._kept = {key: kept for key, kept in self._kept.items() if not key[0]}  # only plain renders are shared
-            self._kept[tail, options] = np.maximum(linear, 0) ** (1 / self.gamma) if self.gamma != 1 else linear
-        return self._kept[tail, options]
+    def images(self, *wanted):
+        """Images (height, width, 3) in the working gamma; each is wanted as (scene text, options)."""
+        missing = [key for key in dict.fromkeys(wanted) if key not in self._kept]
+        shots = [Shot(tail=tail, options=options, **self._where) for tail, options in missing]
+        found = dict(self._kept)
+        for key, linear in zip(missing, self._scene.render_all(shots)):
+            found[key] = np.maximum(linear, 0) ** (1 / self.gamma) if self.gamma != 1 else linear
+            if key == PLAIN:
+                self._kept[key] = found[key]
+        return [found[key] for key in wanted]
 
-    def sum(self, tail="", options=SURFACES):
-        """Sum over the channels, (height, width), float64."""
-        return self.image(tail, options).sum(-1, dtype=np.float64)
+    def sums(self, *wanted):
+        """The same summed over the channels, (height, width), float64."""
+        return [image.sum(-1, dtype=np.float64) for image in self.images(*wanted)]
 
     def axes(self, doubled=None, brightness=LAMP):
-        """All six lamps; of the pair along the axis `doubled` the positive one twice, the negative one not."""
+        """What to ask of images(): all six lamps on; of the pair along the axis `doubled` the positive one twice, the negative one not."""
         lamps = []
         for axis in AXES:
             for sign in (1, -1):
@@ -102,17 +107,17 @@ class Lamps:
                     f"light_source {{ {sign}e4*{axis} color rgb {times * brightness:.6g}"
                     " parallel point_at <0,0,0> shadowless }"
                 )
-        return "\n".join(lamps)
+        return "\n".join(lamps), SURFACES
 
 
 def albedo(lamps):
     """(height, width, 3), linear: the factor of the beauty that it is."""
-    return lamps.image(options=("+Q1",)) ** lamps.gamma
+    return lamps.images(("", ("+Q1",)))[0] ** lamps.gamma
 
 
 def visibility(lamps):
     """(height, width, 1), 0 to 1: 1 where nothing is lit."""
-    open_light, light = lamps.sum(), lamps.sum(options=("+Q5",))
+    open_light, light = lamps.sums(PLAIN, ("", ("+Q5",)))
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.where(open_light > 1e-4, np.clip(light / open_light, 0, 1), 1.0)[..., None]
 
@@ -120,8 +125,8 @@ def visibility(lamps):
 def normal(lamps):
     """Unit normals (height, width, 3), 0 where no diffuse surface answers; and how far, relative, the lamps together are
     from what these normals say (the diffuse model's residual)."""
-    together, plain = lamps.sum(lamps.axes()), lamps.sum()
-    vector = np.stack([lamps.sum(lamps.axes(axis)) - together for axis in AXES], -1)
+    plain, together, *doubled = lamps.sums(PLAIN, lamps.axes(), *(lamps.axes(axis) for axis in AXES))
+    vector = np.stack(doubled, -1) - together[..., None]
     length = np.linalg.norm(vector, axis=-1)
     seen = length > 8 * HALF_STEP * together
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -136,14 +141,14 @@ def depth(lamps, trick):
         if trick.place is None:
             white = (HALF_MAX * 0.9) ** (1 / lamps.gamma)
             fog = f"{FLAT} fog {{ fog_type 1 distance {trick.d:.9g} color rgb {white:.6g} }}"
-            share = lamps.image(fog, ("+Q9",)).min(-1).astype(np.float64) / white
+            share = lamps.images((fog, ("+Q9",)))[0].min(-1).astype(np.float64) / white
             seen = share < 1 - 8 * HALF_STEP
             z = -trick.d * np.log1p(-share)
         else:
             lamp = f"light_source {{ {trick.place} color rgb {6 * LAMP:.6g} shadowless %s }}"
-            plain = lamps.sum()
-            steady = lamps.sum(lamp % "")
-            fading = lamps.sum(lamp % f"fade_distance {trick.d:.9g} fade_power 2") - plain
+            fade = f"fade_distance {trick.d:.9g} fade_power 2"
+            plain, steady, fading = lamps.sums(PLAIN, (lamp % "", SURFACES), (lamp % fade, SURFACES))
+            fading = fading - plain
             seen = (steady - plain > 8 * HALF_STEP * steady) & (fading > 8 * HALF_STEP * plain)
             z = trick.d * np.sqrt(np.maximum(2 * (steady - plain) / fading - 1, 0))
     seen &= np.isfinite(z)
@@ -189,8 +194,7 @@ def render_features(scene, plan, scale, crop=None):
 def _working_gamma(lamps):
     """The exponent between POV-Ray's working values and linear ones (`assumed_gamma`, which a scene can set anywhere),
     measured: lamps four times as bright must add four times as much."""
-    plain = lamps.image()
-    dim, bright = (lamps.image(lamps.axes(brightness=brightness)) for brightness in (LAMP, 4 * LAMP))
+    plain, dim, bright = lamps.images(PLAIN, lamps.axes(), lamps.axes(brightness=4 * LAMP))
     lit = dim > 2 * np.maximum(plain, 0.05)
     if lit.mean() < SEEN_SHARE:
         return 1.0

@@ -80,8 +80,9 @@ def render_beauty(scene, grid, say=lambda text: None):
 
 
 def noise(beauty):
-    """Which pixels lie in blocks whose median standard error is above NOISE_LIMIT, or beside such a block."""
-    error = np.sqrt(beauty.variance.mean(-1)) / (beauty.mean.mean(-1) + 0.1)
+    """Which pixels lie in blocks whose median standard error is above NOISE_LIMIT, or beside such a block. The error is
+    that of the halves' difference: what changes evenly across a pixel is the same in both."""
+    error = np.sqrt(((beauty.a - beauty.b) ** 2).mean(-1)) / 2 / (beauty.mean.mean(-1) + 0.1)
     height, width = error.shape
     up = [-(-side // NOISE_BLOCK) for side in error.shape]
     padded = np.pad(error, [(0, n * NOISE_BLOCK - side) for n, side in zip(up, error.shape)], mode="edge")

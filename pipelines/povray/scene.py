@@ -13,6 +13,7 @@ import shutil
 import subprocess
 import tempfile
 import time
+from typing import Optional
 
 import numpy as np
 import OpenImageIO as oiio
@@ -24,6 +25,10 @@ from ..loop.errors import DriverError, ExitCode
 WORK_PARENT = pathlib.Path("/tmp")
 # Last word on the command line, after the user's: linear EXR without alpha, one ray a (sub)pixel, no window, no waiting, no old file.
 FORCED = ("+FE", "-UA", "-A", "-D", "-P", "-C", "Fatal_Console=on", "Render_Console=on")
+
+
+AT_ONCE = 4  # POV-Rays side by side,
+SMALL = 1 << 22  # unless their images have more subpixels than this (memory)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -42,6 +47,46 @@ class Crop:
     @property
     def height(self):
         return self.y1 - self.y0
+
+
+@dataclasses.dataclass(frozen=True)
+class Shot:
+    """One render: scale x scale subpixels of each pixel of the crop, or of the whole frame; `tail` is scene text to add,
+    `size` another (width, height) than the frame's."""
+
+    scale: int = 1
+    tail: str = ""
+    options: tuple = ()
+    crop: Optional[Crop] = None
+    size: Optional[tuple] = None
+
+    def words(self, scene):
+        width, height = self.size or (scene.width, scene.height)
+        words = [f"+W{self.scale * width}", f"+H{self.scale * height}"]
+        if self.crop:
+            words += [f"+SC{self.scale * self.crop.x0 + 1}", f"+EC{self.scale * self.crop.x1}"]
+            words += [f"+SR{self.scale * self.crop.y0 + 1}", f"+ER{self.scale * self.crop.y1}"]
+        return words
+
+    def subpixels(self, scene):
+        width, height = self.size or (scene.width, scene.height)
+        return self.scale**2 * width * height
+
+
+@dataclasses.dataclass(frozen=True)
+class _AsAsked(Shot):
+    """The first pixel, at the size that the user's options say."""
+
+    crop: Crop = Crop(0, 0, 1, 1)
+
+    def words(self, scene):
+        return ["+SC1", "+EC1", "+SR1", "+ER1"]
+
+
+@dataclasses.dataclass
+class _Run:
+    folder: pathlib.Path
+    child: subprocess.Popen
 
 
 class Scene:
@@ -77,44 +122,74 @@ class Scene:
         shutil.rmtree(self.work, ignore_errors=True)
 
     def render(self, scale=1, tail="", options=(), crop=None, size=None):
-        """Renders scale x scale subpixels of each pixel; `tail` is scene text to add, `size` another (width, height) than
-        the frame's. Returns radiance (linear), float32 (scale * height, scale * width, 3), of the crop or the whole."""
-        width, height = size or (self.width, self.height)
-        crop = crop or Crop(0, 0, width, height)
-        target = self.work / "render.exr"
-        words = [f"+W{scale * width}", f"+H{scale * height}"]
-        words += [f"+SC{scale * crop.x0 + 1}", f"+EC{scale * crop.x1}", f"+SR{scale * crop.y0 + 1}", f"+ER{scale * crop.y1}"]
-        self._run([*options, *words], tail, target)
-        try:
-            return _read_rgb(self._only_output(target), scale, crop)
-        finally:
-            for file in self.work.glob("render*.exr"):
-                file.unlink()
+        """One render: see Shot."""
+        return self.render_all([Shot(scale, tail, options, crop, size)])[0]
 
-    def debug(self, tail, marker, options=()):
+    def render_all(self, shots):
+        """Images of several shots: radiance (linear), float32 (scale * height, scale * width, 3), of the crop or the whole.
+        A POV-Ray that starts and ends sleeps over half a second, so some run side by side."""
+        at_once = AT_ONCE if sum(shot.subpixels(self) for shot in shots) < len(shots) * SMALL else 1
+        images, running = [None] * len(shots), {}
+        try:
+            for number, shot in enumerate(shots):
+                if len(running) == at_once:
+                    first = next(iter(running))
+                    images[first] = self._image(shots[first], running.pop(first))
+                running[number] = self._start(number, shot)
+            while running:
+                first = next(iter(running))
+                images[first] = self._image(shots[first], running.pop(first))
+        finally:
+            for run in running.values():
+                process.stop(run.child)
+        return images
+
+    def debug(self, tail, marker):
         """What `tail` printed by #debug on lines that begin with `marker`, from a render of one pixel; [] where POV-Ray
         did not take the tail."""
         try:
-            self.render(1, tail, ("Debug_Console=on", *options), Crop(0, 0, 1, 1))
+            self.render(1, tail, ("Debug_Console=on",), Crop(0, 0, 1, 1))
         except DriverError:
             return []
         return [line[len(marker) :].strip() for line in self.messages.splitlines() if line.startswith(marker)]
 
-    def _run(self, options, tail, target):
-        wrapper = self.work / "wrapper.pov"
-        wrapper.write_text(f'#include "{self.work}/scene.pov"\n{tail}\n')
-        words = [self.program, f"+L{self.work}/caller", *self.options, *FORCED, *options, f"+I{wrapper}", f"+O{target}"]
+    def _start(self, number, shot):
+        """Starts POV-Ray on a shot, in a folder of its own: it names its output as it likes, and its messages go to a
+        file."""
+        folder = self.work / f"run{number}"
+        shutil.rmtree(folder, ignore_errors=True)
+        folder.mkdir()
+        wrapper = folder / "wrapper.pov"
+        wrapper.write_text(f'#include "{self.work}/scene.pov"\n{shot.tail}\n')
+        words = [self.program, f"+L{self.work}/caller", *self.options, *FORCED, *shot.options, *shot.words(self)]
+        words += [f"+I{wrapper}", f"+O{folder}/render.exr"]
+        with (folder / "messages").open("wb") as messages:
+            return _Run(folder, process.start(words, cwd=self.path.parent, stdout=messages, stderr=messages))
+
+    def _image(self, shot, run):
+        """Waits for a run and reads its image."""
         try:
-            code, output, errors = process.run(words, timeout=self.timeout, cwd=self.path.parent)
+            code = run.child.wait(self.timeout)
         except subprocess.TimeoutExpired:
-            raise DriverError(ExitCode.RENDERER, f"{self.path}: POV-Ray took over {self.timeout:g} s (--timeout)") from None
-        self.messages = output + errors
+            process.stop(run.child)
+            text = f"{self.path}: POV-Ray took over {self.timeout:g} s (--timeout)"
+            raise DriverError(ExitCode.RENDERER, text) from None
+        except BaseException:
+            process.stop(run.child)
+            raise
+        self.messages = (run.folder / "messages").read_text(errors="replace")
         if code != 0:
             raise DriverError(ExitCode.RENDERER, f"{self.path}: POV-Ray ended with code {code}: {self._why()}")
+        image = _read_rgb(self._only_output(run.folder), shot.scale, shot.crop or self._whole(shot))
+        shutil.rmtree(run.folder)
+        return image
 
-    def _only_output(self, target):
+    def _whole(self, shot):
+        return Crop(0, 0, *(shot.size or (self.width, self.height)))
+
+    def _only_output(self, folder):
         """The one file that was written: POV-Ray puts the frame's number into the name where there is an animation."""
-        files = sorted(self.work.glob("render*.exr"))
+        files = sorted(folder.glob("render*.exr"))
         if not files:
             raise DriverError(ExitCode.RENDERER, f"{self.path}: POV-Ray wrote no image")
         if len(files) > 1:
@@ -152,14 +227,13 @@ class Scene:
         return str(self.work / name)
 
     def _resolution(self):
-        """Width and height that the options ask for, as POV-Ray itself understood them. The render of one pixel also
+        """Width and height that the options ask for, as POV-Ray itself understood them. This render of one pixel also
         tells whether the scene can be parsed at all."""
-        target = self.work / "render.exr"
-        self._run(["+SC1", "+EC1", "+SR1", "+ER1"], "", target)
+        run = self._start(0, _AsAsked())
+        self._image(_AsAsked(), run)
         found = re.search(r"Image resolution\W+(\d+) by (\d+)", self.messages)
         if not found:
             raise DriverError(ExitCode.RENDERER, f"{self.path}: POV-Ray did not say the image's size")
-        self._only_output(target).unlink()
         return int(found[1]), int(found[2])
 
 

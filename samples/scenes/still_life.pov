@@ -10,7 +10,7 @@ camera {
   up y
   angle 36
   look_at <0, 0.75, 0>
-  aperture 0.22
+  aperture 0.3
   focal_point <-0.35, 0.8, -0.6>
   blur_samples 3
 }
@@ -18,7 +18,7 @@ camera {
 // One lamp, large: soft shadows. Few samples, at random places.
 light_source {
   <5, 7, -4> color rgb 1.15
-  area_light x * 3.5, z * 3.5, 3, 3
+  area_light x * 3.5, z * 3.5, 2, 2
   jitter orient circular
 }
 sky_sphere { pigment { gradient y color_map { [0 rgb <0.42, 0.38, 0.34>] [1 rgb <0.10, 0.14, 0.22>] } } }

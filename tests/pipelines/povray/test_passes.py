@@ -1,0 +1,93 @@
+import numpy as np
+
+from pipelines.povray import passes
+from pipelines.povray.scene import Scene
+
+from .scenes import BALL, CAMERA, HEAD, LAMP, SIZE, InFolder
+
+Y, X = ((0.5 - (np.arange(n) + 0.5) / n) for n in (48, 64))
+RAY = np.stack(np.broadcast_arrays(-X[None, :] * 4 / 3, Y[:, None], 1.5), -1)
+RAY /= np.linalg.norm(RAY, axis=-1, keepdims=True)
+
+
+def truth(origin=(0, 0, -5), rays=RAY):
+    """Distance and normal of the ball and the wall of scenes.BALL."""
+    b = (rays * np.array(origin)).sum(-1)
+    inside = b * b - (np.dot(origin, origin) - 1)
+    ball = np.where(inside > 0, -b - np.sqrt(np.maximum(inside, 0)), np.inf)
+    wall = (2 - origin[2]) / rays[..., 2]
+    distance = np.minimum(ball, wall)
+    on_ball = ball < wall
+    normals = np.where(on_ball[..., None], np.array(origin) + distance[..., None] * rays, [0, 0, -1.0])
+    return distance, normals, on_ball
+
+
+class Passes(InFolder):
+    def look(self, text, camera=None, **options):
+        with Scene(self.scene(text), SIZE, **options) as scene:
+            plan = passes.make_plan(scene, camera)
+            return plan, {name: found.mean for name, found in passes.render_features(scene, plan, 1).items()}
+
+    def decided(self, plan, effect):
+        return next(d for d in plan.decisions if d.effect == effect)
+
+    def check_ball(self, found):
+        distance, normals, on_ball = truth()
+        # The silhouette's pixels may fall to either side.
+        inner = np.abs(np.gradient(distance)[0]) + np.abs(np.gradient(distance)[1]) < 0.3
+        self.assertGreater(inner.mean(), 0.8)
+        np.testing.assert_allclose(found["Denoising Normal"][inner], normals[inner], atol=0.01)
+        np.testing.assert_allclose(found["Denoising Depth"][..., 0][inner], distance[inner], rtol=0.01)
+        return on_ball & inner
+
+    def test_ball_before_a_wall(self):
+        # Whatever gamma POV-Ray works in, the passes are the same.
+        for gamma in (1.0, 2.2):
+            plan, found = self.look(HEAD % gamma + CAMERA + BALL + LAMP)
+            self.assertAlmostEqual(plan.gamma, gamma, delta=0.02)
+            self.assertIsNotNone(plan.depth.place)
+            on_ball = self.check_ball(found)
+            colour = np.array([0.8, 0.4, 0.2]) ** gamma
+            np.testing.assert_allclose(found["Denoising Albedo"][on_ball], np.broadcast_to(colour, (on_ball.sum(), 3)), rtol=0.01)
+            # The ball's own shadow: lit by ambient light alone, though it faces the lamp.
+            shadow = found["Visibility"][..., 0] < 0.9
+            self.assertGreater((shadow & ~truth()[2]).sum(), 20)
+            self.assertGreater(found["Visibility"][on_ball].min(), 0.99)
+
+    def test_fog_where_the_camera_is_not_found(self):
+        plan, found = self.look(HEAD % 1 + "#declare C = " + CAMERA + "camera { C }" + BALL + LAMP)
+        self.assertIsNone(plan.depth.place)
+        self.check_ball(found)
+
+    def test_fog_for_mirrors_and_glass(self):
+        glass = BALL.replace("<0.8,0.4,0.2>", "rgbf 1").replace("rgb rgbf", "rgbf").replace("diffuse 0.6", "diffuse 0 reflection 0.9", 1)
+        plan, found = self.look(HEAD % 1 + CAMERA + glass + LAMP)
+        self.assertIn("fog sees them", self.decided(plan, "depth by lamp").reason)
+        distance, _, on_ball = truth()
+        self.assertLess(np.abs(found["Denoising Depth"][..., 0] / distance - 1)[on_ball].mean(), 0.02)
+
+    def test_a_wrong_place_is_noticed(self):
+        plan, found = self.look(HEAD % 1 + CAMERA + BALL + LAMP, camera="3,1,-4")
+        self.assertIn("not at <3,1,-4>", self.decided(plan, "depth by lamp").reason)
+        self.check_ball(found)
+
+    def test_a_camera_inside_of_a_solid_has_no_fog(self):
+        room = BALL.replace("plane { -z, -2 hollow", "box { -10, <10,10,2>")
+        named = CAMERA.replace("camera", "#declare C = camera") + "camera { C }"
+        plan, found = self.look(HEAD % 1 + named + room + LAMP)
+        self.assertFalse(self.decided(plan, "depth").run)
+        self.assertNotIn("Denoising Depth", found)
+        plan, found = self.look(HEAD % 1 + named + room + LAMP, camera="0,0,-5")
+        self.assertIn("not checked", self.decided(plan, "depth").reason)
+        self.check_ball(found)
+
+    def test_only_what_the_scene_calls_for(self):
+        # One colour that shines by itself: nothing to learn from albedo, lamps or shadows.
+        glow = "plane { -z, -2 hollow pigment { rgb 0.5 } finish { ambient 1 diffuse 0 } }\n"
+        plan, found = self.look(HEAD % 1 + CAMERA + glow + LAMP)
+        self.assertEqual(set(found), {"Denoising Depth"})
+        # Light groups keep our lamps out: no normals, no lamp for the depth.
+        plan, found = self.look(HEAD % 1 + CAMERA + "light_group {" + LAMP + BALL + "global_lights off }\n")
+        self.assertFalse(self.decided(plan, "normal").run)
+        self.assertIsNone(plan.depth.place)
+        self.assertIn("Visibility", found)

@@ -1,0 +1,91 @@
+import unittest
+
+import numpy as np
+
+from pipelines.povray.regions import cover
+from pipelines.povray.subpixels import estimate, join
+
+
+class Subpixels(unittest.TestCase):
+    def test_white_noise_has_the_variance_that_is_told(self):
+        # 4800 pixels x 3 channels: the mean of squared errors is known to 2 sqrt(2 / 14400) = 2.4 % at 2 sigma, the mean of
+        # the told variances to less; 6 % is 5 sigma.
+        for n in (2, 3, 4, 8):
+            found = estimate(np.random.default_rng(n).normal(size=(60 * n, 80 * n, 3)), n)
+            self.assertAlmostEqual(found.variance.mean() / (found.mean**2).mean(), 1, delta=0.06)
+            self.assertAlmostEqual(found.variance.mean() * n * n, 1, delta=0.06)
+
+    def test_halves_are_independent_and_make_up_the_mean(self):
+        image = np.random.default_rng(1).normal(size=(240, 320, 3))
+        found = estimate(image, 4)
+        np.testing.assert_allclose((found.a + found.b) / 2, found.mean, atol=1e-12)
+        # Independent: the correlation of 14400 pairs is below 5 / sqrt(14400).
+        self.assertLess(abs(np.corrcoef(found.a.ravel(), found.b.ravel())[0, 1]), 0.042)
+
+    def test_halves_cover_the_pixel_alike(self):
+        # Whatever is linear across the pixel has the same mean in both halves.
+        y, x = np.mgrid[:48, :64] / 4
+        for n in (2, 4, 8):
+            found = estimate((3 * x - 2 * y)[..., None], n)
+            np.testing.assert_allclose(found.a, found.b, atol=1e-12)
+
+    def test_an_even_slope_counts_less_than_in_a_random_sample(self):
+        image = (np.arange(64) / 8.0)[None, :, None].repeat(64, 0)  # 1 per pixel of 8 x 8
+        found, blocks = estimate(image, 8), image.reshape(8, 8, 8, 8).swapaxes(1, 2).reshape(64, 64)
+        self.assertLess(found.variance.max(), blocks.var(1, ddof=1).mean() / 64 / 10)
+
+    def test_joined_samples_weigh_by_their_number(self):
+        image = np.random.default_rng(2).normal(size=(8 * 20, 8 * 20, 1))
+        small, large = estimate(image[::4, ::4], 2), estimate(image, 8)
+        both = join(small, 4, large, 64)
+        np.testing.assert_allclose(both.mean, (4 * small.mean + 64 * large.mean) / 68)
+        np.testing.assert_allclose(both.variance, (16 * small.variance + 4096 * large.variance) / 68**2)
+
+    def test_one_subpixel_has_no_variance(self):
+        found = estimate(np.ones((3, 5, 3)), 1)
+        self.assertEqual((found.mean.shape, found.variance.max()), ((3, 5, 3), 0))
+
+
+class Cover(unittest.TestCase):
+    def covered(self, grid, overhead):
+        crops = cover(grid, overhead)
+        times = np.zeros(grid.shape, int)
+        given = np.zeros(grid.shape, int)
+        for crop, n in crops:
+            times[crop.y0 : crop.y1, crop.x0 : crop.x1] += 1
+            given[crop.y0 : crop.y1, crop.x0 : crop.x1] = n
+        self.assertLessEqual(times.max(initial=0), 1)
+        self.assertTrue((given >= grid).all())
+        return crops, given
+
+    def test_nothing_everything_one_pixel(self):
+        grid = np.zeros((9, 16), int)
+        self.assertEqual(cover(grid, 10), [])
+        grid[3, 5] = 4
+        crops, given = self.covered(grid, 10)
+        self.assertEqual((len(crops), given.sum()), (1, 4))
+        crops, _ = self.covered(np.full((9, 16), 2), 10)
+        self.assertEqual([(c.width, c.height, n) for c, n in crops], [(16, 9, 2)])
+
+    def test_cuts_where_it_pays(self):
+        grid = np.zeros((40, 60), int)
+        grid[:5, :5] = 4
+        grid[30:, 50:] = 2
+        grid[32, 52] = 8
+        crops, given = self.covered(grid, 20)
+        self.assertLess((given**2).sum(), 25 * 16 + 100 * 4 + 12 * 64)
+        self.assertGreater(len(crops), 2)
+        self.assertEqual(len(self.covered(grid, 1e9)[0]), 1)
+
+    def test_random_maps_are_covered(self):
+        random = np.random.default_rng(3)
+        for _ in range(30):
+            grid = random.integers(0, 4, size=random.integers(1, 30, 2)) * (random.random() < 0.9)
+            grid = grid * (random.random(grid.shape) < random.random())
+            crops, given = self.covered(grid, 5)
+            whole = grid.size * int(grid.max()) ** 2 + 5
+            self.assertLessEqual((given**2).sum() + 5 * len(crops), whole)
+
+
+if __name__ == "__main__":
+    unittest.main()
