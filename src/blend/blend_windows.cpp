@@ -87,7 +87,7 @@ POLYRECON_SIMD void energies(const Real* weight, const Real* guess, const Real* 
   *noise_energy = noise_sum;
 }
 
-std::array<ColumnStatistics, 3> column_statistics(const Scratch& s, bool first_stage) {
+std::array<ColumnStatistics, 3> column_statistics(Scratch& s, bool first_stage) {
   std::array<ColumnStatistics, 3> channels;
   double *z[3], *guess_z[3], *variance[3];
   for (std::size_t c = 0; c < 3; ++c) {
@@ -95,7 +95,7 @@ std::array<ColumnStatistics, 3> column_statistics(const Scratch& s, bool first_s
     guess_z[c] = channels[c].guess.data();
     variance[c] = channels[c].variance.data();
   }
-  project_beauty(s.factor, s.window, s.weight.data(), z, guess_z, variance);
+  project_beauty(s.factor, s.window, s.weight.data(), !first_stage, z, guess_z, variance);
   for (std::size_t c = 0; c < 3; ++c) {
     const std::size_t offset = c * static_cast<std::size_t>(s.window.stride);
     const Real* guess = (first_stage ? s.window.response : s.window.guess).data() + offset;
@@ -166,13 +166,14 @@ struct Blending {
 /// Fits the gathered window under one bandwidth and adds it to the sums.
 void fit_window(Blending& b, Scratch& s, Real bandwidth, BlendSums& sums) {
   const bool first_stage = !b.source.guess;
+  const BasisLayout& layout = s.window.layout;
   const double weight_sum = kernel_weights(s.window, bandwidth, s.weight.data());
-  factorise(s.window, b.layout.columns(), s.weight.data(), s.factor);
+  factorise(s.window, layout.columns(), s.weight.data(), s.factor);
   const auto statistics = column_statistics(s, first_stage);
-  OrderChoice choice = select_order(statistics, b.layout, weight_sum, first_stage, b.params.order_tolerance);
-  evaluate(s, choice, b.layout.columns(choice.model), b.responses(), statistics);
+  OrderChoice choice = select_order(statistics, layout, weight_sum, first_stage, b.params.order_tolerance);
+  evaluate(s, choice, layout.columns(choice.model), b.responses(), statistics);
   ++b.counters.windows;
-  if (s.factor.rank < b.layout.columns()) ++b.counters.rank_deficient;
+  if (s.factor.rank < layout.columns()) ++b.counters.rank_deficient;
   if (!all_finite(s, b.responses())) {
     // A window whose fit overflowed says nothing; its pixels are left to the other windows and, last, to the input.
     ++b.counters.dropped;

@@ -30,7 +30,7 @@ void residual_variance(const Image& y, const Image& features, int cx, int cy, Wi
       weight[j] = 1;
     }
   gather({&y, &y, &features, nullptr}, layout, cx, cy, fit_radius, window);
-  factorise(window, layout.columns(), weight.data(), factor);
+  factorise(window, window.layout.columns(), weight.data(), factor);
   const int freedom = window.count - factor.rank;
   std::array<double, BasisLayout::max_columns> z{};
   for (int c = 0; c < 3; ++c) {
@@ -38,7 +38,7 @@ void residual_variance(const Image& y, const Image& features, int cx, int cy, Wi
     project(factor, window, weight.data(), values, z.data());
     double residual = 0;
     for (int j = 0; j < window.count; ++j) residual += static_cast<double>(values[j]) * static_cast<double>(values[j]);
-    for (int a = 0; a < layout.columns(); ++a)
+    for (int a = 0; a < factor.columns; ++a)
       residual -= z[static_cast<std::size_t>(a)] * z[static_cast<std::size_t>(a)];
     out[c] = freedom > 0 ? static_cast<Real>(std::max(residual, 0.0) / freedom) : Real(-1);
   }

@@ -15,29 +15,44 @@ using Matrix = double[max_columns][max_columns];
 // has cost it too many digits to stay orthogonal ("twice is enough", Giraud and Langou 2002).
 constexpr double drop_below = 1e-8, repeat_below = 1e-4;
 
-/// gram[a][b] = sum_j x_a(j) x_b(j) for b <= a. Two by two columns, so that each load serves two products.
-POLYRECON_SIMD void gram_matrix(const Real* x, int columns, int rows, std::size_t stride, double (*gram)[max_columns]) {
-  for (int a = 0; a < columns; a += 2) {
-    const Real* xa0 = x + static_cast<std::size_t>(a) * stride;
-    const Real* xa1 = a + 1 < columns ? xa0 + stride : xa0;
-    for (int b = 0; b <= a; b += 2) {
-      const Real* xb0 = x + static_cast<std::size_t>(b) * stride;
-      const Real* xb1 = b + 1 < columns ? xb0 + stride : xb0;
-      double s00 = 0, s01 = 0, s10 = 0, s11 = 0;
-#pragma omp simd reduction(+ : s00, s01, s10, s11)
-      for (int j = 0; j < rows; ++j) {
-        const double p = xa0[j], q = xa1[j], u = xb0[j], v = xb1[j];
-        s00 += p * u;
-        s01 += p * v;
-        s10 += q * u;
-        s11 += q * v;
-      }
-      gram[a][b] = s00;
-      if (b + 1 < columns) gram[a][b + 1] = s01;
-      if (a + 1 < columns) {
-        gram[a + 1][b] = s10;
-        if (b + 1 < columns) gram[a + 1][b + 1] = s11;
-      }
+POLYRECON_SIMD void multiply(const Real* a, const Real* b, double* product, int rows) {
+  for (int j = 0; j < rows; ++j) product[j] = static_cast<double>(a[j]) * static_cast<double>(b[j]);
+}
+
+POLYRECON_SIMD void multiply_by(const Real* factor, double* y, int rows) {
+  for (int j = 0; j < rows; ++j) y[j] *= static_cast<double>(factor[j]);
+}
+
+/// Inner products of four columns with two: each load serves two or four products, the sums fit the registers.
+POLYRECON_SIMD void products_4x2(const double* const* x, const double* const* y, int rows, double* sums) {
+  const double *x0 = x[0], *x1 = x[1], *x2 = x[2], *x3 = x[3], *y0 = y[0], *y1 = y[1];
+  double s00 = 0, s01 = 0, s10 = 0, s11 = 0, s20 = 0, s21 = 0, s30 = 0, s31 = 0;
+#pragma omp simd reduction(+ : s00, s01, s10, s11, s20, s21, s30, s31)
+  for (int j = 0; j < rows; ++j) {
+    s00 += x0[j] * y0[j];
+    s01 += x0[j] * y1[j];
+    s10 += x1[j] * y0[j];
+    s11 += x1[j] * y1[j];
+    s20 += x2[j] * y0[j];
+    s21 += x2[j] * y1[j];
+    s30 += x3[j] * y0[j];
+    s31 += x3[j] * y1[j];
+  }
+  const double all[8] = {s00, s01, s10, s11, s20, s21, s30, s31};
+  std::copy(all, all + 8, sums);
+}
+
+/// gram[a][b] = sum_j x_a(j) x_b(j) for b <= a.
+void gram_matrix(const double* columns, int count, int rows, std::size_t stride, double (*gram)[max_columns]) {
+  const auto column = [&](int a) { return columns + static_cast<std::size_t>(std::min(a, count - 1)) * stride; };
+  for (int a = 0; a < count; a += 4) {
+    const double* x[4] = {column(a), column(a + 1), column(a + 2), column(a + 3)};
+    for (int b = 0; b < std::min(a + 4, count); b += 2) {
+      const double* y[2] = {column(b), column(b + 1)};
+      double sums[8];
+      products_4x2(x, y, rows, sums);
+      for (int k = 0; k < 8; ++k)
+        if (a + k / 2 < count && b + k % 2 < count) gram[a + k / 2][b + k % 2] = sums[k];
     }
   }
 }
@@ -54,12 +69,15 @@ POLYRECON_SIMD void subtract_scaled(Real* y, const Real* x, Real factor, int row
   for (int j = 0; j < rows; ++j) y[j] -= factor * x[j];
 }
 
-POLYRECON_SIMD void multiply(const Real* a, const Real* b, Real* product, int rows) {
-  for (int j = 0; j < rows; ++j) product[j] = a[j] * b[j];
-}
-
 POLYRECON_SIMD void square_roots(const Real* in, Real* out, int rows) {
   for (int j = 0; j < rows; ++j) out[j] = std::sqrt(in[j]);
+}
+
+/// y -= sum of four columns, each times its factor: y is loaded and stored once.
+POLYRECON_SIMD void subtract_four(Real* y, const Real* const* x, const Real* factor, int rows) {
+  const Real *x0 = x[0], *x1 = x[1], *x2 = x[2], *x3 = x[3];
+  const Real f0 = factor[0], f1 = factor[1], f2 = factor[2], f3 = factor[3];
+  for (int j = 0; j < rows; ++j) y[j] -= f0 * x0[j] + f1 * x1[j] + f2 * x2[j] + f3 * x3[j];
 }
 
 POLYRECON_SIMD void scale(Real* y, Real factor, int rows) {
@@ -94,10 +112,15 @@ void normalised_remainder(const Window& window, const Matrix& l, int a, double i
   const Real* xa = window.design.data() + static_cast<std::size_t>(a) * stride;
   Real* qa = factor.q.data() + static_cast<std::size_t>(a) * stride;
   std::copy(xa, xa + window.padded, qa);
-  for (int b = 0; b < a; ++b)
-    if (l[a][b] != 0)
-      subtract_scaled(qa, factor.q.data() + static_cast<std::size_t>(b) * stride, static_cast<Real>(l[a][b]),
-                      window.padded);
+  const auto q = [&](int b) { return factor.q.data() + static_cast<std::size_t>(b) * stride; };
+  int b = 0;
+  for (; b + 4 <= a; b += 4) {
+    const Real* const four[4] = {q(b), q(b + 1), q(b + 2), q(b + 3)};
+    const Real factors[4] = {static_cast<Real>(l[a][b]), static_cast<Real>(l[a][b + 1]), static_cast<Real>(l[a][b + 2]),
+                             static_cast<Real>(l[a][b + 3])};
+    subtract_four(qa, four, factors, window.padded);
+  }
+  for (; b < a; ++b) subtract_scaled(qa, q(b), static_cast<Real>(l[a][b]), window.padded);
   scale(qa, static_cast<Real>(inverse), window.padded);
 }
 
@@ -115,27 +138,39 @@ bool orthogonalise_again(NestedFactor& factor, const Window& window, const Real*
   return true;
 }
 
-/// Nine sums over one column in one pass: w q y, w q g and (w q)^2 v for three channels each.
-POLYRECON_SIMD void beauty_sums(const Real* w, const Real* q, const Real* y, const Real* g, const Real* v,
-                                std::size_t stride, int rows, double* sums) {
-  const Real *y1 = y + stride, *y2 = y1 + stride, *g1 = g + stride, *g2 = g1 + stride, *v1 = v + stride,
-             *v2 = v1 + stride;
-  double a0 = 0, a1 = 0, a2 = 0, b0 = 0, b1 = 0, b2 = 0, c0 = 0, c1 = 0, c2 = 0;
-#pragma omp simd reduction(+ : a0, a1, a2, b0, b1, b2, c0, c1, c2)
+/// sums[c][k] = sum_j q_k(j) y_c(j) for two columns q and three y, or of the squares of q.
+template <bool squared>
+POLYRECON_SIMD void sums_2x3(const Real* q0, const Real* q1, const double* y, std::size_t stride, int rows,
+                             double* sums) {
+  const double *y0 = y, *y1 = y + stride, *y2 = y1 + stride;
+  double s00 = 0, s01 = 0, s10 = 0, s11 = 0, s20 = 0, s21 = 0;
+#pragma omp simd reduction(+ : s00, s01, s10, s11, s20, s21)
   for (int j = 0; j < rows; ++j) {
-    const double wq = static_cast<double>(w[j]) * static_cast<double>(q[j]), square = wq * wq;
-    a0 += wq * static_cast<double>(y[j]);
-    a1 += wq * static_cast<double>(y1[j]);
-    a2 += wq * static_cast<double>(y2[j]);
-    b0 += wq * static_cast<double>(g[j]);
-    b1 += wq * static_cast<double>(g1[j]);
-    b2 += wq * static_cast<double>(g2[j]);
-    c0 += square * static_cast<double>(v[j]);
-    c1 += square * static_cast<double>(v1[j]);
-    c2 += square * static_cast<double>(v2[j]);
+    const double p0 = q0[j], p1 = q1[j], u = squared ? p0 * p0 : p0, v = squared ? p1 * p1 : p1;
+    s00 += u * y0[j];
+    s01 += v * y0[j];
+    s10 += u * y1[j];
+    s11 += v * y1[j];
+    s20 += u * y2[j];
+    s21 += v * y2[j];
   }
-  const double all[9] = {a0, a1, a2, b0, b1, b2, c0, c1, c2};
-  std::copy(all, all + 9, sums);
+  const double all[6] = {s00, s01, s10, s11, s20, s21};
+  std::copy(all, all + 6, sums);
+}
+
+/// out[c][a] = sum_j q_a(j)^power y_c(j) for all columns.
+template <bool squared>
+void column_sums(const NestedFactor& factor, const double* y, std::size_t stride, int rows, double* const* out) {
+  for (int a = 0; a < factor.columns; a += 2) {
+    const Real* const q = factor.q.data() + static_cast<std::size_t>(a) * stride;
+    const bool two = a + 1 < factor.columns;
+    double sums[6];
+    sums_2x3<squared>(q, two ? q + stride : q, y, stride, rows, sums);
+    for (int c = 0; c < 3; ++c) {
+      out[c][a] = sums[2 * c];
+      if (two) out[c][a + 1] = sums[2 * c + 1];
+    }
+  }
 }
 
 }  // namespace
@@ -146,14 +181,15 @@ void factorise(const Window& window, int columns, const Real* weight, NestedFact
   factor.rank = 0;
   factor.q.resize(stride * static_cast<std::size_t>(columns));
   factor.root.resize(stride);
+  factor.scratch.resize(stride * static_cast<std::size_t>(std::max(columns, 3)));
   square_roots(weight, factor.root.data(), window.padded);
-  // The Gram matrix of S X as it is rounded: that of (W X) and X, rounded apart, need not be positive definite.
+  // The Gram matrix of S X: that of (W X) and X, rounded apart, need not be positive definite.
   for (int a = 0; a < columns; ++a) {
     const std::size_t offset = static_cast<std::size_t>(a) * stride;
-    multiply(factor.root.data(), window.design.data() + offset, factor.q.data() + offset, window.padded);
+    multiply(factor.root.data(), window.design.data() + offset, factor.scratch.data() + offset, window.padded);
   }
   Matrix gram, l;
-  gram_matrix(factor.q.data(), columns, window.padded, stride, gram);
+  gram_matrix(factor.scratch.data(), columns, window.padded, stride, gram);
   for (int a = 0; a < columns; ++a) {
     const Remainder remainder = remainder_of(gram, l, a);
     Real* const qa = factor.q.data() + static_cast<std::size_t>(a) * stride;
@@ -180,20 +216,23 @@ void project(const NestedFactor& factor, const Window& window, const Real* weigh
   }
 }
 
-void project_beauty(const NestedFactor& factor, const Window& window, const Real* weight, double* const* z,
+void project_beauty(NestedFactor& factor, const Window& window, const Real* weight, bool with_guess, double* const* z,
                     double* const* guess_z, double* const* s2) {
   const auto stride = static_cast<std::size_t>(window.stride);
-  for (int a = 0; a < factor.columns; ++a) {
-    double sums[9] = {};
-    if (factor.kept[static_cast<std::size_t>(a)])
-      beauty_sums(weight, factor.q.data() + static_cast<std::size_t>(a) * stride, window.response.data(),
-                  window.guess.data(), window.noise_variance.data(), stride, window.padded, sums);
-    for (int c = 0; c < 3; ++c) {
-      z[c][a] = sums[c];
-      guess_z[c][a] = sums[3 + c];
-      s2[c][a] = sums[6 + c];
-    }
+  double* const scaled = factor.scratch.data();
+  const auto weigh = [&](const std::vector<Real>& channels) {
+    for (std::size_t c = 0; c < 3; ++c)
+      multiply(weight, channels.data() + c * stride, scaled + c * stride, window.padded);
+  };
+  weigh(window.response);
+  column_sums<false>(factor, scaled, stride, window.padded, z);
+  if (with_guess) {
+    weigh(window.guess);
+    column_sums<false>(factor, scaled, stride, window.padded, guess_z);
   }
+  weigh(window.noise_variance);
+  for (std::size_t c = 0; c < 3; ++c) multiply_by(weight, scaled + c * stride, window.padded);
+  column_sums<true>(factor, scaled, stride, window.padded, s2);
 }
 
 }  // namespace polyrecon

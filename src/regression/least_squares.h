@@ -18,6 +18,7 @@ struct NestedFactor {
   std::array<bool, BasisLayout::max_columns> kept{};  ///< False where a column depends on those before it.
   std::vector<Real> q;                                ///< columns x window.stride; dropped columns are zero.
   std::vector<Real> root;                             ///< sqrt(w), the diagonal of S.
+  std::vector<double> scratch;                        ///< Weighted columns.
 };
 
 /// Factorises the window's design under the weights w (window.padded of them, >= 0, zero beyond window.count). The Gram
@@ -30,9 +31,9 @@ void project(const NestedFactor& factor, const Window& window, const Real* weigh
 
 /// What project gives for the three channels of the beauty and of the stage's guess, and the variance of the former,
 ///     s_a^2 = sum_i w_i^2 q_a(i)^2 variance(i)   where the noise at pixel i has that variance,
-/// in one pass over the window. response, guess and variance: 3 columns, window.stride apart; z, guess_z and s2: 3
-/// arrays.
-void project_beauty(const NestedFactor& factor, const Window& window, const Real* weight, double* const* z,
+/// for the window's response, guess (where with_guess) and noise_variance. z, guess_z and s2: 3 arrays of
+/// factor.columns sums. Uses factor.scratch.
+void project_beauty(NestedFactor& factor, const Window& window, const Real* weight, bool with_guess, double* const* z,
                     double* const* guess_z, double* const* s2);
 
 }  // namespace polyrecon

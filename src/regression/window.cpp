@@ -16,6 +16,10 @@ void gather_channel(const Image& image, int channel, const Window& window, Real 
   gather_plane(image.plane(channel), window.offset.data(), minus, column, window.padded);
 }
 
+bool all_zero(const Real* column, int n) {
+  return std::all_of(column, column + n, [](Real x) { return x == 0; });
+}
+
 POLYRECON_SIMD void first_order_columns(const int* x, const int* y, int center_x, int center_y, Real scale, Real* dx,
                                         Real* dy, int n) {
   for (int j = 0; j < n; ++j) {
@@ -78,8 +82,14 @@ void gather(const WindowSource& source, const BasisLayout& layout, int center_x,
   Real* column = window.design.data();
   std::fill(column, column + window.padded, Real(1));
   column += stride;
-  for (int f = 0; f < layout.features(); ++f, column += stride)
+  int varying = 0;
+  for (int f = 0; f < layout.features(); ++f) {
     gather_channel(*source.features, f, window, source.features->at(center_x, center_y, f), column);
+    if (all_zero(column, window.count)) continue;
+    column += stride;
+    ++varying;
+  }
+  window.layout = BasisLayout(varying, layout.order());
   taylor_columns(layout.order(), center_x, center_y, radius, window, column);
   for (int c = 0; c < source.response->channels(); ++c)
     gather_channel(*source.response, c, window, 0, window.response.data() + static_cast<std::size_t>(c) * stride);

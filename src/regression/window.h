@@ -13,6 +13,8 @@ namespace polyrecon {
 struct Window {
   static constexpr int lanes = 16;  ///< Columns are padded to a multiple of this, for the vector units.
 
+  BasisLayout layout{0, 0};  ///< Of the design's columns.
+
   int count = 0;   ///< Pixels in the window.
   int padded = 0;  ///< count rounded up to a multiple of lanes.
   int stride = 0;  ///< Distance between columns; at least padded.
@@ -38,8 +40,9 @@ struct WindowSource {
 };
 
 /// Fills design, response, noise_variance and guess for the pixels already listed in window.x, window.y (count of
-/// them). Features enter minus their value at the centre, positions as (i - c) / radius, both of order 1 or below: the
-/// columns of equation (2) but for scale.
+/// them), and sets window.layout: that of `layout` without the features that do not vary over the window. Features
+/// enter minus their value at the centre, positions as (i - c) / radius, both of order 1 or below: the columns of
+/// equation (2) but for scale.
 void gather(const WindowSource& source, const BasisLayout& layout, int center_x, int center_y, int radius,
             Window& window);
 

@@ -83,7 +83,7 @@ void project_beauty_window(benchmark::State& state) {
   double* column[9];
   for (std::size_t k = 0; k < 9; ++k) column[k] = sums.data() + k * static_cast<std::size_t>(layout.columns());
   for ([[maybe_unused]] const auto pass : state) {
-    project_beauty(factor, problem.window, problem.weight.data(), column, column + 3, column + 6);
+    project_beauty(factor, problem.window, problem.weight.data(), true, column, column + 3, column + 6);
     benchmark::DoNotOptimize(sums.data());
   }
   state.counters["columns"] = layout.columns();

@@ -312,7 +312,7 @@ TEST(ProjectBeauty, IsProjectOfEachChannelAndTheVarianceOfItsCoefficients) {
   double sums[9][BasisLayout::max_columns];
   double *z[3] = {sums[0], sums[1], sums[2]}, *guess_z[3] = {sums[3], sums[4], sums[5]},
          *s2[3] = {sums[6], sums[7], sums[8]};
-  project_beauty(p.factor, p.window, p.weight.data(), z, guess_z, s2);
+  project_beauty(p.factor, p.window, p.weight.data(), true, z, guess_z, s2);
   // z = Q^T S S^-1 ... of y with noise of covariance D has covariance (w q)^T D (w q).
   const MatrixXd wq = p.w.asDiagonal() * p.q();
   for (int c = 0; c < 3; ++c)

@@ -75,7 +75,7 @@ struct Setting {
       channels[c].guess_energy = w.dot(m.cwiseAbs2());
       channels[c].noise_energy = w.dot(variance.col(k));
     }
-    project_beauty(factor, window, weight.data(), z, guess_z, s2);
+    project_beauty(factor, window, weight.data(), true, z, guess_z, s2);
     return channels;
   }
 

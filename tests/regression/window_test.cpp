@@ -65,7 +65,7 @@ void check_columns(int order, int cx, int cy, int radius) {
       for (int b = 0; b <= o; ++b, ++c)
         EXPECT_NEAR(column(window.design, c, j), std::pow(dx, o - b) * std::pow(dy, b), 1e-6)
             << "dx^" << o - b << " dy^" << b;
-    EXPECT_EQ(c, layout.columns());
+    EXPECT_EQ(c, window.layout.columns());
     for (int k = 0; k < 6; ++k) EXPECT_EQ(column(window.response, k, j), static_cast<double>(response.at(x, y, k)));
     for (int k = 0; k < 3; ++k) {
       EXPECT_EQ(column(window.noise_variance, k, j), static_cast<double>(variance.at(x, y, k)));
@@ -80,6 +80,30 @@ TEST(Gather, ColumnsAreThoseOfEquation2) {
     check_columns(order, 0, 0, 3);  // in a corner
     check_columns(order, 8, 5, 2);  // at a border
     check_columns(order, 4, 3, 1);
+  }
+}
+
+TEST(Gather, AFeatureThatDoesNotVaryOverTheWindowHasNoColumn) {
+  // Of three features the second is 5 inside the window and 6 elsewhere.
+  const Image response(9, 9, 3), variance(9, 9, 3);
+  const Image features = test::image_of(9, 9, 3, [](int x, int y, int c) {
+    return c == 1 ? (std::max(std::abs(x - 4), std::abs(y - 4)) > 1 ? 6 : 5) : x + 10 * y + c;
+  });
+  Window window;
+  const BasisLayout layout(3, 1);
+  window.reserve(2, layout.columns(), 3);
+  for (const int radius : {1, 2}) {
+    window.count = 0;
+    for (int y = 4 - radius; y <= 4 + radius; ++y)
+      for (int x = 4 - radius; x <= 4 + radius; ++x, ++window.count) {
+        window.x[static_cast<std::size_t>(window.count)] = x;
+        window.y[static_cast<std::size_t>(window.count)] = y;
+      }
+    gather({&response, &variance, &features, nullptr}, layout, 4, 4, radius, window);
+    EXPECT_EQ(window.layout.features(), radius == 1 ? 2 : 3);
+    EXPECT_EQ(window.layout.order(), 1);
+    // The column after the last feature is dx / radius: -1 at the window's first pixel.
+    EXPECT_EQ(window.design[static_cast<std::size_t>(window.layout.columns(1) * window.stride)], Real(-1));
   }
 }
 
