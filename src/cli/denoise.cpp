@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <exception>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "cli/checks.h"
@@ -15,6 +16,7 @@
 #include "core/error.h"
 #include "core/parallel.h"
 #include "io/exr_file.h"
+#include "pipeline/memory.h"
 
 namespace polyrecon {
 namespace {
@@ -42,9 +44,9 @@ void work(const std::vector<FrameFiles>& frames, const DenoiseOptions& o, RunPro
   if (o.dry_run) return show_plan(frames, o);
   if (is_sequence(o)) return run_sequence(frames, o, progress);
   progress.frame(frames.front().label(), 0, 1);
-  const auto loaded = fetch_frame(frames.front(), o, [&] { return progress.cancelled(); });
+  auto loaded = fetch_frame(frames.front(), o, [&] { return progress.cancelled(); });
   if (loaded)
-    denoise_frame(frames.front(), *loaded, o, progress);
+    denoise_frame(frames.front(), std::move(*loaded), o, progress);
   else if (!o.quiet)
     std::fputs(fmt::format("{}: finished already\n", o.output).c_str(), stdout);
   progress.frame("", 1, 1);
@@ -52,7 +54,10 @@ void work(const std::vector<FrameFiles>& frames, const DenoiseOptions& o, RunPro
 
 void run(DenoiseOptions o) {
   for (const std::string& role : o.roles) o.read.map.push_back(parse_mapping(role));
-  o.read.limits.max_bytes = params_of(o).max_memory;
+  o.read.accept = [params = params_of(o), ahead = is_sequence(o)](const std::string& path, FrameShape shape) {
+    if (ahead) shape.channels *= 2;  // the next frame is read while one is worked
+    require_memory(path, shape, params);
+  };
   const auto progress = make_progress(o.quiet ? ProgressStyle::None : o.progress);
   try {
     const std::vector<FrameFiles> frames = list_frames(o);

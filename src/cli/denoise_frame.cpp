@@ -111,9 +111,9 @@ LoadedFrame load_frame(const std::string& path, const DenoiseOptions& options) {
   return loaded;
 }
 
-void denoise_frame(const FrameFiles& files, const LoadedFrame& loaded, const DenoiseOptions& o, Progress& progress) {
+void denoise_frame(const FrameFiles& files, LoadedFrame loaded, const DenoiseOptions& o, Progress& progress) {
   const auto start = Clock::now();
-  const ReadResult& in = loaded.in;
+  ReadResult& in = loaded.in;
   print(o.quiet, input_text(in));
   const Result result = reconstruct(in.frame, params_of(o), progress);
 

@@ -160,7 +160,7 @@ void run_sequence(const std::vector<FrameFiles>& frames, const DenoiseOptions& o
     }
     try {
       if (consistency.check(files, *loaded)) outcome.fell_back(files);
-      denoise_frame(files, *loaded, options_of(options, files), progress);
+      denoise_frame(files, std::move(*loaded), options_of(options, files), progress);
       outcome.written();
     } catch (const Error& error) {
       outcome.failed(files, error);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -39,6 +40,14 @@ struct Frame {
 
   int width() const { return beauty.mean.width(); }
   int height() const { return beauty.mean.height(); }
+};
+
+/// The size of a frame as memory sees it, known before any pixel is read.
+struct FrameShape {
+  std::size_t pixels = 0;
+  int channels = 0;          ///< Of all passes in use with their variances and halves.
+  int color_channels = 3;    ///< Of the beauty and the AOVs.
+  int feature_channels = 0;  ///< Of the features' means.
 };
 
 }  // namespace polyrecon

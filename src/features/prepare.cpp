@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "core/error.h"
 #include "core/parallel.h"
@@ -133,12 +134,11 @@ void make_non_negative(Image& variance) {
     for (std::size_t i = 0; i < variance.pixels(); ++i) variance.plane(c)[i] = std::max(variance.plane(c)[i], Real(0));
 }
 
-/// Both halves of a pass, mended; split from the mean where the file has none. half_variance: of one half; may be
-/// empty.
-std::array<Image, 2> halves_of(const Pass& pass, const Image& half_variance, std::uint64_t stream,
-                               std::size_t& mended) {
+/// Both halves of a pass, taken from it and mended; split from the mean where the file has none. half_variance: of one
+/// half; may be empty.
+std::array<Image, 2> halves_of(Pass& pass, const Image& half_variance, std::uint64_t stream, std::size_t& mended) {
   if (pass.has_halves()) {
-    std::array<Image, 2> halves{pass.half_a, pass.half_b};
+    std::array<Image, 2> halves{std::move(pass.half_a), std::move(pass.half_b)};
     for (Image& half : halves) mended += mend(half, mend_reach);
     return halves;
   }
@@ -152,9 +152,9 @@ std::array<Image, 2> halves_of(const Pass& pass, const Image& half_variance, std
 }
 
 /// Noise variance of one half of a feature; empty where nothing is known of it.
-Image feature_half_variance(const Pass& pass, std::size_t& mended) {
+Image feature_half_variance(Pass& pass, std::size_t& mended) {
   if (!pass.variance.empty()) {
-    Image variance = pass.variance;
+    Image variance = std::move(pass.variance);
     mended += mend(variance, mend_reach);
     make_non_negative(variance);
     for (int c = 0; c < variance.channels(); ++c)
@@ -196,14 +196,13 @@ void append_channels(const Image& from, Image& to, int& channel) {
     std::copy(from.plane(c), from.plane(c) + from.pixels(), to.plane(channel));
 }
 
-std::array<Image, 2> prepared_feature(const Feature& feature, const FeatureUse& use, std::size_t stream,
+std::array<Image, 2> prepared_feature(Feature feature, const FeatureUse& use, std::size_t stream,
                                       const PrefilterParams& cleaning, std::size_t& mended, Progress& progress) {
   Image variance = feature_half_variance(feature.pass, mended);
   auto halves = halves_of(feature.pass, variance, stream, mended);
   if (use.clean && !variance.empty()) {
-    Image mean = feature.pass.mean;
-    mend(mean, mend_reach);
-    transform_variance(use, mean, variance);
+    mend(feature.pass.mean, mend_reach);
+    transform_variance(use, feature.pass.mean, variance);
     for (Image& half : halves) transform(use, half);
     return prefilter(halves, variance, cleaning, progress);
   }
@@ -244,8 +243,8 @@ Preparation look_at(const Frame& frame) {
   return out;
 }
 
-Prepared prepare(const Frame& frame, const Preparation& preparation, const Image& variance,
-                 const PrefilterParams& cleaning, bool with_alpha, Progress& progress) {
+Prepared prepare(Frame& frame, const Preparation& preparation, const Image& variance, const PrefilterParams& cleaning,
+                 bool with_alpha, Progress& progress) {
   Prepared out;
   HalfPair& pair = out.pair;
   pair.epsilon = preparation.epsilon;
@@ -273,17 +272,23 @@ Prepared prepare(const Frame& frame, const Preparation& preparation, const Image
   };
   const auto beauty = halves_of(frame.beauty, pair.variance, 0, out.mended_pixels);
   append(beauty);
-  for (const Pass& aov : frame.aovs)
+  frame.beauty.variance = {};
+  for (Pass& aov : frame.aovs) {
     append(aov.has_halves() ? halves_of(aov, {}, 0, out.mended_pixels) : split_like(beauty, aov, out.mended_pixels));
-  if (alpha) append(halves_of(Pass{"alpha", frame.alpha, {}, {}, {}}, {}, 0, out.mended_pixels));
+    aov.variance = {};
+  }
+  if (alpha) {
+    Pass pass{"alpha", frame.alpha, {}, {}, {}};
+    append(halves_of(pass, {}, 0, out.mended_pixels));
+  }
 
   int feature_channels = 0;
   for (const FeatureUse& use : preparation.features) feature_channels += frame.features[use.index].pass.mean.channels();
   for (Image& features : pair.features) features = Image(frame.width(), frame.height(), feature_channels);
   int channel = 0;
   for (const FeatureUse& use : preparation.features) {
-    const auto halves =
-        prepared_feature(frame.features[use.index], use, use.index + 1, cleaning, out.mended_pixels, progress);
+    const auto halves = prepared_feature(std::move(frame.features[use.index]), use, use.index + 1, cleaning,
+                                         out.mended_pixels, progress);
     int end = channel;
     for (std::size_t h = 0; h < 2; ++h) {
       end = channel;
@@ -291,6 +296,7 @@ Prepared prepare(const Frame& frame, const Preparation& preparation, const Image
     }
     channel = end;
   }
+  frame.features.clear();
   return out;
 }
 

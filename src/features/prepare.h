@@ -38,8 +38,9 @@ struct Prepared {
 };
 
 /// Mends, splits where the file holds no halves (features/fission.h), transforms and cleans the features.
-/// variance: noise variance of the beauty's mean, 3 channels (estimate/variance.h).
-Prepared prepare(const Frame& frame, const Preparation& preparation, const Image& variance,
-                 const PrefilterParams& cleaning, bool with_alpha, Progress& progress);
+/// variance: noise variance of the beauty's mean, 3 channels (estimate/variance.h). Takes the halves and variances of
+/// the frame's passes and all of its features, and gives their memory back as it goes; the other means stay.
+Prepared prepare(Frame& frame, const Preparation& preparation, const Image& variance, const PrefilterParams& cleaning,
+                 bool with_alpha, Progress& progress);
 
 }  // namespace polyrecon

@@ -31,6 +31,8 @@ class PartReader {
     return wanted.back().image.get();
   }
 
+  std::size_t samples() const { return samples_; }  ///< Planned so far.
+
   void read() {
     for (auto& [place, wanted] : parts_) {
       const FileInfo& file = source_.files[static_cast<std::size_t>(place.first)];
@@ -172,6 +174,7 @@ class FrameBuilder {
   ReadResult build() {
     window_ = reader_.window_of(layer(passes_.front().mean));
     plan();
+    if (options_.accept) options_.accept(result_.source.path, shape());
     reader_.read();
     result_.frame.data_window = window_;
     take_sample_counts();
@@ -191,6 +194,17 @@ class FrameBuilder {
       planned_.push_back({p, image(p.mean), image(p.variance), image(p.half_a), image(p.half_b)});
     const Layer& beauty = layer(passes_.front().mean);
     if (result_.source.alpha_layer == beauty.name) alpha_ = reader_.plan(beauty, {beauty.alpha});
+  }
+
+  FrameShape shape() const {
+    FrameShape shape{window_.area(), static_cast<int>(reader_.samples() / window_.area()), 3, 0};
+    for (const PassChoice& pass : passes_) {
+      if (pass.role == Role::Color) shape.color_channels += 3;
+      const bool feature = pass.role == Role::Normal || pass.role == Role::Albedo || pass.role == Role::Depth ||
+                           pass.role == Role::Visibility;
+      if (feature) shape.feature_channels += channels_of(pass.role);
+    }
+    return shape;
   }
 
   Image take(Image* image, int index, int channels, bool is_variance = false) {

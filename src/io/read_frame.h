@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -37,6 +38,8 @@ struct ReadOptions {
   VarianceKind variance_kind = VarianceKind::Auto;
   double samples = 0;  ///< Samples per pixel where the file does not tell; 0: unknown.
   ReadLimits limits;
+  /// Called once the passes in use are known and before any pixel is read; may throw to refuse the frame.
+  std::function<void(const std::string& path, const FrameShape&)> accept;
 };
 
 /// One layer in use.

@@ -6,13 +6,13 @@
 
 #include "blend/levels.h"
 #include "blend/undershoot.h"
-#include "core/error.h"
 #include "core/parallel.h"
 #include "estimate/variance.h"
 #include "features/prepare.h"
 #include "features/variance_floor.h"
 #include "outliers/remove.h"
 #include "outliers/restore.h"
+#include "pipeline/memory.h"
 #include "pipeline/stage.h"
 
 namespace polyrecon {
@@ -33,42 +33,20 @@ auto timed(Report& report, Progress& progress, const std::string& name, std::siz
   return result;
 }
 
-std::size_t bytes_of(const Image& image) {
-  return image.pixels() * static_cast<std::size_t>(image.channels()) * sizeof(Real);
-}
-
-std::size_t bytes_of(const Pass& pass) {
-  return bytes_of(pass.mean) + bytes_of(pass.variance) + bytes_of(pass.half_a) + bytes_of(pass.half_b);
-}
-
-std::size_t bytes_of(const Frame& frame) {
-  std::size_t bytes =
-      bytes_of(frame.beauty) + bytes_of(frame.prior) + bytes_of(frame.alpha) + bytes_of(frame.sample_count);
-  for (const Feature& feature : frame.features) bytes += bytes_of(feature.pass);
-  for (const Pass& aov : frame.aovs) bytes += bytes_of(aov);
-  return bytes;
-}
-
-/// What a stage may use beside the frame, the pair with its coarser levels (a third more), and the results that stay.
-std::size_t stage_memory(const Frame& frame, const HalfPair& pair, std::size_t max_memory) {
-  const std::size_t channels = static_cast<std::size_t>(pair.color[0].channels());
-  const std::size_t inputs = bytes_of(pair.color[0]) * 2 + bytes_of(pair.variance) + bytes_of(pair.features[0]) * 2;
-  const std::size_t results = 3 * (2 * channels + 7) * pair.variance.pixels() * sizeof(Real);
-  const std::size_t held = bytes_of(frame) + (inputs + results) * 4 / 3;
-  return held < max_memory ? max_memory - held : 0;
-}
-
-void require_memory(const Frame& frame, const HalfPair& pair, const Params& params, std::size_t available) {
-  const int halo = stage_halo(params);
-  const auto side =
-      static_cast<std::size_t>(2 * block_size + 2 * ((halo + 2 * block_size - 1) / (2 * block_size)) * 2 * block_size);
-  const std::size_t needed = std::min(side * side, pair.variance.pixels()) * stage_bytes_per_pixel(pair, params);
-  if (available >= needed) return;
-  const std::size_t total = params.max_memory - available + needed;
-  throw Error(ExitCode::OutOfMemory, "layer '" + frame.beauty.name + "': " + std::to_string(frame.width()) + " x " +
-                                         std::to_string(frame.height()) + " pixels need " +
-                                         std::to_string((total >> 20) + 1) +
-                                         " MiB; raise --max-memory or render fewer passes");
+FrameShape shape_of(const Frame& frame) {
+  FrameShape shape{frame.beauty.mean.pixels(), 0, 3 + 3 * static_cast<int>(frame.aovs.size()), 0};
+  const auto add = [&](const Pass& pass) {
+    for (const Image* image : {&pass.mean, &pass.variance, &pass.half_a, &pass.half_b})
+      shape.channels += image->channels();
+  };
+  add(frame.beauty);
+  add(frame.prior);
+  for (const Pass& aov : frame.aovs) add(aov);
+  for (const Feature& feature : frame.features) {
+    add(feature.pass);
+    shape.feature_channels += feature.pass.mean.channels();
+  }
+  return shape;
 }
 
 /// Sections 2.1 and 2.2 of the method on one level and, by way of its remainder, on the coarser ones.
@@ -157,8 +135,10 @@ std::size_t fit_steps(const Frame& frame, const Params& params) {
 
 }  // namespace
 
-Result reconstruct(const Frame& frame, const Params& params, Progress& progress) {
+Result reconstruct(Frame& frame, const Params& params, Progress& progress) {
   validate(params);
+  const FrameShape shape = shape_of(frame);
+  require_memory("layer '" + frame.beauty.name + "'", shape, params);
   Result result;
   Report& report = result.report;
   report.width = frame.width();
@@ -186,8 +166,7 @@ Result reconstruct(const Frame& frame, const Params& params, Progress& progress)
   pair.variance = floor_variance(pair.variance);  // now: an outlier's variance must not spread to its neighbours
   note_outliers(outliers, report);
 
-  const std::size_t memory = stage_memory(frame, pair, params.max_memory);
-  require_memory(frame, pair, params, memory);
+  const std::size_t memory = tile_memory(shape, params);
   FitCounters counters;
   const Candidate solved = timed(report, progress, "polynomials", fit_steps(frame, params),
                                  [&] { return solve_level(pair, 0, params, memory, counters, progress); });

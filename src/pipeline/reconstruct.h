@@ -20,10 +20,11 @@ struct Result {
   Report report;
 };
 
-/// The whole method on one frame: reads like the abstract of Moon et al. 2016. Frames that need more memory than
-/// params.max_memory are worked in tiles, with the same result to the bit.
-/// Throws Error{BadInput} where the frame holds nothing to work on (no finite beauty pixel), Error{OutOfMemory} where
-/// not even the smallest tile fits, Error{Interrupted} when progress asks to stop.
-Result reconstruct(const Frame& frame, const Params& params, Progress& progress);
+/// The whole method on one frame: reads like the abstract of Moon et al. 2016. Takes the frame's features, halves and
+/// variances and releases them as it goes; means, names, alpha and sample count stay with the caller. Frames that need
+/// more memory than params.max_memory are worked in tiles, with the same result to the bit. Throws Error{BadInput}
+/// where the frame holds nothing to work on (no finite beauty pixel), Error{OutOfMemory} where not even the smallest
+/// tile fits, Error{Interrupted} when progress asks to stop.
+Result reconstruct(Frame& frame, const Params& params, Progress& progress);
 
 }  // namespace polyrecon

@@ -129,20 +129,32 @@ int stage_halo(const Params& params) {
   return gaussian_reach(residual_sigma) + fit_halo(params.fit(params.first_bandwidths)) + select_halo(params.selection);
 }
 
-std::size_t stage_bytes_per_pixel(const HalfPair& pair, const Params& params) {
-  const auto channels = static_cast<std::size_t>(pair.color[0].channels());
-  const std::size_t fits =
-      std::max(params.first_bandwidths.size(), params.later_bandwidths.size() + params.guided_bandwidths.size());
-  const std::size_t candidate = 2 * channels + 7, sums = channels + 8;
-  const std::size_t inputs = 2 * channels + 3 + 2 * static_cast<std::size_t>(pair.features[0].channels());
-  return sizeof(Real) * (inputs + candidate * (fits + 3) + sums * fits + 4 * fits + 24);
+std::size_t smallest_tile_pixels(const Params& params) {
+  const int margin = (stage_halo(params) + 2 * block_size - 1) / (2 * block_size) * 2 * block_size;
+  const auto side = static_cast<std::size_t>(2 * block_size + 2 * margin);
+  return side * side;
+}
+
+std::size_t stage_bytes_per_pixel(int color_channels, int feature_channels, const Params& params) {
+  const auto colors = static_cast<std::size_t>(color_channels);
+  const std::size_t raw = std::max(params.first_bandwidths.size(), params.later_bandwidths.size());
+  const std::size_t candidates = raw + params.guided_bandwidths.size() + 1;
+  const std::size_t candidate = 2 * colors + 7, fit = colors + 7, sums = colors + 8;
+  const std::size_t inputs = 2 * colors + 3 + 2 * static_cast<std::size_t>(feature_channels) + candidate;
+  // The most that lives at once: the choice among all candidates with their risks and its result, or the last fits of
+  // the noisy halves with their sums, or those of the guide beside the candidates that are there.
+  const std::size_t choosing = candidates * (candidate + 3) + candidate + 12;
+  const std::size_t fitting = raw * (2 * fit + sums);
+  const std::size_t guided = raw * candidate + 6 + params.guided_bandwidths.size() * (2 * fit + sums);
+  return sizeof(Real) * (inputs + std::max({choosing, fitting, guided})) + 8;
 }
 
 Candidate run_stage(const HalfPair& pair, const Candidate* before, const Params& params, std::size_t max_bytes,
                     FitCounters& counters, Progress& progress) {
   const int halo = stage_halo(params);
-  const auto tiles = make_tiles({0, 0, pair.width(), pair.height()}, halo, 2 * block_size,
-                                max_bytes / stage_bytes_per_pixel(pair, params));
+  const auto tiles =
+      make_tiles({0, 0, pair.width(), pair.height()}, halo, 2 * block_size,
+                 max_bytes / stage_bytes_per_pixel(pair.color[0].channels(), pair.features[0].channels(), params));
   if (tiles.size() == 1) return stage_of_tile(pair, before, params, counters, progress);
   const int channels = pair.color[0].channels();
   const auto image = [&](int n) { return Image(pair.width(), pair.height(), n); };

@@ -18,7 +18,10 @@ Candidate run_stage(const HalfPair& pair, const Candidate* before, const Params&
 /// Pixels around a tile that run_stage looks at.
 int stage_halo(const Params& params);
 
-/// Bytes that run_stage works with per pixel of a tile.
-std::size_t stage_bytes_per_pixel(const HalfPair& pair, const Params& params);
+/// Pixels of the smallest tile with its margins.
+std::size_t smallest_tile_pixels(const Params& params);
+
+/// Bytes that run_stage works with per pixel of a tile; color_channels: of the beauty and the AOVs.
+std::size_t stage_bytes_per_pixel(int color_channels, int feature_channels, const Params& params);
 
 }  // namespace polyrecon

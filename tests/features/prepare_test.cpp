@@ -20,9 +20,10 @@ using test::make_scene;
 constexpr int width = 32, height = 24;
 constexpr Real nan = std::numeric_limits<Real>::quiet_NaN();
 
-Prepared prepared(const Frame& frame) {
+Prepared prepared(const Frame& frame, bool with_alpha = true) {
   Progress silent;
-  return prepare(frame, look_at(frame), frame.beauty.variance, PrefilterParams{}, true, silent);
+  Frame taken = frame;
+  return prepare(taken, look_at(frame), frame.beauty.variance, PrefilterParams{}, with_alpha, silent);
 }
 
 /// The reason for which the only feature of the scene was dropped; empty if it was not.
@@ -182,10 +183,7 @@ TEST(Prepare, AlphaIsTheLastChannelIfItIsAskedFor) {
   frame.alpha = Image(width, height, 1, Real(0.25));
   EXPECT_EQ(prepared(frame).pair.color[0].channels(), 4);
   EXPECT_EQ(prepared(frame).pair.color[1].at(3, 3, 3), Real(0.25));
-  Progress silent;
-  EXPECT_EQ(
-      prepare(frame, look_at(frame), frame.beauty.variance, PrefilterParams{}, false, silent).pair.color[0].channels(),
-      3);
+  EXPECT_EQ(prepared(frame, false).pair.color[0].channels(), 3);
 }
 
 }  // namespace

@@ -36,7 +36,8 @@ Params quick() {
 
 Result run(const Frame& frame, const Params& params = quick()) {
   Progress silent;
-  return reconstruct(frame, params, silent);
+  Frame taken = frame;
+  return reconstruct(taken, params, silent);
 }
 
 bool finite(const Result& result) {
@@ -231,7 +232,8 @@ TEST(Reconstruct, StopsWhenAskedTo) {
     bool cancelled() const override { return true; }
   } progress;
   try {
-    reconstruct(make_scene(40, 36, 0.2, 9).frame, quick(), progress);
+    Frame frame = make_scene(40, 36, 0.2, 9).frame;
+    reconstruct(frame, quick(), progress);
     FAIL();
   } catch (const Error& e) {
     EXPECT_EQ(e.code(), ExitCode::Interrupted);
@@ -564,8 +566,8 @@ TEST(Reconstruct, HasTheSameBitsForAnyMemory) {
     params.radius = radius;
     params.stride = stride;
     const Preparation look = look_at(scene.frame);
-    const HalfPair pair =
-        prepare(scene.frame, look, scene.frame.beauty.variance, PrefilterParams{}, false, silent).pair;
+    Frame frame = scene.frame;
+    const HalfPair pair = prepare(frame, look, scene.frame.beauty.variance, PrefilterParams{}, false, silent).pair;
     const auto work = [&](std::size_t bytes) {
       FitCounters counters;
       const Candidate first = run_stage(pair, nullptr, params, bytes, counters, silent);
@@ -573,7 +575,7 @@ TEST(Reconstruct, HasTheSameBitsForAnyMemory) {
     };
     const Candidate whole = work(std::size_t{1} << 40);
     for (const std::size_t pixels : {std::size_t{1}, std::size_t{2000}, std::size_t{400 * 400}}) {
-      const Candidate tiled = work(pixels * stage_bytes_per_pixel(pair, params));
+      const Candidate tiled = work(pixels * stage_bytes_per_pixel(3, pair.features[0].channels(), params));
       for (std::size_t h = 0; h < 2; ++h)
         EXPECT_TRUE(test::same_bits(tiled.half[h], whole.half[h])) << stride << " " << pixels;
       EXPECT_TRUE(test::same_bits(tiled.error, whole.error)) << stride << " " << pixels;

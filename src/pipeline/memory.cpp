@@ -1,0 +1,51 @@
+#include "pipeline/memory.h"
+
+#include <algorithm>
+
+#include "core/error.h"
+#include "pipeline/stage.h"
+
+namespace polyrecon {
+namespace {
+
+constexpr std::size_t program_bytes = std::size_t{128} << 20;  // code, libraries, scratch of the threads
+constexpr std::size_t in_preparation = 12;                     // channels of the feature being cleaned
+
+std::size_t count(int channels) { return static_cast<std::size_t>(channels); }
+
+/// The pair of halves: colours, variance, features.
+std::size_t pair_channels(const FrameShape& shape) {
+  return 2 * count(shape.color_channels) + 3 + 2 * count(std::min(shape.feature_channels, max_feature_channels));
+}
+
+}  // namespace
+
+MemoryNeeds memory_needs(const FrameShape& shape, const Params& params) {
+  const std::size_t plane = shape.pixels * sizeof(Real), noise = 3;
+  // The frame's means of colours, alpha and sample count stay to the end.
+  const std::size_t kept = count(shape.color_channels) + 2;
+  const std::size_t candidate = 2 * count(shape.color_channels) + 7;  // halves, error, variance, order
+  MemoryNeeds needs;
+  needs.prepare = program_bytes + plane * (count(shape.channels) + noise + pair_channels(shape) + in_preparation);
+  // The pair and the results of this stage and the one before, with their coarser levels.
+  needs.held = program_bytes + plane * (kept + noise) + plane * (pair_channels(shape) + 2 * candidate) * 4 / 3;
+  needs.tile =
+      std::min(smallest_tile_pixels(params), shape.pixels) *
+      stage_bytes_per_pixel(shape.color_channels, std::min(shape.feature_channels, max_feature_channels), params);
+  return needs;
+}
+
+void require_memory(const std::string& name, const FrameShape& shape, const Params& params) {
+  const std::size_t least = memory_needs(shape, params).least();
+  if (params.max_memory >= least) return;
+  throw Error(ExitCode::OutOfMemory, name + ": " + std::to_string(shape.pixels) + " pixels with " +
+                                         std::to_string(shape.channels) + " channels in use needs --max-memory " +
+                                         std::to_string((least >> 20) + 1) + "M, or fewer passes");
+}
+
+std::size_t tile_memory(const FrameShape& shape, const Params& params) {
+  const std::size_t held = memory_needs(shape, params).held;
+  return held < params.max_memory ? params.max_memory - held : 0;
+}
+
+}  // namespace polyrecon

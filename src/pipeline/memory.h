@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include "core/frame.h"
+#include "pipeline/params.h"
+
+namespace polyrecon {
+
+/// Bytes that a reconstruction needs, counted from the images that live at once.
+struct MemoryNeeds {
+  std::size_t prepare = 0;  ///< While the passes are read and prepared.
+  std::size_t held = 0;     ///< While windows are fitted, beside the tile in work.
+  std::size_t tile = 0;     ///< Of the smallest tile that a stage can work.
+
+  std::size_t least() const { return prepare > held + tile ? prepare : held + tile; }
+};
+
+MemoryNeeds memory_needs(const FrameShape& shape, const Params& params);
+
+/// Throws Error{OutOfMemory}, naming the frame and the limit that would do, where params.max_memory is not enough.
+void require_memory(const std::string& name, const FrameShape& shape, const Params& params);
+
+/// What the tiles of the stages may use together: params.max_memory less what is held beside them.
+std::size_t tile_memory(const FrameShape& shape, const Params& params);
+
+}  // namespace polyrecon

@@ -1,0 +1,49 @@
+#include "pipeline/memory.h"
+
+#include <gtest/gtest.h>
+
+#include "core/error.h"
+#include "pipeline/stage.h"
+
+namespace polyrecon {
+namespace {
+
+// Four feature passes and half buffers: beauty 4 x 3, features 4 x (3 + 3 + 1 + 1), sample count.
+constexpr FrameShape usual{std::size_t{1920} * 1080, 45, 3, 8};
+
+TEST(MemoryNeeds, CountsTheImagesThatLiveAtOnce) {
+  const Params params;
+  const MemoryNeeds needs = memory_needs(usual, params);
+  const std::size_t plane = usual.pixels * sizeof(Real), program = std::size_t{128} << 20;
+  // Preparing: 45 read, 3 of noise, pair 2 x 3 + 3 + 2 x 8 = 25, 12 of the feature in work.
+  EXPECT_EQ(needs.prepare, program + plane * 85);
+  // Fitting: 5 + 3 kept; pair 25 and two results of 13, a third more for the coarser levels.
+  EXPECT_EQ(needs.held, program + plane * 8 + plane * 51 * 4 / 3);
+  EXPECT_EQ(needs.tile, smallest_tile_pixels(params) * stage_bytes_per_pixel(3, 8, params));
+}
+
+TEST(MemoryNeeds, AFrameSmallerThanATileNeedsNoWholeOne) {
+  const Params params;
+  EXPECT_EQ(memory_needs({100, 45, 3, 8}, params).tile, 100 * stage_bytes_per_pixel(3, 8, params));
+}
+
+TEST(RequireMemory, NamesTheLimitThatDoes) {
+  Params params;
+  params.max_memory = 200 << 20;
+  try {
+    require_memory("shot.exr", usual, params);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ExitCode::OutOfMemory);
+    const std::string text = error.what(), option = "--max-memory ";
+    EXPECT_EQ(text.rfind("shot.exr: ", 0), 0u) << text;
+    params.max_memory = std::stoul(text.substr(text.find(option) + option.size())) << 20;
+  }
+  EXPECT_NO_THROW(require_memory("shot.exr", usual, params));
+  EXPECT_GT(tile_memory(usual, params), 0u);
+  params.max_memory -= 2 << 20;
+  EXPECT_THROW(require_memory("shot.exr", usual, params), Error);
+}
+
+}  // namespace
+}  // namespace polyrecon
