@@ -166,7 +166,7 @@ void column_sums(const NestedFactor& factor, const double* y, std::size_t stride
     const bool two = a + 1 < factor.columns;
     double sums[6];
     sums_2x3<squared>(q, two ? q + stride : q, y, stride, rows, sums);
-    for (int c = 0; c < 3; ++c) {
+    for (std::size_t c = 0; c < 3; ++c) {
       out[c][a] = sums[2 * c];
       if (two) out[c][a + 1] = sums[2 * c + 1];
     }

@@ -86,7 +86,7 @@ void PatchDistances::sum_patches() {
       Real a[planes];
       for (std::size_t p = 0; p < planes; ++p) {
         a[p] = around_[p * size + center];
-        b[p] = around_.data() + p * size + py * pitch_ + px;
+        b[p] = around_.data() + p * size + static_cast<std::ptrdiff_t>(py) * pitch_ + px;
       }
       add_differences(a, b, distance_.data(), pixels);
     }
@@ -99,7 +99,8 @@ void PatchDistances::window_of(int center_x, int center_y, Real limit, Window& w
   const Rect inside = intersect(grow({center_x, center_y, center_x + 1, center_y + 1}, radius_), bounds_);
   std::size_t count = 0;
   for (int y = inside.y0; y < inside.y1; ++y) {
-    const Real* row = distance_.data() + (y - center_y + radius_) * pitch_ - center_x + radius_;
+    const Real* row =
+        distance_.data() + static_cast<std::ptrdiff_t>(y - center_y + radius_) * pitch_ - center_x + radius_;
     for (int x = inside.x0; x < inside.x1; ++x) {
       const Real d = row[x];
       if (!(d < limit * patch_area)) continue;
