@@ -20,7 +20,6 @@ LoadedFrame load_frame(const std::string& path, const DenoiseOptions& options);
 
 /// Reconstructs a frame and writes its picture, maps and report; prints roles and the report's table unless quiet.
 /// Throws as reconstruct and write_result do.
-void denoise_frame(const FrameFiles& files, LoadedFrame loaded, const DenoiseOptions& options,
-                   Progress& progress);
+void denoise_frame(const FrameFiles& files, LoadedFrame loaded, const DenoiseOptions& options, Progress& progress);
 
 }  // namespace polyrecon
