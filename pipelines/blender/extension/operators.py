@@ -1,0 +1,197 @@
+"""What the panel's buttons do. Each says what it needs where that is missing, and none waits for a program."""
+
+import os
+import pathlib
+import shutil
+import tempfile
+
+import bpy
+
+from . import jobs, preferences
+from .programs import Problem
+
+
+class _Operator:
+    """An operator whose `work` may raise Problem: that becomes its error message."""
+
+    def execute(self, context):
+        try:
+            self.work(context)
+        except (Problem, OSError) as problem:
+            self.report({"ERROR"}, str(problem))
+            return {"CANCELLED"}
+        return {"FINISHED"}
+
+
+class _Start(_Operator):
+    @classmethod
+    def poll(cls, _context):
+        if jobs.current and jobs.current.running:
+            cls.poll_message_set("polyrecon is at work")
+            return False
+        return True
+
+
+class POLYRECON_OT_set_up_passes(_Operator, bpy.types.Operator):
+    """Store the passes that the reconstruction reads, and no denoised picture over the noisy one"""
+
+    bl_idname = "polyrecon.set_up_passes"
+    bl_label = "Set Up Passes"
+    bl_options = {"REGISTER", "UNDO"}
+
+    def work(self, context):
+        changed = set_up_passes(context.scene, context.view_layer)
+        self.report({"INFO"}, "changed: " + ", ".join(changed) if changed else "all was set up already")
+
+
+def set_up_passes(scene, view_layer):
+    """Returns the names of what it changed."""
+    wanted = (
+        ("engine Cycles", scene.render, "engine", "CYCLES"),
+        ("denoising features", view_layer.cycles, "denoising_store_passes", True),
+        ("sample count", view_layer.cycles, "pass_debug_sample_count", True),
+        ("Cycles' denoiser off", scene.cycles, "use_denoising", False),
+        ("adaptive sampling off", scene.cycles, "use_adaptive_sampling", False),
+    )
+    changed = [name for name, owner, attribute, value in wanted if getattr(owner, attribute) != value]
+    for _, owner, attribute, value in wanted:
+        setattr(owner, attribute, value)
+    return changed
+
+
+class POLYRECON_OT_denoise(_Start, bpy.types.Operator):
+    """Reconstruct the frame that was rendered last"""
+
+    bl_idname = "polyrecon.denoise"
+    bl_label = "Denoise This Frame"
+
+    def work(self, context):
+        scene = context.scene
+        clean = scene.polyrecon.output_of(scene.frame_current)
+        program = preferences.program()
+        clean.parent.mkdir(parents=True, exist_ok=True)
+        results = _results(clean)
+        _save_render(scene, results["NOISY"])
+        error_map = results["ERROR"].with_suffix(".exr")
+        denoise = [program, "denoise", "-i", results["NOISY"], "-o", clean, "--error-map", error_map, "--progress", "json"]
+        jobs.start("Denoise", [denoise, _error_picture(program, error_map, results)], results)
+
+
+def _results(clean):
+    """The files of one frame to show, beside the clean one; the error map as a picture in false colours."""
+    return {
+        "CLEAN": clean,
+        "NOISY": clean.with_name(clean.stem + "_noisy.exr"),
+        "ERROR": clean.with_name(clean.stem + "_error.png"),
+    }
+
+
+def _error_picture(program, error_map, results):
+    return [program, "preview", error_map, "-o", results["ERROR"]]
+
+
+def _save_render(scene, path):
+    """The last render with all its passes; the scene's output settings stay as they are."""
+    render = bpy.data.images.get("Render Result")
+    if render is None:
+        raise Problem("nothing is rendered yet: render the frame first")
+    settings = scene.render.image_settings
+    wanted = {"file_format": "OPEN_EXR_MULTILAYER", "color_depth": "32", "exr_codec": "ZIP"}
+    if hasattr(settings, "media_type"):  # Blender 5: comes before the format
+        wanted = {"media_type": "MULTI_LAYER_IMAGE", **wanted}
+    before = {name: getattr(settings, name) for name in wanted}
+    try:
+        for name, value in wanted.items():
+            setattr(settings, name, value)
+        render.save_render(str(path), scene=scene)
+    except RuntimeError as error:
+        raise Problem("nothing is rendered yet: render the frame first") from error
+    finally:
+        for name, value in before.items():
+            setattr(settings, name, value)
+
+
+class POLYRECON_OT_adaptive(_Start, bpy.types.Operator):
+    """Render in the background, with samples only where the reconstruction needs them. Works on a copy of the scene as it
+    is now"""
+
+    bl_idname = "polyrecon.adaptive"
+    bl_label = "Render Adaptively"
+
+    def work(self, context):
+        scene = context.scene
+        chosen = scene.polyrecon
+        if scene.render.engine != "CYCLES":
+            raise Problem("only Cycles can be rendered adaptively: choose it as the render engine")
+        pattern = chosen.output_pattern()
+        if chosen.frames == "RANGE":
+            frames = ["--frames", f"{scene.frame_start}-{scene.frame_end}x{scene.frame_step}"]
+        else:
+            pattern, frames = chosen.output_of(scene.frame_current), ["--frame", str(scene.frame_current)]
+        words = preferences.driver_words("adaptive.py")
+        program = preferences.program()
+        pattern.parent.mkdir(parents=True, exist_ok=True)
+        folder = pathlib.Path(tempfile.mkdtemp(prefix="polyrecon_"))
+        copy = folder / (pathlib.Path(bpy.data.filepath).stem + ".blend" if bpy.data.filepath else "scene.blend")
+        bpy.ops.wm.save_as_mainfile(filepath=str(copy), copy=True, check_existing=False)
+        words += [copy, "-o", pattern, *frames, *chosen.limit_words(), "--polyrecon", program]
+        results = _results(chosen.output_of(scene.frame_current))
+        jobs.start("Adaptive render", [words], results, cleanup=lambda: shutil.rmtree(folder, ignore_errors=True))
+
+
+class POLYRECON_OT_cancel(bpy.types.Operator):
+    """Stop what runs in the background. Finished files stay"""
+
+    bl_idname = "polyrecon.cancel"
+    bl_label = "Cancel"
+
+    @classmethod
+    def poll(cls, _context):
+        return jobs.current is not None and jobs.current.running
+
+    def execute(self, _context):
+        jobs.current.cancel()
+        return {"FINISHED"}
+
+
+class POLYRECON_OT_show(_Operator, bpy.types.Operator):
+    """Show a picture of the last job in an image editor"""
+
+    bl_idname = "polyrecon.show"
+    bl_label = "Show"
+
+    which: bpy.props.EnumProperty(items=(("CLEAN", "Result", ""), ("NOISY", "Noisy", ""), ("ERROR", "Error Map", "")))
+
+    def work(self, context):
+        path = jobs.current.results[self.which] if jobs.current else None
+        if path is None or not os.path.exists(path):
+            raise Problem("there is no such picture yet")
+        image = bpy.data.images.load(str(path), check_existing=True)
+        image.reload()
+        space = _image_editor(context)
+        if space:
+            space.image = image
+
+
+def _image_editor(context):
+    """The first image editor of any window, else one in a window of its own; None without windows."""
+    manager = context.window_manager
+    for window in manager.windows:
+        for area in window.screen.areas:
+            if area.type == "IMAGE_EDITOR":
+                return area.spaces.active
+    if bpy.app.background or not manager.windows:
+        return None
+    bpy.ops.wm.window_new()
+    area = manager.windows[-1].screen.areas[0]
+    area.type = "IMAGE_EDITOR"
+    return area.spaces.active
+
+
+CLASSES = (
+    POLYRECON_OT_set_up_passes,
+    POLYRECON_OT_denoise,
+    POLYRECON_OT_adaptive,
+    POLYRECON_OT_cancel,
+    POLYRECON_OT_show,
+)

@@ -1,0 +1,54 @@
+"""The panel in Render Properties."""
+
+import os
+
+import bpy
+
+from . import jobs
+
+
+class POLYRECON_PT_render(bpy.types.Panel):
+    bl_label = "polyrecon"
+    bl_idname = "POLYRECON_PT_render"
+    bl_space_type = "PROPERTIES"
+    bl_region_type = "WINDOW"
+    bl_context = "render"
+    bl_options = {"DEFAULT_CLOSED"}
+    COMPAT_ENGINES = {"CYCLES"}
+
+    @classmethod
+    def poll(cls, context):
+        return context.engine in cls.COMPAT_ENGINES
+
+    def draw(self, context):
+        chosen, layout = context.scene.polyrecon, self.layout
+        layout.use_property_split, layout.use_property_decorate = True, False
+        layout.prop(chosen, "output")
+        layout.operator("polyrecon.set_up_passes", icon="RENDERLAYERS")
+        layout.operator("polyrecon.denoise", icon="SHADERFX")
+        layout.separator()
+        layout.row().prop(chosen, "limit", expand=True)
+        layout.prop(chosen, {"SECONDS": "seconds", "SPP": "spp", "TARGET": "target"}[chosen.limit])
+        layout.row().prop(chosen, "frames", expand=True)
+        layout.operator("polyrecon.adaptive", icon="RENDER_STILL")
+        if jobs.current:
+            _draw_job(layout.box(), jobs.current)
+
+
+def _draw_job(box, job):
+    if job.running:
+        row = box.row()
+        row.progress(factor=job.fraction, text=f"{job.title}: {job.stage}, {job.seconds:.0f} s")
+        row.operator("polyrecon.cancel", text="", icon="X")
+    elif job.state == "failed":
+        box.label(text=job.problem, icon="ERROR")
+    else:
+        box.label(text=f"{job.title}: {job.state}", icon="CHECKMARK" if job.state == "done" else "CANCEL")
+    shown = [name for name, path in job.results.items() if os.path.exists(path)]
+    if shown and not job.running:
+        row = box.row(align=True)
+        for name in shown:
+            row.operator("polyrecon.show", text={"CLEAN": "Result", "NOISY": "Noisy", "ERROR": "Error Map"}[name]).which = name
+
+
+CLASSES = (POLYRECON_PT_render,)

@@ -1,0 +1,51 @@
+"""Where the programs are; empty fields are found by themselves."""
+
+import bpy
+
+from . import programs
+
+
+class PolyreconPreferences(bpy.types.AddonPreferences):
+    bl_idname = __package__
+
+    program: bpy.props.StringProperty(
+        name="polyrecon", subtype="FILE_PATH", description="The program polyrecon; empty: $POLYRECON, or on the PATH"
+    )
+    drivers: bpy.props.StringProperty(
+        name="Drivers", subtype="DIR_PATH", description="The folder with adaptive.py; empty: where polyrecon was built or installed"
+    )
+    python: bpy.props.StringProperty(
+        name="Python",
+        subtype="FILE_PATH",
+        description="A Python with numpy, OpenImageIO, jinja2 and rich, which runs the adaptive loop; empty: python3 on the PATH",
+    )
+
+    def draw(self, _context):
+        for name in ("program", "drivers", "python"):
+            self.layout.prop(self, name)
+        for find in (program, lambda: driver("adaptive.py")):
+            try:
+                self.layout.label(text=f"found: {find()}", icon="CHECKMARK")
+            except programs.Problem as problem:
+                self.layout.label(text=str(problem), icon="ERROR")
+
+
+def _chosen(name):
+    value = getattr(bpy.context.preferences.addons[__package__].preferences, name)
+    return bpy.path.abspath(value) if value else ""
+
+
+def program():
+    return programs.find_program(_chosen("program"))
+
+
+def driver(name):
+    given = _chosen("drivers")
+    return programs.find_driver(name, given, None if given else program())
+
+
+def driver_words(name):
+    return programs.driver_words(driver(name), bpy.app.binary_path, _chosen("python"))
+
+
+CLASSES = (PolyreconPreferences,)

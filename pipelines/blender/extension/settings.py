@@ -1,0 +1,65 @@
+"""What the panel remembers in the scene."""
+
+import pathlib
+
+import bpy
+from bpy.props import EnumProperty, FloatProperty, IntProperty, StringProperty
+
+from .programs import Problem
+
+# Blender 4.5 and later want to be told that "//" may stand in front.
+_RELATIVE = {"options": {"PATH_SUPPORTS_BLEND_RELATIVE"}} if bpy.app.version >= (4, 5) else {}
+
+
+class PolyreconSettings(bpy.types.PropertyGroup):
+    output: StringProperty(
+        name="Output",
+        subtype="FILE_PATH",
+        default="//polyrecon/clean_####.exr",
+        description="Clean EXR to write; #### becomes the frame number. The noisy picture and the error map stand beside it",
+        **_RELATIVE,
+    )
+    limit: EnumProperty(
+        name="Limit",
+        default="SECONDS",
+        items=(
+            ("SECONDS", "Time", "Stop when this much time is spent, all included"),
+            ("SPP", "Samples", "Stop when this many samples per pixel are spent, on average"),
+            ("TARGET", "Error", "Stop when the estimated error is small enough"),
+        ),
+    )
+    seconds: FloatProperty(name="Seconds", default=120, min=1, soft_max=3600, precision=0, description="For each frame")
+    spp: IntProperty(name="Samples", default=64, min=1, soft_max=4096, description="Average samples per pixel of a frame")
+    target: FloatProperty(
+        name="Error", default=0.002, min=1e-6, soft_max=0.1, precision=4, description="Mean relative squared error to reach"
+    )
+    frames: EnumProperty(
+        name="Frames",
+        default="CURRENT",
+        items=(("CURRENT", "Current", "The current frame"), ("RANGE", "Range", "The scene's frame range with its step")),
+    )
+
+    def limit_words(self):
+        """The limit as the driver's options."""
+        return {
+            "SECONDS": ["--budget-seconds", f"{self.seconds:g}"],
+            "SPP": ["--budget-spp", str(self.spp)],
+            "TARGET": ["--target", f"{self.target:g}"],
+        }[self.limit]
+
+    def output_pattern(self):
+        """The output as an absolute path that may still hold ####."""
+        if self.output.startswith("//") and not bpy.data.filepath:
+            raise Problem("the output is relative to the .blend file: save that first, or give a whole path")
+        path = pathlib.Path(bpy.path.abspath(self.output))
+        if path.suffix.lower() != ".exr":
+            raise Problem(f"{path.name}: the output has to be an .exr")
+        return path
+
+    def output_of(self, frame):
+        pattern = self.output_pattern()
+        hashes = pattern.name.count("#")
+        return pattern.with_name(pattern.name.replace("#" * hashes, f"{frame:0{hashes}d}")) if hashes else pattern
+
+
+CLASSES = (PolyreconSettings,)

@@ -1,0 +1,153 @@
+"""The Blender extension, built, checked, installed and used by Blender 5 itself, without a window."""
+
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+_resources = tempfile.TemporaryDirectory(prefix="polyrecon_resources_")
+os.environ["BLENDER_USER_RESOURCES"] = _resources.name  # read when bpy is imported: the user's own Blender is left alone
+
+import bpy  # noqa: E402
+import numpy as np  # noqa: E402
+from pipelines.loop import exr  # noqa: E402
+from pipelines.loop.polyrecon_cli import find_polyrecon  # noqa: E402
+
+ROOT = pathlib.Path(__file__).resolve().parents[3]
+SOURCE = ROOT / "pipelines" / "blender" / "extension"
+MODULE = "bl_ext.user_default.polyrecon"
+PATIENCE = 240  # seconds for a job on a busy machine
+
+
+def extension_tool(*words):
+    """Blender's own tool behind `blender --command extension`."""
+    tool = pathlib.Path(bpy.utils.resource_path("LOCAL")) / "scripts" / "addons_core" / "bl_pkg" / "cli" / "blender_ext.py"
+    return subprocess.run([sys.executable, str(tool), *map(str, words)], capture_output=True, text=True)
+
+
+class Extension(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        package = pathlib.Path(_resources.name) / "polyrecon.zip"
+        built = extension_tool("build", "--source-dir", SOURCE, "--output-filepath", package)
+        if built.returncode != 0:
+            raise AssertionError(built.stdout + built.stderr)
+        bpy.ops.extensions.package_install_files(repo="user_default", filepath=str(package), enable_on_install=True)
+        cls.addon = sys.modules[MODULE]
+        cls.jobs = sys.modules[MODULE + ".jobs"]
+        cls.preferences = bpy.context.preferences.addons[MODULE].preferences
+        cls.preferences.program = str(find_polyrecon())
+        cls.preferences.drivers = str(SOURCE.parent)
+        cls.preferences.python = sys.executable
+
+    @classmethod
+    def tearDownClass(cls):
+        bpy.ops.preferences.addon_disable(module=MODULE)
+        assert not hasattr(bpy.types.Scene, "polyrecon")
+
+    def setUp(self):
+        bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=False)
+        if MODULE not in bpy.context.preferences.addons:
+            self.fail("the extension does not survive a new file")
+        folder = tempfile.TemporaryDirectory(prefix="polyrecon ü ")  # a path with a space and an umlaut
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        self.scene = bpy.context.scene
+        self.scene.render.engine = "CYCLES"
+        self.scene.cycles.device = "CPU"
+        self.scene.cycles.samples = 4
+        self.scene.render.resolution_x, self.scene.render.resolution_y = 64, 36
+        self.scene.polyrecon.output = str(self.folder / "clean_####.exr")
+
+    def finish(self, job):
+        """Polls as the timer does, which needs a window; returns the longest time that one look took."""
+        longest, end = 0.0, time.monotonic() + PATIENCE
+        while True:
+            begin = time.monotonic()
+            running = job.poll()
+            longest = max(longest, time.monotonic() - begin)
+            if not running:
+                return longest
+            self.assertLess(time.monotonic(), end, list(job.lines))
+            time.sleep(0.05)
+
+    def combined(self, name):
+        found = exr.read(self.folder / name, lambda channel: channel.startswith("ViewLayer.Combined."))
+        return np.stack([found[f"ViewLayer.Combined.{c}"] for c in "RGB"], axis=-1)
+
+    def test_manifest_passes_blenders_checks(self):
+        checked = extension_tool("validate", SOURCE)
+        self.assertEqual(checked.returncode, 0, checked.stdout + checked.stderr)
+        self.assertNotIn("warning", (checked.stdout + checked.stderr).lower())
+
+    def test_panel_is_in_render_properties(self):
+        panel = bpy.types.POLYRECON_PT_render
+        self.assertEqual((panel.bl_space_type, panel.bl_context), ("PROPERTIES", "render"))
+        self.assertTrue(panel.poll(bpy.context))
+        self.scene.render.engine = "BLENDER_WORKBENCH"
+        self.assertFalse(panel.poll(bpy.context))
+
+    def test_sets_up_passes_once(self):
+        self.scene.cycles.use_denoising = self.scene.cycles.use_adaptive_sampling = True
+        set_up = sys.modules[MODULE + ".operators"].set_up_passes
+        self.assertEqual(bpy.ops.polyrecon.set_up_passes(), {"FINISHED"})
+        layer = bpy.context.view_layer.cycles
+        self.assertTrue(layer.denoising_store_passes and layer.pass_debug_sample_count)
+        self.assertFalse(self.scene.cycles.use_denoising or self.scene.cycles.use_adaptive_sampling)
+        self.assertEqual(set_up(self.scene, bpy.context.view_layer), [])
+
+    def test_denoises_the_last_render_in_the_background(self):
+        bpy.ops.polyrecon.set_up_passes()
+        bpy.ops.render.render()
+        before = self.scene.render.image_settings.file_format
+        self.assertEqual(bpy.ops.polyrecon.denoise(), {"FINISHED"})
+        job = self.jobs.current
+        self.assertTrue(job.running)  # the operator came back while the program works
+        self.assertFalse(bpy.ops.polyrecon.denoise.poll())  # one job at a time
+        self.assertLess(self.finish(job), 0.5)
+        self.assertEqual((job.state, job.problem), ("done", ""))
+        self.assertEqual(self.scene.render.image_settings.file_format, before)
+        noisy, clean = self.combined("clean_0001_noisy.exr"), self.combined("clean_0001.exr")
+        self.assertGreater(np.abs(clean - noisy).max(), 1e-3)
+        self.assertAlmostEqual(clean.mean() / noisy.mean(), 1, delta=1e-3)
+        for which, name, kind in (("CLEAN", "clean_0001.exr", "MULTILAYER"), ("ERROR", "clean_0001_error.png", "IMAGE")):
+            self.assertEqual(bpy.ops.polyrecon.show(which=which), {"FINISHED"})
+            len(bpy.data.images[name].pixels)  # Blender reads a file when somebody looks
+            self.assertEqual(bpy.data.images[name].type, kind)
+        self.assertGreater(bpy.data.images["clean_0001_error.png"].size[0], 0)
+
+    def test_says_what_is_missing(self):
+        for message, prepare in (
+            ("render the frame first", lambda: None),
+            ("relative to the .blend", lambda: setattr(self.scene.polyrecon, "output", "//clean.exr")),
+            ("has to be an .exr", lambda: setattr(self.scene.polyrecon, "output", str(self.folder / "clean.png"))),
+            ("no such program", lambda: setattr(self.preferences, "program", "/nowhere/polyrecon")),
+        ):
+            with self.subTest(message):
+                program = self.preferences.program
+                self.scene.polyrecon.output = str(self.folder / "clean_####.exr")
+                prepare()
+                with self.assertRaisesRegex(RuntimeError, message):
+                    bpy.ops.polyrecon.denoise()
+                self.preferences.program = program
+
+    def test_a_failing_program_is_told(self):
+        job = self.jobs.start("Denoise", [[str(find_polyrecon()), "denoise", "-i", "no.exr", "-o", "o.exr"]], {})
+        self.finish(job)
+        self.assertEqual(job.state, "failed")
+        self.assertIn("no.exr", job.problem)
+
+    def test_command_line(self):
+        """What `blender -c polyrecon` calls; the Blender that is a module has no such switch."""
+        run = sys.modules[MODULE + ".command_line"].run
+        self.assertEqual(run(["--help"]), 0)
+        self.assertEqual(run(["inspect", str(ROOT / "samples" / "study_small_0.exr")]), 0)
+        self.assertEqual(run(["inspect", "no.exr"]), 4)
+        self.assertEqual(run(["nonsense"]), 2)
+
+
+if __name__ == "__main__":
+    unittest.main()
