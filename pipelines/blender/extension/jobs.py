@@ -21,7 +21,7 @@ current = None  # the job that runs, or the last one
 class Job:
     """Commands to run in a row. `title` and `results` (name -> path) are for who shows it."""
 
-    def __init__(self, title, commands, results, cleanup=None):
+    def __init__(self, title, commands, results):
         self.title, self.results = title, results
         self.state = "running"  # then: done, failed, cancelled
         self.stage, self.fraction = "starting", 0.0
@@ -29,7 +29,6 @@ class Job:
         self.lines = collections.deque(maxlen=KEPT_LINES)
         self.begin = time.monotonic()
         self._commands = collections.deque(commands)
-        self._cleanup = cleanup
         self._heard = queue.SimpleQueue()
         self._child = self._asked = None
         self._next()
@@ -109,7 +108,8 @@ class Job:
                 self.lines.append(line)
 
     def _take_progress(self, line):
-        """A line of --progress json; False for any other."""
+        """A line of --progress json, of the program ("done" of "total") or of the loop ("done": a share, and more); False
+        for any other line."""
         if not line.startswith("{"):
             return False
         try:
@@ -117,9 +117,8 @@ class Job:
         except ValueError:
             return False
         if not self._asked and "stage" in told:
-            self.stage = str(told["stage"])
-            if told.get("total"):
-                self.fraction = min(max(told.get("done", 0) / told["total"], 0.0), 1.0)
+            self.stage = ", ".join([str(told["stage"]), *_figures(told)])
+            self.fraction = min(max(told.get("done", 0) / (told.get("total") or 1), 0.0), 1.0)
         return True
 
     def _signal(self, kill=False):
@@ -136,18 +135,22 @@ class Job:
     def _finish(self, state):
         self.state = state
         self.stage = state
-        if self._cleanup:
-            self._cleanup()
 
 
-def start(*args, **options):
+def _figures(told):
+    """What the loop knows of its result so far, in words."""
+    known = (("samples", "{:.3g} spp"), ("error", "error {:.2g}"), ("seconds_left", "{:.0f} s left"))
+    return [words.format(told[name]) for name, words in known if name in told]
+
+
+def start(title, commands, results):
     """Starts a job and the timer that looks after it; returns the job."""
     global current
     import bpy
 
     if current and current.running:
         raise programs.Problem(f"{current.title} is still running")
-    current = Job(*args, **options)
+    current = Job(title, commands, results)
     if not bpy.app.timers.is_registered(_tick):
         bpy.app.timers.register(_tick, first_interval=0.1, persistent=True)
     return current

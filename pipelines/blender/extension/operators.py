@@ -1,9 +1,7 @@
 """What the panel's buttons do. Each says what it needs where that is missing, and none waits for a program."""
 
 import os
-import pathlib
 import shutil
-import tempfile
 
 import bpy
 
@@ -123,20 +121,34 @@ class POLYRECON_OT_adaptive(_Start, bpy.types.Operator):
         chosen = scene.polyrecon
         if scene.render.engine != "CYCLES":
             raise Problem("only Cycles can be rendered adaptively: choose it as the render engine")
-        pattern = chosen.output_pattern()
-        if chosen.frames == "RANGE":
-            frames = ["--frames", f"{scene.frame_start}-{scene.frame_end}x{scene.frame_step}"]
-        else:
-            pattern, frames = chosen.output_of(scene.frame_current), ["--frame", str(scene.frame_current)]
-        words = preferences.driver_words("adaptive.py")
-        program = preferences.program()
-        pattern.parent.mkdir(parents=True, exist_ok=True)
-        folder = pathlib.Path(tempfile.mkdtemp(prefix="polyrecon_"))
-        copy = folder / (pathlib.Path(bpy.data.filepath).stem + ".blend" if bpy.data.filepath else "scene.blend")
-        bpy.ops.wm.save_as_mainfile(filepath=str(copy), copy=True, check_existing=False)
-        words += [copy, "-o", pattern, *frames, *chosen.limit_words(), "--polyrecon", program]
-        results = _results(chosen.output_of(scene.frame_current))
-        jobs.start("Adaptive render", [words], results, cleanup=lambda: shutil.rmtree(folder, ignore_errors=True))
+        words, program = preferences.driver_words("adaptive.py"), preferences.program()
+        frames = chosen.frames_of(scene)
+        outputs = {frame: chosen.output_of(frame) for frame in frames}
+        if len(set(outputs.values())) < len(frames):
+            raise Problem(f"{chosen.output}: needs #### for the number of the frame")
+        last = outputs[frames[-1]]
+        last.parent.mkdir(parents=True, exist_ok=True)
+        copy = last.parent / "polyrecon_scene.blend"
+        if not (chosen.go_on and copy.exists()):
+            _forget(outputs.values())
+            bpy.ops.wm.save_as_mainfile(filepath=str(copy), copy=True, check_existing=False)
+        words += [copy, "-o", chosen.output_pattern(), *chosen.limit_words(), *chosen.frames_words(scene)]
+        words += ["--polyrecon", program, "--progress", "json", *(["--resume"] if chosen.go_on else [])]
+        passes = _passes(last)
+        results = {"CLEAN": last, "NOISY": passes / "merged.exr", "ERROR": passes / "error.png", "REPORT": passes / "report.html"}
+        jobs.start("Adaptive", [words, _error_picture(program, passes / "error.exr", results)], results)
+
+
+def _passes(clean):
+    """Where the loop keeps what belongs to a frame."""
+    return clean.with_suffix(".passes")
+
+
+def _forget(outputs):
+    """Passes of an earlier scene would be refused by the loop."""
+    for folder in map(_passes, outputs):
+        if (folder / "journal.json").exists():
+            shutil.rmtree(folder)
 
 
 class POLYRECON_OT_cancel(bpy.types.Operator):
@@ -160,12 +172,18 @@ class POLYRECON_OT_show(_Operator, bpy.types.Operator):
     bl_idname = "polyrecon.show"
     bl_label = "Show"
 
-    which: bpy.props.EnumProperty(items=(("CLEAN", "Result", ""), ("NOISY", "Noisy", ""), ("ERROR", "Error Map", "")))
+    which: bpy.props.EnumProperty(
+        items=(("CLEAN", "Result", ""), ("NOISY", "Noisy", ""), ("ERROR", "Error Map", ""), ("REPORT", "Report", ""))
+    )
 
     def work(self, context):
-        path = jobs.current.results[self.which] if jobs.current else None
+        path = jobs.current.results.get(self.which) if jobs.current else None
         if path is None or not os.path.exists(path):
             raise Problem("there is no such picture yet")
+        if self.which == "REPORT":
+            if not bpy.app.background:
+                bpy.ops.wm.url_open(url=path.as_uri())
+            return
         image = bpy.data.images.load(str(path), check_existing=True)
         image.reload()
         space = _image_editor(context)

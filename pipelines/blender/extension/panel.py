@@ -30,6 +30,7 @@ class POLYRECON_PT_render(bpy.types.Panel):
         layout.row().prop(chosen, "limit", expand=True)
         layout.prop(chosen, {"SECONDS": "seconds", "SPP": "spp", "TARGET": "target"}[chosen.limit])
         layout.row().prop(chosen, "frames", expand=True)
+        layout.prop(chosen, "go_on")
         layout.operator("polyrecon.adaptive", icon="RENDER_STILL")
         if jobs.current:
             _draw_job(layout.box(), jobs.current)
@@ -48,7 +49,7 @@ def _draw_job(box, job):
     if shown and not job.running:
         row = box.row(align=True)
         for name in shown:
-            row.operator("polyrecon.show", text={"CLEAN": "Result", "NOISY": "Noisy", "ERROR": "Error Map"}[name]).which = name
+            row.operator("polyrecon.show", text=name.title()).which = name
 
 
 CLASSES = (POLYRECON_PT_render,)

@@ -1,9 +1,10 @@
 """What the panel remembers in the scene."""
 
 import pathlib
+import re
 
 import bpy
-from bpy.props import EnumProperty, FloatProperty, IntProperty, StringProperty
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
 
 from .programs import Problem
 
@@ -38,6 +39,21 @@ class PolyreconSettings(bpy.types.PropertyGroup):
         default="CURRENT",
         items=(("CURRENT", "Current", "The current frame"), ("RANGE", "Range", "The scene's frame range with its step")),
     )
+    go_on: BoolProperty(
+        name="Go On",
+        description="Add to the passes of the last adaptive render, with the scene as it was then, in place of starting anew",
+    )
+
+    def frames_of(self, scene):
+        if self.frames == "CURRENT":
+            return [scene.frame_current]
+        return list(range(scene.frame_start, scene.frame_end + 1, scene.frame_step))
+
+    def frames_words(self, scene):
+        """The frames as the driver's option."""
+        if self.frames == "CURRENT":
+            return [f"--frame={scene.frame_current}"]
+        return [f"--frames={scene.frame_start}-{scene.frame_end}x{scene.frame_step}"]
 
     def limit_words(self):
         """The limit as the driver's options."""
@@ -57,9 +73,9 @@ class PolyreconSettings(bpy.types.PropertyGroup):
         return path
 
     def output_of(self, frame):
+        """The last #### of the name is the frame's number, as for the drivers."""
         pattern = self.output_pattern()
-        hashes = pattern.name.count("#")
-        return pattern.with_name(pattern.name.replace("#" * hashes, f"{frame:0{hashes}d}")) if hashes else pattern
+        return pattern.with_name(re.sub(r"#+(?!.*#)", lambda hashes: f"{frame:0{len(hashes[0])}d}", pattern.name))
 
 
 CLASSES = (PolyreconSettings,)

@@ -119,6 +119,54 @@ class Extension(unittest.TestCase):
             self.assertEqual(bpy.data.images[name].type, kind)
         self.assertGreater(bpy.data.images["clean_0001_error.png"].size[0], 0)
 
+    def test_renders_adaptively_and_goes_on(self):
+        self.scene.polyrecon.limit, self.scene.polyrecon.spp = "SPP", 12
+        self.assertEqual(bpy.ops.polyrecon.adaptive(), {"FINISHED"})
+        job, stages = self.jobs.current, set()
+        while job.poll():
+            stages.add(job.stage)
+            self.assertTrue(0 <= job.fraction <= 1)
+            time.sleep(0.05)
+        self.assertEqual((job.state, job.problem), ("done", ""))
+        self.assertTrue(any("spp" in stage for stage in stages), stages)
+        self.assertFalse([name for name, path in job.results.items() if not path.exists()])
+        self.assertEqual(self.combined("clean_0001.exr").shape, (36, 64, 3))
+        self.assertEqual(bpy.ops.polyrecon.show(which="NOISY"), {"FINISHED"})
+
+        def passes():
+            return {path: path.stat().st_mtime_ns for path in (self.folder / "clean_0001.passes").glob("part_*.exr")}
+
+        before = passes()
+        self.scene.polyrecon.spp, self.scene.polyrecon.go_on = 16, True
+        bpy.ops.polyrecon.adaptive()
+        self.finish(self.jobs.current)
+        self.assertEqual((self.jobs.current.state, self.jobs.current.problem), ("done", ""))
+        after = passes()
+        self.assertEqual(before, {path: after[path] for path in before})  # nothing was rendered again
+        self.assertGreater(len(after), len(before))
+
+    def test_cancel_stops_the_loop_and_its_blender(self):
+        self.scene.polyrecon.seconds = 600
+        self.scene.cycles.samples = 4
+        bpy.ops.polyrecon.adaptive()
+        job = self.jobs.current
+        while job.poll() and job.fraction == 0:
+            time.sleep(0.05)
+        self.assertTrue(job.running, list(job.lines))
+        begin = time.monotonic()
+        bpy.ops.polyrecon.cancel()
+        self.assertLess(time.monotonic() - begin, 0.5)
+        self.finish(job)
+        self.assertEqual(job.state, "cancelled")
+        with self.assertRaises(ProcessLookupError):
+            os.killpg(job._child.pid, 0)
+        for process in pathlib.Path("/proc").glob("[0-9]*"):
+            try:
+                words = (process / "cmdline").read_bytes()
+            except OSError:
+                continue
+            self.assertNotIn(os.fsencode(self.folder), words)
+
     def test_says_what_is_missing(self):
         for message, prepare in (
             ("render the frame first", lambda: None),

@@ -1,0 +1,63 @@
+"""The bench's table and plot."""
+
+import os
+import platform
+
+LETTER = {"uniform": "(a) uniform, polyrecon", "adaptive": "(b) adaptive loop", "cycles": "(c) Cycles adaptive, OIDN"}
+LETTER |= {"oidn": "(d) uniform, OIDN"}
+COLOUR = {"uniform": "#4477aa", "adaptive": "#cc3311", "cycles": "#228833", "oidn": "#aa8800"}
+BEGIN, END = "<!-- bench: begin -->", "<!-- bench: end -->"
+
+
+def table(rows):
+    """Markdown: a line for each scene and budget, seconds and relMSE of each method, and the ratios that are goals."""
+    methods = [method for method in LETTER if any(row["method"] == method for row in rows)]
+    lines = ["| scene | budget | " + " | ".join(LETTER[method] for method in methods) + " | (b) / (a) | (b) / (c) |"]
+    lines.append("|---|---|" + "---|" * (len(methods) + 2))
+    for scene, budget in dict.fromkeys((row["scene"], row["budget"]) for row in rows):
+        found = {row["method"]: row for row in rows if (row["scene"], row["budget"]) == (scene, budget)}
+        cells = [f"{found[m]['relMSE']:.5f} ({found[m]['seconds']:.1f} s)" if m in found else "" for m in methods]
+        cells += [_ratio(found, "adaptive", "uniform"), _ratio(found, "adaptive", "cycles")]
+        lines.append(f"| {scene} | {budget:g} s | " + " | ".join(cells) + " |")
+    return "\n".join(lines)
+
+
+def _ratio(found, above, below):
+    return f"{found[above]['relMSE'] / found[below]['relMSE']:.2f}" if above in found and below in found else ""
+
+
+def write(document, rows, options):
+    """Puts the table between the marks of a document, and the plot beside it."""
+    text = document.read_text()
+    head, _, rest = text.partition(BEGIN)
+    _, mark, tail = rest.partition(END)
+    if not mark:
+        raise SystemExit(f"{document}: no '{BEGIN}' ... '{END}'")
+    made = f"{options.size}, references of {options.reference_spp} samples, {os.cpu_count()} cores ({platform.machine()})"
+    clock = {"wall": "seconds", "cpu": "processor seconds"}[options.clock]
+    plot(rows, document.with_suffix(".svg"), clock)
+    document.write_text(f"{head}{BEGIN}\n{made}; relMSE ({clock}):\n\n{table(rows)}\n{END}{tail}")
+
+
+def plot(rows, path, clock):
+    """relMSE against seconds, a panel for each scene."""
+    import matplotlib
+
+    matplotlib.use("svg")
+    matplotlib.rcParams.update({"svg.hashsalt": "bench", "svg.fonttype": "none", "font.size": 8})
+    import matplotlib.pyplot as plt
+
+    scenes = list(dict.fromkeys(row["scene"] for row in rows))
+    figure, axes = plt.subplots(1, len(scenes), figsize=(2.6 * len(scenes), 2.8), squeeze=False, layout="constrained")
+    for axis, scene in zip(axes[0], scenes):
+        for method, label in LETTER.items():
+            points = sorted((r["seconds"], r["relMSE"]) for r in rows if (r["scene"], r["method"]) == (scene, method))
+            if points:
+                axis.loglog(*zip(*points), "o-", color=COLOUR[method], label=label, markersize=3, linewidth=1.2)
+        axis.set_title(scene)
+        axis.set_xlabel(f"{clock}, all included")
+        axis.grid(True, which="both", linewidth=0.3)
+    axes[0][0].set_ylabel("relMSE")
+    figure.legend(*axes[0][0].get_legend_handles_labels(), loc="outside lower center", ncols=len(LETTER))
+    figure.savefig(path, metadata={"Date": None})
+    plt.close(figure)
