@@ -12,7 +12,7 @@ class PolyreconPreferences(bpy.types.AddonPreferences):
         name="polyrecon", subtype="FILE_PATH", description="The program polyrecon; empty: $POLYRECON, or on the PATH"
     )
     drivers: bpy.props.StringProperty(
-        name="Drivers", subtype="DIR_PATH", description="The folder with adaptive.py; empty: where polyrecon was built or installed"
+        name="Drivers", subtype="DIR_PATH", description="The folder with adaptive.py; empty: found by the program"
     )
     python: bpy.props.StringProperty(
         name="Python",
@@ -23,9 +23,9 @@ class PolyreconPreferences(bpy.types.AddonPreferences):
     def draw(self, _context):
         for name in ("program", "drivers", "python"):
             self.layout.prop(self, name)
-        for find in (program, lambda: driver("adaptive.py")):
+        for find in (lambda: [program()], lambda: driver_words("adaptive.py")):
             try:
-                self.layout.label(text=f"found: {find()}", icon="CHECKMARK")
+                self.layout.label(text="found: " + " ".join(map(str, find())), icon="CHECKMARK")
             except programs.Problem as problem:
                 self.layout.label(text=str(problem), icon="ERROR")
 
@@ -39,13 +39,8 @@ def program():
     return programs.find_program(_chosen("program"))
 
 
-def driver(name):
-    given = _chosen("drivers")
-    return programs.find_driver(name, given, None if given else program())
-
-
 def driver_words(name):
-    return programs.driver_words(driver(name), bpy.app.binary_path, _chosen("python"))
+    return programs.driver_words(name, program(), bpy.app.binary_path, _chosen("drivers"), _chosen("python"))
 
 
 CLASSES = (PolyreconPreferences,)

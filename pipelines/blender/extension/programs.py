@@ -5,6 +5,7 @@ import pathlib
 import shutil
 import sys
 
+COMMANDS = {"adaptive.py": "polyrecon-blender"}  # their names once installed
 HERE = pathlib.Path(__file__).resolve().parent
 
 
@@ -27,33 +28,33 @@ def find_program(given=""):
     raise Problem("polyrecon is not on the PATH: name the program in the add-on's preferences")
 
 
-def find_driver(name, given="", program=None):
-    """A driver script like adaptive.py: in the folder of the preferences, else in the checkout that this add-on or the
-    program belongs to, else where the program was installed."""
-    if given:
-        places = [pathlib.Path(given)]
-    else:
-        places = [HERE.parent]
-        if program is not None:
-            program = pathlib.Path(program).resolve()
-            places += [root / "pipelines" / "blender" for root in program.parents[1:4]]
-            places += [program.parents[1] / "share" / "polyrecon" / "pipelines" / "blender"]
-    for place in places:
-        if (place / name).is_file():
-            return place / name
-    raise Problem(f"{name} was not found: name the folder pipelines/blender in the add-on's preferences")
+def driver_words(name, program, blender, folder="", python=""):
+    """The words that start a driver like adaptive.py, which renders by the Blender of that path; none: Blender is a module
+    of this Python.
+
+    The driver is taken from the folder of the preferences, else from the checkout that this add-on or the program belongs
+    to, else it is the command that was installed beside the program or stands on the PATH."""
+    places = [folder] if folder else [HERE.parent, *(root / "pipelines" / "blender" for root in program.resolve().parents[3:4])]
+    found = next((script for place in places if (script := pathlib.Path(place) / name).is_file()), None)
+    if found:
+        return [python or _python(blender), os.fspath(found), *_by(blender)]
+    command = COMMANDS.get(name, name)
+    installed = None if folder else shutil.which(command, path=program.parent) or shutil.which(command)
+    if not installed:
+        raise Problem(f"{name} was not found: name the folder pipelines/blender in the add-on's preferences")
+    return [installed, *_by(blender)]
 
 
-def driver_words(driver, blender, python=""):
-    """The words that start a driver which renders by the Blender of that path; none: Blender is a module of this Python.
+def _by(blender):
+    return ["--blender", blender] if blender else ["--bpy"]
 
-    The driver runs in the Python of the preferences, or the system's: Blender's own lacks the packages it needs."""
-    if not blender:
-        return [python or sys.executable, os.fspath(driver), "--bpy"]
-    python = python or shutil.which("python3") or shutil.which("python")
+
+def _python(blender):
+    """Blender's own Python lacks the packages that a driver needs, unless Blender is a module of it."""
+    python = (shutil.which("python3") or shutil.which("python")) if blender else sys.executable
     if not python:
         raise Problem("no python3 on the PATH: name one in the add-on's preferences")
-    return [python, os.fspath(driver), "--blender", blender]
+    return python
 
 
 def environment():
