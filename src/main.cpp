@@ -8,6 +8,10 @@
 #include <new>
 #include <string>
 
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+
 #include "cli/commands.h"
 #include "cli/progress_output.h"
 #include "core/error.h"
@@ -56,6 +60,14 @@ Command parse(int argc, char** argv) {
   return chosen;
 }
 
+/// Images come and go by the dozen: memory that went back to the system each time would be cleared for each anew.
+void keep_freed_memory() {
+#ifdef __GLIBC__
+  mallopt(M_MMAP_THRESHOLD, 1 << 30);
+  mallopt(M_TRIM_THRESHOLD, 1 << 30);
+#endif
+}
+
 ExitCode code_of(const polyrecon::Error& error) {
   return error.code() == ExitCode::Interrupted && polyrecon::caught_signal() == SIGTERM ? ExitCode::Terminated
                                                                                         : error.code();
@@ -64,6 +76,7 @@ ExitCode code_of(const polyrecon::Error& error) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  keep_freed_memory();
   try {
     const Command command = parse(argc, argv);
     polyrecon::catch_signals();

@@ -40,8 +40,29 @@ POLYRECON_SIMD void add_distances(const Real* a, const Real* b, const Real* va, 
   }
 }
 
-POLYRECON_SIMD void add_rows(const Real* in, Real factor, Real* out, int n) {
-  for (int i = 0; i < n; ++i) out[i] += factor * in[i];
+/// out[i] = factor x sum of in[i], in[i + step], ..., one for each of the patch.
+template <int patch>
+POLYRECON_SIMD void patch_sums(const Real* in, std::ptrdiff_t step, Real factor, Real* out, int n) {
+  for (int i = 0; i < n; ++i) {
+    Real sum = in[i];
+    for (int k = 1; k < patch; ++k) sum += in[i + k * step];
+    out[i] = factor * sum;
+  }
+}
+
+void add_patch(int patch, const Real* in, std::ptrdiff_t step, Real factor, Real* out, int n) {
+  switch (patch) {
+    case 1:
+      return patch_sums<1>(in, step, factor, out, n);
+    case 3:
+      return patch_sums<3>(in, step, factor, out, n);
+    case 5:
+      return patch_sums<5>(in, step, factor, out, n);
+    case 7:
+      return patch_sums<7>(in, step, factor, out, n);
+    default:
+      return patch_sums<9>(in, step, factor, out, n);
+  }
 }
 
 POLYRECON_SIMD void weights_of(Real* distance, Real inverse_square, int n) {
@@ -51,27 +72,28 @@ POLYRECON_SIMD void weights_of(Real* distance, Real inverse_square, int n) {
   }
 }
 
+POLYRECON_SIMD void add_weights(const Real* weight, double* total, int n) {
+  for (int i = 0; i < n; ++i) total[i] += static_cast<double>(weight[i]);
+}
+
 POLYRECON_SIMD void accumulate(const Real* weight, const Real* in, double* out, int n) {
   for (int i = 0; i < n; ++i) out[i] += static_cast<double>(weight[i]) * static_cast<double>(in[i]);
 }
 
-/// A band of rows with a border of repeated pixels: what the offsets are taken from.
+/// A tile with a border of repeated pixels: what the offsets are taken from.
 struct Padded {
-  int width, height, channels, margin;
+  int width, height, margin;
   std::vector<Real> samples;
 
-  Padded(const Image& image, const Rect& rows, int border)
-      : width(image.width() + 2 * border),
-        height(rows.height() + 2 * border),
-        channels(image.channels()),
-        margin(border) {
+  Padded(const Image& image, const Rect& tile, int border)
+      : width(tile.width() + 2 * border), height(tile.height() + 2 * border), margin(border) {
     samples.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) *
-                   static_cast<std::size_t>(channels));
-    for (int c = 0; c < channels; ++c)
+                   static_cast<std::size_t>(image.channels()));
+    for (int c = 0; c < image.channels(); ++c)
       for (int y = 0; y < height; ++y) {
-        const Real* in = image.row(c, std::clamp(rows.y0 + y - border, 0, image.height() - 1));
-        for (int x = 0; x < width; ++x)
-          at(x - border, y - border, c)[0] = in[std::clamp(x - border, 0, image.width() - 1)];
+        const Real* in = image.row(c, std::clamp(tile.y0 + y - border, 0, image.height() - 1));
+        Real* out = at(-border, y - border, c);
+        for (int x = 0; x < width; ++x) out[x] = in[std::clamp(tile.x0 + x - border, 0, image.width() - 1)];
       }
   }
   Real* at(int x, int y, int c) {
@@ -82,68 +104,91 @@ struct Padded {
   }
 };
 
-/// Filters the rows `band` of source with weights measured on guide.
-void filter_band(const Image& source, const Image& guide, const Image& variance, const Rect& band,
-                 const PrefilterParams& p, Image& out) {
-  const int margin = p.search_radius + p.patch_radius, width = source.width(), patch = 2 * p.patch_radius + 1;
-  const int wide = width + 2 * p.patch_radius, high = band.height() + 2 * p.patch_radius;
-  Padded values(guide, band, margin), noise(variance, band, margin);
-  std::vector<Real> pixel(static_cast<std::size_t>(wide) * static_cast<std::size_t>(high));
-  std::vector<Real> row_sum(static_cast<std::size_t>(wide)), distance(static_cast<std::size_t>(width));
-  const auto plane = static_cast<std::size_t>(width) * static_cast<std::size_t>(band.height());
-  std::vector<double> sum(plane * static_cast<std::size_t>(source.channels()), 0.0), total(plane, 0.0);
-  const std::vector<Real> ones(static_cast<std::size_t>(width), Real(1));
-  for (int dy = -p.search_radius; dy <= p.search_radius; ++dy)
-    for (int dx = -p.search_radius; dx <= p.search_radius; ++dx) {
-      std::fill(pixel.begin(), pixel.end(), Real(0));
-      for (int y = 0; y < high; ++y)
-        for (int c = 0; c < source.channels(); ++c) {
-          const int py = y - p.patch_radius, px = -p.patch_radius;
-          add_distances(values.at(px, py, c), values.at(px + dx, py + dy, c), noise.at(px, py, c),
-                        noise.at(px + dx, py + dy, c), Real(1) / static_cast<Real>(source.channels()),
-                        pixel.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(wide), wide);
+/// Filters one tile of source with weights measured on guide.
+class TileFilter {
+ public:
+  TileFilter(const Image& source, const Image& guide, const Image& variance, const Rect& tile,
+             const PrefilterParams& params)
+      : source_(source),
+        tile_(tile),
+        params_(params),
+        values_(guide, tile, params.search_radius + params.patch_radius),
+        noise_(variance, tile, params.search_radius + params.patch_radius),
+        wide_(tile.width() + 2 * params.patch_radius),
+        pixel_(static_cast<std::size_t>(wide_) * static_cast<std::size_t>(tile.height() + 2 * params.patch_radius)),
+        row_sum_(static_cast<std::size_t>(wide_)),
+        weight_(static_cast<std::size_t>(tile.width())),
+        sum_(tile.area() * static_cast<std::size_t>(source.channels()), 0.0),
+        total_(tile.area(), 0.0) {}
+
+  void run(Image& out) {
+    for (int dy = -params_.search_radius; dy <= params_.search_radius; ++dy)
+      for (int dx = -params_.search_radius; dx <= params_.search_radius; ++dx) {
+        measure(dx, dy);
+        for (int y = 0; y < tile_.height(); ++y) {
+          const int row = tile_.y0 + y + dy;
+          if (row >= 0 && row < source_.height()) add_row(dx, dy, y);
         }
-      for (int y = std::max(0, -dy - band.y0); y < std::min(band.height(), source.height() - dy - band.y0); ++y) {
-        std::fill(row_sum.begin(), row_sum.end(), Real(0));
-        for (int k = 0; k < patch; ++k)
-          add_rows(pixel.data() + static_cast<std::size_t>(y + k) * static_cast<std::size_t>(wide), Real(1),
-                   row_sum.data(), wide);
-        std::fill(distance.begin(), distance.end(), Real(0));
-        for (int k = 0; k < patch; ++k)
-          add_rows(row_sum.data() + k, Real(1) / static_cast<Real>(patch * patch), distance.data(), width);
-        weights_of(distance.data(), static_cast<Real>(1 / (p.bandwidth * p.bandwidth)), width);
-        const int x0 = std::max(0, -dx), x1 = std::min(width, width - dx);
-        if (x0 >= x1) continue;
-        const std::size_t at =
-            static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x0);
-        accumulate(distance.data() + x0, ones.data(), total.data() + at, x1 - x0);
-        for (int c = 0; c < source.channels(); ++c)
-          accumulate(distance.data() + x0, source.row(c, band.y0 + y + dy) + x0 + dx,
-                     sum.data() + static_cast<std::size_t>(c) * plane + at, x1 - x0);
       }
-    }
-  for (int c = 0; c < source.channels(); ++c)
-    for (int y = 0; y < band.height(); ++y)
-      for (int x = 0; x < width; ++x) {
-        const std::size_t i =
-            static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
-        out.at(x, band.y0 + y, c) = static_cast<Real>(sum[static_cast<std::size_t>(c) * plane + i] / total[i]);
-      }
-}
+    for (int c = 0; c < source_.channels(); ++c)
+      for (int y = 0; y < tile_.height(); ++y)
+        for (int x = 0; x < tile_.width(); ++x)
+          out.at(tile_.x0 + x, tile_.y0 + y, c) =
+              static_cast<Real>(sum_[static_cast<std::size_t>(c) * tile_.area() + at(x, y)] / total_[at(x, y)]);
+  }
+
+ private:
+  std::size_t at(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(tile_.width()) + static_cast<std::size_t>(x);
+  }
+
+  /// Distances of single pixels to those at an offset.
+  void measure(int dx, int dy) {
+    const int r = params_.patch_radius, channels = source_.channels();
+    std::fill(pixel_.begin(), pixel_.end(), Real(0));
+    for (int y = 0; y < tile_.height() + 2 * r; ++y)
+      for (int c = 0; c < channels; ++c)
+        add_distances(values_.at(-r, y - r, c), values_.at(dx - r, y + dy - r, c), noise_.at(-r, y - r, c),
+                      noise_.at(dx - r, y + dy - r, c), Real(1) / static_cast<Real>(channels),
+                      pixel_.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(wide_), wide_);
+  }
+
+  /// Turns the distances into weights of patches and adds the pixels at the offset to one row of sums.
+  void add_row(int dx, int dy, int y) {
+    const int patch = 2 * params_.patch_radius + 1;
+    add_patch(patch, pixel_.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(wide_), wide_, 1,
+              row_sum_.data(), wide_);
+    add_patch(patch, row_sum_.data(), 1, Real(1) / static_cast<Real>(patch * patch), weight_.data(), tile_.width());
+    weights_of(weight_.data(), static_cast<Real>(1 / (params_.bandwidth * params_.bandwidth)), tile_.width());
+    const int x0 = std::max(0, -dx - tile_.x0), x1 = std::min(tile_.width(), source_.width() - dx - tile_.x0);
+    if (x0 >= x1) return;
+    add_weights(weight_.data() + x0, total_.data() + at(x0, y), x1 - x0);
+    for (int c = 0; c < source_.channels(); ++c)
+      accumulate(weight_.data() + x0, source_.row(c, tile_.y0 + y + dy) + tile_.x0 + x0 + dx,
+                 sum_.data() + static_cast<std::size_t>(c) * tile_.area() + at(x0, y), x1 - x0);
+  }
+
+  const Image& source_;
+  Rect tile_;
+  const PrefilterParams& params_;
+  Padded values_, noise_;
+  int wide_;  ///< The tile and a patch radius on both sides.
+  std::vector<Real> pixel_, row_sum_, weight_;
+  std::vector<double> sum_, total_;
+};
 
 }  // namespace
 
 std::array<Image, 2> prefilter(const std::array<Image, 2>& halves, const Image& variance, const PrefilterParams& params,
                                Progress& progress) {
-  constexpr int band_height = 32;
+  constexpr int tile_side = 64;  // its sums and distances stay in the second cache
   const Image noise = widened_variance(variance);
   const int width = variance.width(), height = variance.height();
   std::array<Image, 2> out{Image(width, height, variance.channels()), Image(width, height, variance.channels())};
-  const auto bands = static_cast<std::size_t>((height + band_height - 1) / band_height);
-  parallel_for(2 * bands, progress, [&](std::size_t i) {
+  const auto tiles = aligned_blocks(variance.bounds(), tile_side);
+  parallel_for(2 * tiles.size(), progress, [&](std::size_t i) {
     const std::size_t h = i % 2;
-    const int y0 = static_cast<int>(i / 2) * band_height;
-    filter_band(halves[h], halves[1 - h], noise, {0, y0, width, std::min(y0 + band_height, height)}, params, out[h]);
+    TileFilter(halves[h], halves[1 - h], noise, tiles[i / 2], params).run(out[h]);
   });
   return out;
 }

@@ -6,6 +6,7 @@
 #include <OpenEXR/ImfTiledOutputPart.h>
 
 #include <algorithm>
+#include <string_view>
 
 namespace polyrecon {
 namespace {
@@ -17,6 +18,10 @@ bool is_tiled(const Imf::Header& header) {
 }  // namespace
 
 std::size_t size_of(Imf::PixelType type) { return type == Imf::HALF ? 2 : 4; }
+
+std::size_t hash_of(const NativeChannel& channel) {
+  return std::hash<std::string_view>{}({channel.samples.data(), channel.samples.size()});
+}
 
 NativeBand::NativeBand(const Imf::Header& header, int first, int last_excluded)
     : x0(header.dataWindow().min.x),

@@ -20,6 +20,9 @@ struct NativeChannel {
   std::vector<char> samples;
 };
 
+/// 64 bits that tell the samples of two channels apart.
+std::size_t hash_of(const NativeChannel& channel);
+
 /// Some lines of all channels of a part, bit for bit.
 struct NativeBand {
   int x0 = 0, width = 0;

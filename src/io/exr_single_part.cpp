@@ -5,20 +5,11 @@
 #include <fmt/format.h>
 
 #include <stdexcept>
-#include <string_view>
 #include <vector>
 
 #include "io/atomic_file.h"
 
 namespace polyrecon {
-namespace {
-
-std::size_t hash_of(const NativeChannel& channel) {
-  return std::hash<std::string_view>{}({channel.samples.data(), channel.samples.size()});
-}
-
-}  // namespace
-
 void write_single_part(const std::string& target, const Imf::Header& header,
                        const std::function<void(NativeBand&)>& make, int lines) {
   std::vector<std::size_t> hashes;

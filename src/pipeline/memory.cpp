@@ -20,6 +20,22 @@ std::size_t pair_channels(const FrameShape& shape) {
 
 }  // namespace
 
+FrameShape shape_of(const Frame& frame) {
+  FrameShape shape{frame.beauty.mean.pixels(), 0, 3 + 3 * static_cast<int>(frame.aovs.size()), 0};
+  const auto add = [&](const Pass& pass) {
+    for (const Image* image : {&pass.mean, &pass.variance, &pass.half_a, &pass.half_b})
+      shape.channels += image->channels();
+  };
+  add(frame.beauty);
+  add(frame.prior);
+  for (const Pass& aov : frame.aovs) add(aov);
+  for (const Feature& feature : frame.features) {
+    add(feature.pass);
+    shape.feature_channels += feature.pass.mean.channels();
+  }
+  return shape;
+}
+
 MemoryNeeds memory_needs(const FrameShape& shape, const Params& params) {
   const std::size_t plane = shape.pixels * sizeof(Real), noise = 3;
   // The frame's means of colours, alpha and sample count stay to the end.

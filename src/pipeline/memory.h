@@ -8,6 +8,8 @@
 
 namespace polyrecon {
 
+FrameShape shape_of(const Frame& frame);
+
 /// Bytes that a reconstruction needs, counted from the images that live at once.
 struct MemoryNeeds {
   std::size_t prepare = 0;  ///< While the passes are read and prepared.

@@ -33,22 +33,6 @@ auto timed(Report& report, Progress& progress, const std::string& name, std::siz
   return result;
 }
 
-FrameShape shape_of(const Frame& frame) {
-  FrameShape shape{frame.beauty.mean.pixels(), 0, 3 + 3 * static_cast<int>(frame.aovs.size()), 0};
-  const auto add = [&](const Pass& pass) {
-    for (const Image* image : {&pass.mean, &pass.variance, &pass.half_a, &pass.half_b})
-      shape.channels += image->channels();
-  };
-  add(frame.beauty);
-  add(frame.prior);
-  for (const Pass& aov : frame.aovs) add(aov);
-  for (const Feature& feature : frame.features) {
-    add(feature.pass);
-    shape.feature_channels += feature.pass.mean.channels();
-  }
-  return shape;
-}
-
 /// Sections 2.1 and 2.2 of the method on one level and, by way of its remainder, on the coarser ones.
 Candidate solve_level(const HalfPair& pair, int level, const Params& params, std::size_t max_bytes,
                       FitCounters& counters, Progress& progress) {

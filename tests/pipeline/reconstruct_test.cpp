@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "features/prepare.h"
+#include "pipeline/memory.h"
 #include "pipeline/stage.h"
 #include "support/images.h"
 #include "support/random.h"
@@ -555,6 +556,24 @@ TEST(Reconstruct, HasTheSameBitsForAnyNumberOfThreads) {
     EXPECT_TRUE(test::same_bits(again.order, once.order)) << threads;
     EXPECT_EQ(again.error.cross_validated, once.error.cross_validated) << threads;
   }
+}
+
+/// The whole method under the least limit that is accepted: its stages work in tiles.
+TEST(Reconstruct, HasTheSameBitsUnderTheLeastMemory) {
+  const Scene scene = make_scene(700, 260, 0.3, 27);
+  Params params = quick();
+  params.stages = 1;  // the frame is larger than a tile: keep the rest small
+  params.max_order = 0;
+  params.stride = 5;
+  const FrameShape shape = shape_of(scene.frame);
+  ASSERT_LT(smallest_tile_pixels(params), shape.pixels);
+  const std::size_t plenty = params.max_memory;
+  params.max_memory = memory_needs(shape, params).least();
+  const Result tiled = run(scene.frame, params);
+  params.max_memory = plenty;
+  const Result whole = run(scene.frame, params);
+  EXPECT_TRUE(test::same_bits(tiled.beauty, whole.beauty));
+  EXPECT_TRUE(test::same_bits(tiled.error.mse, whole.error.mse));
 }
 
 /// A stage in tiles of any size; a strip of 5 rows keeps it quick and is wider than three tiles with their margins.
