@@ -9,7 +9,7 @@ GRACE_SECONDS = 5
 
 def start(words, **options):
     """subprocess.Popen of a list of words, as the leader of a new process group."""
-    return subprocess.Popen([os.fspath(word) for word in words], start_new_session=True, **options)
+    return subprocess.Popen([word if isinstance(word, os.PathLike) else str(word) for word in words], start_new_session=True, **options)
 
 
 def stop(child):

@@ -5,9 +5,11 @@ The terms:
             the loop never asks for a number twice. A renderer without a sequence may use `first` as its seed, if different
             numbers give independent samples.
   part      One EXR of one pass over the whole frame, of any layout that `polyrecon merge` reads, the layers being the same
-            in all parts of a frame (further layers, in the first part only, are kept as they are). Every part has the
-            channel `Sample Count.X` (after the view layer's prefix where there is one: `ViewLayer.Sample Count.X`): how many
-            samples each pixel is the mean of, 0 where the pass has none; the values there do not count and may be 0.
+            in all parts of a frame (further layers, in the first part only, are kept as they are). Channels of every part,
+            after the view layer's prefix where there is one (`ViewLayer.Sample Count.X`):
+              Sample Count.X    how many samples each pixel is the mean of; 0 where the pass has none, whatever the values
+              Render Seconds.X  optional: the time that these samples took, in any unit. It tells the loop what a sample
+                                of each pixel costs.
 """
 
 import abc
@@ -16,6 +18,9 @@ import pathlib
 from typing import Optional
 
 import numpy as np
+
+SAMPLE_COUNT = "Sample Count.X"
+RENDER_SECONDS = "Render Seconds.X"
 
 
 @dataclasses.dataclass
@@ -34,6 +39,7 @@ class Audit:
 
     width: int
     height: int
+    beauty: str = ""  # layer of the picture in the parts, "ViewLayer.Combined"; "": bare R, G, B
     switches: list[Switch] = dataclasses.field(default_factory=list)  # printed, and a table of the report
     passes: dict[str, str] = dataclasses.field(default_factory=dict)  # pass asked for -> why
     notes: list[str] = dataclasses.field(default_factory=list)  # lines for the user
@@ -62,11 +68,6 @@ class Renderer(abc.ABC):
 
         A renderer that cannot sample single pixels may take more than it is asked for; `Sample Count.X` says what was
         taken, and must not depend on the values of the samples, else the picture would be biased."""
-
-    def cost(self) -> Optional[np.ndarray]:
-        """Seconds that a sample of each pixel takes, (height, width), up to a common factor, as known from the passes so
-        far; None: all alike."""
-        return None
 
     def close(self) -> None:
         """Ends what runs in the background. Called once, in every case."""

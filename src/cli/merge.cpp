@@ -22,9 +22,11 @@ struct MergeCommandOptions {
 };
 
 void run(const MergeCommandOptions& o) {
-  if (o.inputs.size() < 2) throw Error(ExitCode::Usage, "merge needs two renders or more");
-  for (const std::string& input : o.inputs) require_readable(input);
-  require_outputs(o.inputs, {{"-o", o.output}});
+  std::vector<std::string> inputs = o.inputs;
+  inputs.insert(inputs.end(), o.merge.half_b.begin(), o.merge.half_b.end());
+  if (inputs.size() < 2) throw Error(ExitCode::Usage, "merge needs two renders or more");
+  for (const std::string& input : inputs) require_readable(input);
+  require_outputs(inputs, {{"-o", o.output}});
   const MergeResult result = merge(o.inputs, o.output, o.merge);
   if (o.quiet) return;
   std::string text = fmt::format("{}: {} renders", o.output, result.files);
@@ -46,6 +48,11 @@ void setup_merge(CLI::App& app, Command& chosen) {
       ->required()
       ->type_name("FILE...");
   sub->add_option("-o,--output", o->output, "EXR to write")->required()->type_name("FILE");
+  sub->add_option(
+         "--half-b", o->merge.half_b,
+         "Renders of half B; FILE... is half A then. The halves are averaged alike whatever their sample counts: "
+         "unbiased where each half's values chose the counts of the other")
+      ->type_name("FILE...");
   sub->add_option("--samples", o->merge.samples,
                   "Samples per pixel of each render, where the files mislead: subsets by Blender 5 tell the whole's")
       ->check(CLI::PositiveNumber)
@@ -54,7 +61,8 @@ void setup_merge(CLI::App& app, Command& chosen) {
   sub->footer(
       "Examples:\n"
       "  polyrecon merge part*.exr -o merged.exr\n"
-      "  polyrecon merge subset*.exr -o merged.exr --samples 2");
+      "  polyrecon merge subset*.exr -o merged.exr --samples 2\n"
+      "  polyrecon merge a*.exr --half-b b*.exr -o merged.exr");
   sub->callback([o, &chosen] { chosen = [o] { run(*o); }; });
 }
 

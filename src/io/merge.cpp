@@ -31,10 +31,12 @@ namespace {
 constexpr std::size_t kSumsAtOnce = std::size_t{1} << 21;
 constexpr int kChunkLines = 32;
 
-/// One render and its layers, which are those of the first render in the same order.
+/// One render and its layers, which are those of the first render in the same order. A layer that only the first render
+/// has is `absent` in the others.
 struct Render {
   FileInfo file;
   std::vector<Layer> layers;
+  std::vector<bool> absent;
 };
 
 const PartInfo& part_of(const Render& render, const Layer& layer) {
@@ -50,7 +52,11 @@ void check_fits(Render& render, const Render& first) {
   for (const Layer& layer : first.layers) {
     const auto same =
         std::find_if(render.layers.begin(), render.layers.end(), [&](const Layer& l) { return l.name == layer.name; });
-    if (same == render.layers.end()) misfit(render, first, fmt::format("no layer {}", layer.name));
+    render.absent.push_back(same == render.layers.end());
+    if (render.absent.back()) {
+      ordered.push_back(layer);
+      continue;
+    }
     if (same->channels.size() != layer.channels.size() || same->alpha.empty() != layer.alpha.empty())
       misfit(render, first, fmt::format("other channels in layer {}", layer.name));
     if (!(part_of(render, *same).data_window == part_of(first, layer).data_window))
@@ -63,6 +69,15 @@ void check_fits(Render& render, const Render& first) {
     if (std::none_of(first.layers.begin(), first.layers.end(), [&](const Layer& l) { return l.name == layer.name; }))
       misfit(render, first, fmt::format("a further layer {}", layer.name));
   render.layers = std::move(ordered);
+}
+
+/// A layer has to be in all renders, or in the first one alone.
+void check_absent(const std::vector<Render>& renders) {
+  const Render& first = renders.front();
+  for (std::size_t l = 0; l < first.layers.size(); ++l)
+    for (std::size_t k = 2; k < renders.size(); ++k)
+      if (renders[k].absent[l] != renders[1].absent[l])
+        misfit(renders[k].absent[l] ? renders[k] : renders[1], first, fmt::format("no layer {}", first.layers[l].name));
 }
 
 std::vector<Render> open_renders(const std::vector<std::string>& paths, const ReadLimits& limits) {
@@ -81,6 +96,7 @@ std::vector<Render> open_renders(const std::vector<std::string>& paths, const Re
     if (!renders.empty()) check_fits(render, renders.front());
     renders.push_back(std::move(render));
   }
+  check_absent(renders);
   return renders;
 }
 
@@ -165,7 +181,9 @@ void copy_metadata(const Imf::MultiPartInputFile& input, Imf::Header& header) {
 
 class Merger {
  public:
-  Merger(std::vector<Render> renders, double samples) : renders_(std::move(renders)), samples_(samples) {
+  /// first_b: index of the first render of half B, the others being half A; 0: even and odd index.
+  Merger(std::vector<Render> renders, double samples, std::size_t first_b)
+      : renders_(std::move(renders)), samples_(samples), first_b_(first_b) {
     choose_window();
     for (std::size_t l = 0; l < first().layers.size(); ++l) sort_layer(l);
     find_weights();
@@ -241,7 +259,7 @@ class Merger {
                       part.readable() ? "its data window is not the beauty's" : "its part is no plain image"));
       return;
     }
-    switch (fate_of(first(), layer)) {
+    switch (renders_[1].absent[l] ? Fate::Kept : fate_of(first(), layer)) {
       case Fate::Merged:
         merged_.push_back(l);
         report_.merged.push_back(layer.name);
@@ -265,6 +283,7 @@ class Merger {
     int best = -1;
     for (std::size_t l = 0; l < first().layers.size(); ++l) {
       const Layer& layer = first().layers[l];
+      if (renders_[1].absent[l]) continue;
       if (layer.role != Role::SampleCount || layer.view_layer != view_layer || !part_of(first(), layer).readable() ||
           !(part_of(first(), layer).data_window == window_))
         continue;
@@ -363,7 +382,7 @@ class Merger {
     for (std::size_t m = 0; m < merged_.size(); ++m) {
       const Layer& layer = first().layers[merged_[m]];
       for (std::size_t c = 0; c < layer.channels.size(); ++c) write_channel(layer, layer.channels[c], sums[m][c], band);
-      if (!layer.alpha.empty()) write_mean(*band.find(output_name(first(), layer, layer.alpha)), sums[m].back().all);
+      if (!layer.alpha.empty()) write_mean(*band.find(output_name(first(), layer, layer.alpha)), sums[m].back());
     }
   }
 
@@ -374,7 +393,7 @@ class Merger {
       return;
     }
     sums.all[i].add(x, weight);
-    (k % 2 == 0 ? sums.half_a : sums.half_b)[i].add(x, weight);
+    (is_half_b(k) ? sums.half_b : sums.half_a)[i].add(x, weight);
   }
 
   static void put(NativeChannel& channel, std::size_t i, double value) {
@@ -382,23 +401,36 @@ class Merger {
     std::memcpy(channel.samples.data() + i * sizeof narrow, &narrow, sizeof narrow);
   }
 
-  static void write_mean(NativeChannel& channel, const std::vector<Accumulator>& sums) {
-    for (std::size_t i = 0; i < sums.size(); ++i)
-      put(channel, i, sums[i].renders > 0 ? sums[i].mean : std::numeric_limits<double>::quiet_NaN());
+  bool is_half_b(std::size_t k) const { return first_b_ > 0 ? k >= first_b_ : k % 2 == 1; }
+
+  struct Moments {
+    double mean, variance;  ///< Of the mean.
+  };
+
+  /// By all renders alike, or as the plain mean of the halves.
+  Moments moments(const ChannelSums& sums, std::size_t i) const {
+    const Accumulator &all = sums.all[i], &a = sums.half_a[i], &b = sums.half_b[i];
+    if (all.renders == 0) return {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
+    if (first_b_ == 0 || a.renders == 0 || b.renders == 0) return {all.mean, all.variance_of_mean()};
+    return {(a.mean + b.mean) / 2, (a.variance_of_mean() + b.variance_of_mean()) / 4};
+  }
+
+  void write_mean(NativeChannel& channel, const ChannelSums& sums) const {
+    for (std::size_t i = 0; i < sums.all.size(); ++i) put(channel, i, moments(sums, i).mean);
   }
 
   void write_channel(const Layer& layer, const std::string& name, const ChannelSums& sums, NativeBand& band) {
-    write_mean(*band.find(output_name(first(), layer, name)), sums.all);
+    NativeChannel& mean = *band.find(output_name(first(), layer, name));
     NativeChannel& variance = *band.find(output_name(first(), layer, name, " Variance"));
     NativeChannel& half_a = *band.find(output_name(first(), layer, name, " A"));
     NativeChannel& half_b = *band.find(output_name(first(), layer, name, " B"));
     for (std::size_t i = 0; i < sums.all.size(); ++i) {
-      const Accumulator& all = sums.all[i];
-      any_spread_ = any_spread_ || all.spread > 0;
-      put(variance, i, all.variance_of_mean());
-      const double mean = all.renders > 0 ? all.mean : std::numeric_limits<double>::quiet_NaN();
-      put(half_a, i, sums.half_a[i].renders > 0 ? sums.half_a[i].mean : mean);
-      put(half_b, i, sums.half_b[i].renders > 0 ? sums.half_b[i].mean : mean);
+      const Moments whole = moments(sums, i);
+      any_spread_ = any_spread_ || sums.all[i].spread > 0;
+      put(mean, i, whole.mean);
+      put(variance, i, whole.variance);
+      put(half_a, i, sums.half_a[i].renders > 0 ? sums.half_a[i].mean : whole.mean);
+      put(half_b, i, sums.half_b[i].renders > 0 ? sums.half_b[i].mean : whole.mean);
     }
   }
 
@@ -468,7 +500,8 @@ class Merger {
   }
 
   std::vector<Render> renders_;
-  double samples_;  ///< Of each render, 0 where the files tell.
+  double samples_;       ///< Of each render, 0 where the files tell.
+  std::size_t first_b_;  ///< First render of half B, 0: even and odd index.
   Rect window_;
   std::vector<std::size_t> merged_, kept_;  ///< Indices of layers.
   std::vector<std::string> counted_;        ///< View layers whose sample counts are known.
@@ -482,7 +515,9 @@ class Merger {
 }  // namespace
 
 MergeResult merge(const std::vector<std::string>& paths, const std::string& target, const MergeOptions& options) {
-  Merger merger(open_renders(paths, options.limits), options.samples);
+  std::vector<std::string> all = paths;
+  all.insert(all.end(), options.half_b.begin(), options.half_b.end());
+  Merger merger(open_renders(all, options.limits), options.samples, options.half_b.empty() ? 0 : paths.size());
   write_single_part(
       target, merger.header(), [&](NativeBand& band) { merger.make(band); }, merger.lines_per_band());
   return merger.report();

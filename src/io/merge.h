@@ -11,6 +11,8 @@ struct MergeOptions {
   /// Samples of each render, where metadata would mislead: Blender 5 writes the count of the whole sequence into every
   /// subset of it. 0: as the files say.
   double samples = 0;
+  /// Renders of half B; the others are half A then, in place of even and odd index.
+  std::vector<std::string> half_b;
   ReadLimits limits;
 };
 
@@ -29,11 +31,15 @@ struct MergeResult {
 ///     mean        m = sum n_k x_k / sum n_k
 ///     ` Variance` of m: sum n_k (x_k - m)^2 / ((K - 1) sum n_k), NaN where only one render has samples
 ///     ` A`, ` B`  the same mean over the renders with even and odd index, m where a half has no samples
-/// n_k comes from a sample-count pass, else from metadata or options, else all renders count alike. Samples that are
-/// not finite are left out and counted in a note. The sum of n_k is kept in `<view layer>.Sample Count.X`, other layers
-/// come from the first file, bit for bit. Writes one part of scanlines with ZIP, merged layers as float; memory is
-/// bounded by one band of lines. Throws Error{Usage} for fewer than two files or one given twice, Error{BadInput}
-/// naming the first file that does not fit the first one, Error{Missing}, and what write_atomically throws.
+/// With options.half_b the picture is the plain mean of its halves, m = (A + B) / 2, whatever their counts, and its
+/// variance (Var A + Var B) / 4, NaN where a half has samples of only one render. This is the merge of adaptive renders
+/// where the values of each half chose the counts of the other: no weight depends on the values it multiplies, so m is
+/// unbiased. n_k comes from a sample-count pass, else from metadata or options, else all renders count alike. Samples
+/// that are not finite are left out and counted in a note. The sum of n_k is kept in `<view layer>.Sample Count.X`,
+/// other layers, and those that only the first file has, come from the first file, bit for bit. Writes one part of
+/// scanlines with ZIP, merged layers as float; memory is bounded by one band of lines. Throws Error{Usage} for fewer
+/// than two files or one given twice, Error{BadInput} naming the first file that does not fit the first one,
+/// Error{Missing}, and what write_atomically throws.
 MergeResult merge(const std::vector<std::string>& paths, const std::string& target, const MergeOptions& options = {});
 
 }  // namespace polyrecon

@@ -53,6 +53,44 @@ std::string samples_attribute(const std::string& path) {
   return find_attribute(describe_file(path).parts[0], "cycles.V.samples")->value;
 }
 
+TEST(MergeRenders, HalvesOfTheirOwnAreAveragedAlikeWhateverTheirCounts) {
+  // A: 1 (1 sample), 4 (2 samples): mean 3, spread 1 * 4 + 2 * 1 = 6, variance 6 / (1 * 3) = 2.
+  // B: 5 (10 samples), 8 (20 samples): mean 7, spread 10 * 4 + 20 * 1 = 60, variance 60 / (1 * 30) = 2.
+  // The picture is 5, not the 200 / 33 of all samples alike; its variance (2 + 2) / 4.
+  const TemporaryFolder folder;
+  const std::string out = folder / "out.exr";
+  std::vector<TestPart> renders;
+  for (const auto& [value, samples] : {std::pair{1.0, 1.0}, {4.0, 2.0}, {5.0, 10.0}, {8.0, 20.0}}) {
+    TestPart part;
+    part.channels = join({flat_layer("V.Combined", "RGBA", value), flat_layer("V.Sample Count", "X", samples)});
+    renders.push_back(part);
+  }
+  const auto paths = write_all(folder, renders);
+  MergeOptions options;
+  options.half_b = {paths[2], paths[3]};
+  merge({paths[0], paths[1]}, out, options);
+  EXPECT_THAT(stored_floats(out, 0, "V.Combined.R"), Each(5.0F));
+  EXPECT_THAT(stored_floats(out, 0, "V.Combined.A"), Each(5.0F));
+  EXPECT_THAT(stored_floats(out, 0, "V.Combined Variance.R"), Each(1.0F));
+  EXPECT_THAT(stored_floats(out, 0, "V.Combined A.R"), Each(3.0F));
+  EXPECT_THAT(stored_floats(out, 0, "V.Combined B.R"), Each(7.0F));
+  EXPECT_THAT(stored_floats(out, 0, "V.Sample Count.X"), Each(33.0F));
+}
+
+TEST(MergeRenders, LayersOfTheFirstFileAloneAreKept) {
+  const TemporaryFolder folder;
+  const std::string out = folder / "out.exr";
+  TestPart first = render(1);
+  first.channels = join({first.channels, flat_layer("V.Normal", "XYZ", 0.5), flat_layer("V.IndexOB", "X", 7)});
+  const auto paths = write_all(folder, {first, render(3), render(5)});
+  const MergeResult result = merge(paths, out);
+  EXPECT_THAT(stored_floats(out, 0, "V.Combined.R"), Each(3.0F));
+  EXPECT_THAT(stored_floats(out, 0, "V.Normal.Y"), Each(0.5F));
+  EXPECT_THAT(result.kept, Contains("V.Normal"));
+  const auto mixed = write_all(folder, {first, first, render(5)});
+  EXPECT_THAT(error_of([&] { merge(mixed, out); }).what(), HasSubstr("no layer V."));
+}
+
 TEST(MergeRenders, MeanVarianceAndHalvesOfEqualRenders) {
   // 1, 2, 6: mean 3; sum of squared deviations 4 + 1 + 9 = 14, variance of the mean 14 / 2 / 3 = 7/3; A = (1 + 6) / 2;
   // B = 2.

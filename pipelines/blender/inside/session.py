@@ -1,0 +1,159 @@
+"""Runs inside Blender: opens one file and renders what it is told, pass after pass, in one process.
+
+    blender -b -Y --factory-startup --python-exit-code 7 -P session.py      with Blender itself
+    python3 session.py                                                      with the module bpy
+
+Reads one JSON object a line on standard input, answers each by one line on standard output that begins with MARK (Blender
+prints lines of its own). No script of the file runs: -Y, and for the module use_scripts=False.
+"""
+
+import json
+import os
+import sys
+import time
+import traceback
+
+import bpy
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+
+import audit  # noqa: E402
+import camera  # noqa: E402
+
+MARK = "@polyrecon "
+
+
+class Session:
+    def __init__(self):
+        self.scene = self.view_layer = self.mask_camera = None
+
+    def open(self, path, frame, sequence, visibility, mask_camera):
+        """Opens a file (the first time) at a frame and sets it up. Nothing is ever saved."""
+        if self.scene is None:
+            bpy.ops.wm.open_mainfile(filepath=path, load_ui=False, use_scripts=False)
+        scene = self.scene = bpy.context.scene
+        if scene.render.engine != "CYCLES":
+            raise RuntimeError(f"the scene's renderer is {scene.render.engine}, not Cycles")
+        scene.frame_set(scene.frame_current if frame is None else frame)
+        if scene.camera is None:
+            raise RuntimeError("the scene has no camera")
+        self.view_layer = next((layer for layer in scene.view_layers if layer.use), scene.view_layers[0])
+        found = audit.effects(scene, self.view_layer)
+        switches = audit.switch_off(scene, self.view_layer)
+        self.choose_output(scene.render)
+        own_passes = self.own_passes()
+        self.choose_passes(visibility)
+        scene.render.use_persistent_data = True
+        self.sequence = sequence
+        reason = "regions were asked for"
+        if mask_camera:
+            reason = camera.why_not(scene, scene.camera, bpy.context.evaluated_depsgraph_get())
+            self.mask_camera = None if reason else camera.MaskCamera(scene)
+        scale = scene.render.resolution_percentage / 100
+        return {
+            "width": int(scene.render.resolution_x * scale),
+            "height": int(scene.render.resolution_y * scale),
+            "frame": scene.frame_current,
+            "view_layer": self.view_layer.name,
+            "version": bpy.app.version_string,
+            "effects": found,
+            "switches": switches,
+            "own_passes": own_passes,
+            "has_shadow": hasattr(self.view_layer, "use_pass_shadow"),
+            "no_mask_camera": reason,
+            "filter_reach": camera.filter_reach(scene),
+        }
+
+    def choose_output(self, render):
+        settings = render.image_settings
+        if hasattr(settings, "media_type"):  # Blender 5
+            settings.media_type = "MULTI_LAYER_IMAGE"
+            settings.use_exr_interleave = True
+        settings.file_format = "OPEN_EXR_MULTILAYER"
+        settings.color_depth = "32"
+        settings.exr_codec = "NONE"  # read once, then deleted
+        render.use_file_extension = False
+        render.use_overwrite = True
+        render.use_placeholder = False
+
+    def own_passes(self):
+        """The passes that the user switched on: [(owner, property)]."""
+        self.user_passes = [
+            (owner, p.identifier)
+            for owner in (self.view_layer, self.view_layer.cycles)
+            for p in owner.bl_rna.properties
+            if p.identifier.startswith(("use_pass_", "pass_debug_", "pass_render_")) and not p.is_readonly
+            and p.type == "BOOLEAN" and getattr(owner, p.identifier)
+        ]  # fmt: skip
+        return [name for _, name in self.user_passes if name != "use_pass_combined"]
+
+    def choose_passes(self, visibility):
+        """The passes of every part: picture, features, seconds."""
+        for owner, name in self.user_passes:
+            setattr(owner, name, False)
+        layer = self.view_layer
+        layer.use_pass_combined = True
+        layer.cycles.denoising_store_passes = True
+        wanted = {"shadow": "use_pass_shadow", "ambient-occlusion": "use_pass_ambient_occlusion"}.get(visibility)
+        if wanted and hasattr(layer, wanted):
+            setattr(layer, wanted, True)
+        if hasattr(layer.cycles, "pass_render_time"):
+            layer.cycles.pass_render_time = True
+        self.every_part = [
+            (owner, p.identifier)
+            for owner in (layer, layer.cycles)
+            for p in owner.bl_rna.properties
+            if p.identifier.startswith(("use_pass_", "pass_render_")) and p.type == "BOOLEAN" and getattr(owner, p.identifier)
+        ]
+
+    def render(self, target, first, samples, crop=None, mask=None, own_passes=False):
+        """Samples first .. first + samples - 1 into an EXR. crop: [x0, y0, x1, y1], pixels from the top left, end excluded;
+        mask: see camera.py; own_passes: the user's passes too."""
+        scene = self.scene
+        for owner, name in self.user_passes:
+            setattr(owner, name, own_passes or (owner, name) in self.every_part)
+        self.choose_samples(first, samples)
+        self.choose_crop(crop)
+        if self.mask_camera:
+            self.mask_camera.use(mask)
+        scene.render.filepath = target
+        begin = time.monotonic()
+        bpy.ops.render.render(write_still=True, scene=scene.name)
+        return {"seconds": time.monotonic() - begin}
+
+    def choose_samples(self, first, samples):
+        cycles = self.scene.cycles
+        if hasattr(cycles, "use_sample_subset"):  # Blender 5
+            cycles.samples = max(self.sequence, first + samples)
+            cycles.use_sample_subset = True
+            cycles.sample_offset = first
+            cycles.sample_subset_length = samples
+        else:
+            cycles.samples = samples
+            cycles.sample_offset = first
+
+    def choose_crop(self, crop):
+        render = self.scene.render
+        render.use_border = render.use_crop_to_border = crop is not None
+        if crop:
+            scale = render.resolution_percentage / 100
+            width, height = int(render.resolution_x * scale), int(render.resolution_y * scale)
+            x0, y0, x1, y1 = crop
+            # A little inside the pixel, so that no rounding takes the one before.
+            render.border_min_x, render.border_max_x = (x0 + 0.1) / width, (x1 + 0.1) / width
+            render.border_min_y, render.border_max_y = (height - y1 + 0.1) / height, (height - y0 + 0.1) / height
+
+
+def main():
+    session = Session()
+    for line in sys.stdin:
+        job = json.loads(line)
+        try:
+            answer = getattr(session, job.pop("do"))(**job)
+        except Exception as error:  # told to the driver, which decides
+            traceback.print_exc()
+            answer = {"error": f"{error}".strip().replace("\n", " ") or type(error).__name__}
+        print(f"\n{MARK}{json.dumps(answer)}", flush=True)
+
+
+main()

@@ -1,0 +1,79 @@
+"""Sample counts as masked passes: one a power of two, each over the smallest box that holds its pixels."""
+
+import dataclasses
+import itertools
+import math
+import os
+
+import numpy as np
+import OpenImageIO as oiio
+
+from ..loop.errors import DriverError, ExitCode
+
+SUBPIXELS = 4
+
+
+@dataclasses.dataclass
+class Pass:
+    samples: int
+    box: tuple  # x0, y0, x1, y1 in pixels from the top left, end excluded
+    inside: np.ndarray  # bool, of the box's shape: pixels whose samples count
+
+
+def bounding_box(inside):
+    rows, columns = np.flatnonzero(inside.any(1)), np.flatnonzero(inside.any(0))
+    return int(columns[0]), int(rows[0]), int(columns[-1]) + 1, int(rows[-1]) + 1
+
+
+def plan(counts):
+    """One pass for each value of counts but 0."""
+    passes = []
+    for samples in np.unique(counts[counts > 0]):
+        inside = counts == samples
+        x0, y0, x1, y1 = box = bounding_box(inside)
+        passes.append(Pass(int(samples), box, inside[y0:y1, x0:x1]))
+    return passes
+
+
+def subpixel_mask(inside, reach, margin):
+    """SUBPIXELS x SUBPIXELS values a pixel, open up to `reach` pixels around each pixel inside; `margin` pixels are added
+    on each side."""
+    mask = np.kron(np.pad(inside, margin), np.ones((SUBPIXELS, SUBPIXELS), bool))
+    for axis in (0, 1):
+        mask = _dilated(mask, math.ceil(reach * SUBPIXELS - 1e-6), axis)
+    return mask
+
+
+def _dilated(mask, by, axis):
+    grown = mask.copy()
+    for step in range(1, by + 1):
+        ahead, behind = [slice(None)] * 2, [slice(None)] * 2
+        ahead[axis], behind[axis] = slice(step, None), slice(None, -step)
+        grown[tuple(ahead)] |= mask[tuple(behind)]
+        grown[tuple(behind)] |= mask[tuple(ahead)]
+    return grown
+
+
+_number = itertools.count()
+
+
+def write(folder, piece, reach, frame):
+    """Writes the mask of a pass; returns what inside/camera.py asks for: a path, new every time since Cycles caches images
+    by name, and the place in the frame (0..1, from the bottom left) that the image covers. frame: (height, width)."""
+    margin = math.ceil(reach)
+    mask = subpixel_mask(piece.inside, reach, margin)
+    path = os.fspath(folder / f"mask_{next(_number)}.tif")
+    spec = oiio.ImageSpec(mask.shape[1], mask.shape[0], 1, "uint8")
+    spec.attribute("compression", "none")
+    file = oiio.ImageOutput.create(path)
+    if not file or not file.open(path, spec) or not file.write_image(mask.astype(np.uint8)[..., None] * 255) or not file.close():
+        raise DriverError(ExitCode.OUTPUT, f"{path}: {file.geterror() if file else oiio.geterror()}")
+    height, width = frame
+    x0, y0, x1, y1 = piece.box
+    return {
+        "path": path,
+        "left": (x0 - margin) / width,
+        "bottom": 1 - (y1 + margin) / height,
+        "width": (x1 - x0 + 2 * margin) / width,
+        "height": (y1 - y0 + 2 * margin) / height,
+    }

@@ -1,0 +1,129 @@
+"""Blender's Cycles as a Renderer of the loop."""
+
+import pathlib
+
+import numpy as np
+
+from ..loop import exr
+from ..loop.errors import DriverError, ExitCode
+from ..loop.renderer import RENDER_SECONDS, SAMPLE_COUNT, Audit, Renderer, Switch
+from . import masks, regions
+from .session import BlenderSession
+
+SEQUENCE = 1 << 13  # samples that Cycles lays a pixel's sequence out for; more follow where a frame takes more
+PART_LAYERS = {"Combined", "Denoising Albedo", "Denoising Normal", "Denoising Depth", "Shadow", "Ambient Occlusion", "AO"}
+RENDER_TIME = "Render Time"
+OVERHEAD_SECONDS = 0.045  # of a pass, until one was measured
+
+
+class BlenderRenderer(Renderer):
+    """scene: a .blend file. method: how extra samples are rendered: 'osl' (a camera with a mask, Blender >= 5), 'regions'
+    (rectangles), or 'auto'. visibility: 'shadow', 'ambient-occlusion' or None."""
+
+    def __init__(self, scene, blender=None, method="auto", visibility=None, timeout=3600.0):
+        self.scene = pathlib.Path(scene).absolute()
+        self.method = method
+        self.visibility = visibility
+        self.session = BlenderSession(blender, timeout)
+        self.overhead_seconds = OVERHEAD_SECONDS
+        self.seconds_per_sample = 0.0
+
+    def begin(self, frame):
+        self.frame = frame
+        self._open()
+        self.name = f"Blender {self.opened['version']}"
+        if self.method == "osl" and not self.masked:
+            raise DriverError(ExitCode.USAGE, f"--method osl: {self.opened['no_mask_camera']}")
+        return self._audit()
+
+    @property
+    def masked(self):
+        return not self.opened["no_mask_camera"]
+
+    @property
+    def shape(self):
+        return self.opened["height"], self.opened["width"]
+
+    def _open(self):
+        self.opened = self.session.ask(
+            "open",
+            path=str(self.scene),
+            frame=self.frame,
+            sequence=SEQUENCE,
+            visibility=self.visibility,
+            mask_camera=self.method != "regions",
+        )
+
+    def _audit(self):
+        found = self.opened
+        passes = {"Combined": "the picture", "Denoising Albedo, Normal, Depth": "features"}
+        if self.visibility:
+            passes[self.visibility] = "feature: visibility"
+        if found["own_passes"]:
+            passes[", ".join(found["own_passes"])] = "switched on in the file: rendered once, in the first part"
+        effects = (f"{name}: {_said(value)}" for name, value in found["effects"].items())
+        notes = ["effects: " + ", ".join(effects)]
+        if found["effects"]["scripted drivers"]:
+            notes.append("Python drivers of the file are not run: what they move stays as it was saved")
+        method = "masks by a camera shader" if self.masked else f"rectangles, since {found['no_mask_camera']}"
+        switches = [Switch(**switch) for switch in found["switches"]]
+        return Audit(found["width"], found["height"], f"{found['view_layer']}.Combined", switches, passes, notes, method)
+
+    def uniform(self, first, samples, target):
+        own_passes = first == 0 and bool(self.opened["own_passes"])
+        channels, seconds = self._render(first=first, samples=samples, own_passes=own_passes)
+        counts = np.full(self.shape, float(samples))
+        self.seconds_per_sample = max(seconds - self.overhead_seconds, 0) / counts.sum()
+        self._write(target, channels, counts, keep_all=own_passes)
+
+    def extra(self, first, counts, target):
+        sums, taken = {}, np.zeros(counts.shape)
+        for piece in masks.plan(counts) if self.masked else regions.plan(counts, self._overhead_samples()):
+            x0, y0, x1, y1 = piece.box
+            channels = self._render_piece(first, piece)
+            for name, values in channels.items():
+                whole = sums.setdefault(name, np.zeros(counts.shape))
+                whole[y0:y1, x0:x1] += np.where(piece.inside, values, 0)
+            taken[y0:y1, x0:x1] += piece.samples * piece.inside
+        self._write(target, sums, taken)
+        return int(taken.max(initial=0))
+
+    def _render_piece(self, first, piece):
+        job = {"first": first, "samples": piece.samples, "crop": piece.box}
+        if not self.masked:
+            channels, seconds = self._render(**job)
+            self.overhead_seconds = max(0.001, seconds - self.seconds_per_sample * piece.samples * piece.inside.size)
+            return channels
+        mask = masks.write(self.session.folder, piece, self.opened["filter_reach"], self.shape)
+        channels, _ = self._render(**job, mask=mask)
+        pathlib.Path(mask["path"]).unlink()
+        return channels
+
+    def _overhead_samples(self):
+        """What one more pass costs, in samples of a pixel."""
+        return self.overhead_seconds / self.seconds_per_sample if self.seconds_per_sample > 0 else float("inf")
+
+    def close(self):
+        self.session.close()
+
+    def _render(self, **job):
+        """One pass of the session: (channels, seconds). A new process, where the last one died, opens the scene again."""
+        if not self.session.running:
+            self._open()
+        raw, seconds = self.session.render(**job)
+        channels = exr.read(raw)
+        raw.unlink()
+        return channels, seconds
+
+    def _write(self, target, channels, counts, keep_all=False):
+        layer = self.opened["view_layer"]
+        time = channels.get(f"{layer}.{RENDER_TIME}.X")
+        part = {name: values for name, values in channels.items() if (keep_all and RENDER_TIME not in name) or name.split(".")[-2] in PART_LAYERS}
+        part[f"{layer}.{SAMPLE_COUNT}"] = counts
+        if time is not None:
+            part[f"{layer}.{RENDER_SECONDS}"] = time * counts  # Cycles writes the mean of a sample
+        exr.write(target, part)
+
+
+def _said(value):
+    return value if not isinstance(value, bool) else "yes" if value else "no"

@@ -1,0 +1,271 @@
+"""The adaptive loop: a first uniform pass, then rounds of (reconstruct, error map, sample map, extra samples), then the
+result.
+
+No bias: every pixel has two halves of samples, A and B. Where A's next samples go is decided from B's samples alone and the
+other way round, and the picture is (mean of A + mean of B) / 2. A pixel that came out bright by chance thus does not draw
+the samples that would dilute it, as it would if one and the same set of samples were judged and refined (docs/adaptive.md).
+"""
+
+import dataclasses
+import pathlib
+import time
+from typing import Optional
+
+import numpy as np
+
+from . import exr
+from .budget import Budget, Spent, next_slice
+from .counts import cost_of_samples, quantise
+from .errors import DriverError, ExitCode
+from .journal import Journal
+from .renderer import RENDER_SECONDS, SAMPLE_COUNT
+
+HALVES = ("a", "b")
+OTHER = {"a": "b", "b": "a"}
+ROUND_QUALITY = "draft"
+# Time of the last reconstruction, of all samples, over that of a half at ROUND_QUALITY (docs/performance.md).
+LAST_OVER_ROUND = {"draft": 1.1, "standard": 4.0, "best": 16.0}
+
+
+@dataclasses.dataclass
+class Settings:
+    output: pathlib.Path
+    passes: pathlib.Path  # the frame's own folder
+    budget: Budget
+    frame: Optional[int] = None
+    first_pass: int = 8
+    max_rounds: int = 8
+    quality: str = "standard"
+    resume: bool = False
+    identity: dict = dataclasses.field(default_factory=dict)  # of the scene: see Journal
+
+
+@dataclasses.dataclass
+class Result:
+    audit: object
+    renderer: str
+    journal: Journal
+    merged: pathlib.Path
+    error_map: pathlib.Path
+    error: float  # estimated mean relative MSE
+    samples: float
+    seconds: float
+    why_ended: str
+
+
+class _Totals:
+    """Samples taken of each pixel, and the seconds that they took, over a half's parts."""
+
+    def __init__(self, counts=0.0, seconds=0.0):
+        self.counts, self.seconds = counts, seconds
+
+    def __add__(self, other):
+        known = self.seconds is not None and other.seconds is not None
+        return _Totals(self.counts + other.counts, self.seconds + other.seconds if known else None)
+
+    def add(self, part):
+        """Adds a part's file; returns its counts."""
+        channels = exr.read(part, lambda name: name.endswith((SAMPLE_COUNT, RENDER_SECONDS)))
+        values = {name: next((v for n, v in channels.items() if n.endswith(name)), None) for name in (SAMPLE_COUNT, RENDER_SECONDS)}
+        if values[SAMPLE_COUNT] is None:
+            raise DriverError(ExitCode.RENDERER, f"{part}: the renderer wrote no {SAMPLE_COUNT}")
+        total = self + _Totals(values[SAMPLE_COUNT].astype(float), values[RENDER_SECONDS])
+        self.counts, self.seconds = total.counts, total.seconds
+        return values[SAMPLE_COUNT]
+
+
+def run(renderer, polyrecon, settings, progress):
+    """Runs the loop for one frame; returns a Result. Raises DriverError; the passes so far can then be resumed."""
+    return _Loop(renderer, polyrecon, settings, progress).run()
+
+
+class _Loop:
+    def __init__(self, renderer, polyrecon, settings, progress):
+        self.renderer, self.polyrecon, self.settings, self.progress = renderer, polyrecon, settings, progress
+        self.folder = settings.passes
+        try:
+            self.folder.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise DriverError(ExitCode.OUTPUT, f"{self.folder}: {error.strerror}") from error
+        identity = {**settings.identity, "frame": settings.frame, "first_pass": settings.first_pass}
+        self.journal = Journal.open(self.folder, identity, settings.resume)
+        if self.journal["rounds"] and not self.journal["rounds"][-1]["extra"]:
+            self.journal["rounds"].pop()  # it ended there; judged again, by the budget of today
+        for stale in self.folder.rglob(".*.exr"):  # of a run that was killed while it wrote
+            stale.unlink()
+        self.started = time.monotonic() - self.journal["seconds"]
+        self.totals = {half: _Totals() for half in HALVES}
+        for part in self.journal["parts"]:
+            self.totals[part["half"]].add(self.folder / part["file"])
+        self.why_ended = ""
+        self.reserve = 0.0
+
+    def run(self):
+        self.audit = self.renderer.begin(self.settings.frame)
+        self.uniform_pass()
+        while plan := self.journal["plan"] or self.plan_round():
+            self.render_round(plan)
+        return self.finish()
+
+    # The passes.
+
+    def uniform_pass(self):
+        """The first samples of the sequence as parts of their own, the first half of them being A: each half is a block of
+        the sequence, which is better spread than every other sample would be."""
+        each = 2 if self.settings.first_pass % 4 == 0 and self.settings.first_pass > 8 else 1
+        parts = self.settings.first_pass // each
+        for index in range(parts):
+            half = HALVES[index * 2 // parts]
+            place = index % (parts // 2)
+            if not self.journal.has(0, half, place):
+                self.tell("first pass", done=index / parts)
+                self.render_part(0, half, place, index * each, None, each)
+        self.journal["next"] = max(self.journal["next"], self.settings.first_pass)
+
+    def render_round(self, plan):
+        for half in HALVES:
+            if not self.journal.has(plan["round"], half):
+                self.tell(f"round {plan['round']}, half {half.upper()}", round=plan["round"])
+                counts = next(iter(exr.read(self.file(plan["round"], f"counts_{half}")).values())).astype(int)
+                self.render_part(plan["round"], half, 0, plan["first"][half], counts, 0)
+        self.journal["plan"] = None
+        self.journal.save()
+
+    def render_part(self, round_number, half, index, first, counts, samples):
+        name = f"part_{round_number}{half}{index}.exr"
+        begin = time.monotonic()
+        if counts is None:
+            self.renderer.uniform(first, samples, self.folder / name)
+        else:
+            samples = self.renderer.extra(first, counts, self.folder / name)
+        seconds = time.monotonic() - begin
+        taken = self.totals[half].add(self.folder / name)
+        part = {"file": name, "half": half, "round": round_number, "first": first, "spp": float(taken.mean()), "seconds": seconds}
+        self.journal["parts"].append(part)
+        self.journal["next"] = max(self.journal["next"], first + samples)
+        self.save()
+
+    # One round's decision.
+
+    def plan_round(self):
+        """Reconstructs both halves and decides where the next samples of each go; None where the loop ends."""
+        number = len(self.journal["rounds"])
+        (self.folder / f"round_{number}").mkdir(exist_ok=True)
+        for half in HALVES:
+            self.tell(f"reconstruction {number}, half {half.upper()}", round=number)
+            self.reconstruct_half(number, half)
+        spent = self.spent(number)
+        samples, self.why_ended = next_slice(self.settings.budget, spent)
+        if samples and number >= self.settings.max_rounds:
+            samples, self.why_ended = 0.0, f"{number} rounds are done (--max-rounds)"
+        counts = {half: self.counts_for(number, half, samples) for half in HALVES} if samples else {}
+        if samples and not any(c.any() for c in counts.values()):
+            self.why_ended = "no error is left that more samples could lower"
+            samples = 0.0
+        entry = {"round": number, "spp": spent.samples, "seconds": self.seconds(), "error": spent.error, "extra": samples}
+        self.journal["rounds"].append(entry)
+        if samples:
+            self.journal["plan"] = self.place_in_sequence(number + 1, counts)
+        self.save()
+        return self.journal["plan"]
+
+    def reconstruct_half(self, number, half):
+        merged, clean, error = (self.file(number, f"{kind}_{half}") for kind in ("merged", "clean", "error"))
+        self.polyrecon.run("merge", *self.journal.files(half), "-o", merged, "--quiet")
+        begin = time.monotonic()
+        self.polyrecon.run("denoise", "-i", merged, "-o", clean, "--quality", ROUND_QUALITY, "--error-map", error, "--quiet")
+        self.reserve = (time.monotonic() - begin) * LAST_OVER_ROUND[self.settings.quality]
+
+    def spent(self, number):
+        """Joins what the halves tell: pictures for the report, and the error of (A + B) / 2, whose variance is half of
+        each half's while its bias stays."""
+        halves = [exr.read(self.file(number, f"error_{half}")) for half in HALVES]
+        variance = sum(h["relvariance.Y"] for h in halves) / 4
+        error = variance + sum(h["relmse.Y"] - h["relvariance.Y"] for h in halves) / 2
+        exr.write(self.file(number, "error"), {"relmse.Y": error, "relvariance.Y": variance})
+        for kind, name in (("merged", "noisy"), ("clean", "clean")):
+            files = [self.picture(self.file(number, f"{kind}_{half}")) for half in HALVES]
+            exr.write(self.file(number, name), {c: (files[0][c] + files[1][c]) / 2 for c in files[0]})
+            for half in HALVES:
+                self.file(number, f"{kind}_{half}").unlink()
+        parts = self.journal["parts"]
+        whole = self.totals["a"] + self.totals["b"]
+        cost = self.cost(whole)
+        return Spent(
+            samples=sum(p["spp"] for p in parts),
+            seconds=self.seconds(),
+            render_seconds=sum(p["seconds"] for p in parts),
+            worth=float((cost * whole.counts).mean() / cost.mean()),
+            reserve=self.reserve,
+            error=float(np.nanmean(error)),
+            variance=float(np.nanmean(variance)),
+        )
+
+    def counts_for(self, number, half, samples):
+        """Counts of a half's next samples, from the other half's error map and costs. Half of the slice goes to each."""
+        other = OTHER[half]
+        cost = self.cost(self.totals[other])
+        cost_file, map_file = self.file(number, f"cost_{other}"), self.file(number, f"map_{half}")
+        exr.write(cost_file, {"Y": cost})
+        self.polyrecon.run("samplemap", "--error-map", self.file(number, f"error_{other}"), "--budget", samples / 2,
+                           "--max-samples", max(1024, 4 * samples), "--cost", cost_file, "-o", map_file, "--quiet")  # fmt: skip
+        wanted = exr.read(map_file)["samples.Y"]
+        cost_file.unlink()
+        map_file.unlink()
+        return quantise(wanted, cost)
+
+    def place_in_sequence(self, number, counts):
+        """Each half's round begins at a multiple of its largest count, so that every count is a whole block of the
+        sequence."""
+        plan, free = {"round": number, "first": {}}, self.journal["next"]
+        (self.folder / f"round_{number}").mkdir(exist_ok=True)
+        for half in HALVES:
+            most = max(1, int(counts[half].max()))
+            plan["first"][half] = -(-free // most) * most
+            free = plan["first"][half] + most
+            exr.write(self.file(number, f"counts_{half}"), {"samples.Y": counts[half]})
+        exr.write(self.file(number, "samples"), {"samples.Y": counts["a"] + counts["b"]})
+        return plan
+
+    # The result.
+
+    def finish(self):
+        merged, error_map = self.folder / "merged.exr", self.folder / "error.exr"
+        self.tell("result", done=1.0)
+        halves = [self.journal.files(half) for half in HALVES]
+        self.polyrecon.run("merge", *halves[0], "--half-b", *halves[1], "-o", merged, "--quiet")
+        self.polyrecon.run("denoise", "-i", merged, "-o", self.settings.output, "--quality", self.settings.quality, "--error-map",
+                           error_map, "--quiet")  # fmt: skip
+        self.save()
+        error = float(np.nanmean(exr.read(error_map, lambda name: name == "relmse.Y")["relmse.Y"]))
+        samples = sum(p["spp"] for p in self.journal["parts"])
+        return Result(self.audit, self.renderer.name, self.journal, merged, error_map, error, samples, self.seconds(), self.why_ended)
+
+    # Small things.
+
+    def file(self, number, name):
+        return self.folder / f"round_{number}" / f"{name}.exr"
+
+    def seconds(self):
+        return time.monotonic() - self.started
+
+    def save(self):
+        self.journal["seconds"] = self.seconds()
+        self.journal.save()
+
+    def cost(self, totals):
+        """What a sample of each pixel costs, in the budget's own currency: where samples are counted, all are alike."""
+        return cost_of_samples(None if self.settings.budget.samples else totals.seconds, totals.counts)
+
+    def picture(self, path):
+        prefix = f"{self.audit.beauty}." if self.audit.beauty else ""
+        channels = exr.read(path, lambda name: name in {prefix + c for c in "RGB"})
+        return {c: channels[prefix + c] for c in "RGB"}
+
+    def tell(self, stage, **figures):
+        budget, last = self.settings.budget, (self.journal["rounds"] or [{}])[-1]
+        samples = sum(p["spp"] for p in self.journal["parts"])
+        done = samples / budget.samples if budget.samples else self.seconds() / budget.seconds if budget.seconds else None
+        left = budget.seconds - self.seconds() if budget.seconds else None
+        self.progress.update(stage, **{"frame": self.settings.frame, "samples": samples, "error": last.get("error"), "seconds":
+                             round(self.seconds(), 2), "seconds_left": left, "done": done, **figures})  # fmt: skip

@@ -1,0 +1,62 @@
+"""How much is spent, and how much the next round may take."""
+
+import dataclasses
+from typing import Optional
+
+GROWTH = 1.0  # a round takes as much as was spent before it, so the slices double
+LEAST_SAMPLES = 0.25  # per pixel: a smaller round does not pay its overhead
+
+
+@dataclasses.dataclass(frozen=True)
+class Budget:
+    """Exactly one is set."""
+
+    samples: Optional[float] = None  # per pixel on average, the first pass among them
+    seconds: Optional[float] = None  # of everything, from the start of the driver to the result
+    target: Optional[float] = None  # mean relative MSE of the result
+
+    def __str__(self):
+        if self.samples:
+            return f"{self.samples:g} samples per pixel"
+        return f"{self.seconds:g} s" if self.seconds else f"relative MSE {self.target:g}"
+
+
+@dataclasses.dataclass
+class Spent:
+    """samples: per pixel. seconds: of everything. render_seconds: of the passes, which brought `worth` samples per pixel
+    (weighted by what they cost). reserve: seconds that the result still needs. error, variance: estimated mean relative
+    MSE of the result and the part of it that falls as 1/n."""
+
+    samples: float
+    seconds: float
+    render_seconds: float
+    worth: float
+    reserve: float
+    error: float
+    variance: float
+
+
+def next_slice(budget, spent):
+    """Samples per pixel of the next round, and why there is none (or ''). The slices grow geometrically; the last one takes
+    what is left, and one that would leave less than half of itself takes that too."""
+    step = GROWTH * spent.worth
+    if budget.samples:
+        left, reason = budget.samples - spent.samples, "the samples are spent"
+    elif budget.seconds:
+        seconds = budget.seconds - spent.seconds - spent.reserve
+        left, reason = seconds * spent.worth / max(spent.render_seconds, 1e-9), "the seconds are spent"
+    elif spent.error <= budget.target:
+        return 0.0, f"the target is reached: {spent.error:.3g}"
+    else:
+        left, reason = _needed(budget.target, spent, step), ""
+    if left < LEAST_SAMPLES:
+        return 0.0, reason
+    return (left if left < 1.5 * step else step), ""
+
+
+def _needed(target, spent, step):
+    """More samples per pixel until bias^2 + variance n / (n + dn) is the target."""
+    bias = spent.error - spent.variance
+    if spent.variance <= 0 or bias >= target:
+        return step
+    return max(LEAST_SAMPLES, spent.worth * (spent.variance / (target - bias) - 1))

@@ -1,0 +1,69 @@
+"""A renderer without a scene: an image that is known, with noise that is known, so that the loop's own statistics can be
+tested. As a script it runs the loop: synthetic.py FOLDER BUDGET_SPP [--resume]."""
+
+import pathlib
+import sys
+
+import numpy as np
+
+from pipelines.loop import adaptive, exr
+from pipelines.loop.budget import Budget
+from pipelines.loop.errors import run_main
+from pipelines.loop.polyrecon_cli import Polyrecon
+from pipelines.loop.progress import Progress
+from pipelines.loop.renderer import RENDER_SECONDS, SAMPLE_COUNT, Audit, Renderer
+
+
+class SyntheticRenderer(Renderer):
+    """Sample s of a pixel is mean x a gamma variate of mean 1 and variance `spread`, drawn by (seed, s, pixel): skewed, as
+    Monte Carlo samples are. The left half of the frame is noisy, the right half nearly clean; samples of the lower half
+    cost three times as much."""
+
+    name = "synthetic"
+
+    def __init__(self, width=96, height=64, seed=1):
+        y, x = np.mgrid[:height, :width]
+        self.mean = 0.5 + 0.4 * np.sin(x / 9.0) * np.cos(y / 7.0)
+        self.spread = np.where(x < width / 2, 8.0, 0.05)
+        self.seconds = np.where(y < height / 2, 1.0, 3.0)
+        self.seed = seed
+        self.ranges = []
+
+    def begin(self, frame):
+        height, width = self.mean.shape
+        return Audit(width, height, "L.Combined", method="single pixels")
+
+    def sample(self, number):
+        random = np.random.Generator(np.random.Philox(key=[self.seed, number]))
+        return self.mean * random.gamma(1 / self.spread, self.spread)
+
+    def uniform(self, first, samples, target):
+        self.extra(first, np.full(self.mean.shape, samples), target)
+
+    def extra(self, first, counts, target):
+        self.ranges.append((first, int(counts.max())))
+        total = np.zeros(self.mean.shape)
+        for number in range(int(counts.max())):
+            total += np.where(counts > number, self.sample(first + number), 0)
+        picture = total / np.maximum(counts, 1)
+        part = {f"L.Combined.{c}": picture for c in "RGB"}
+        part |= {f"L.Denoising Albedo.{c}": self.mean for c in "RGB"}
+        part[f"L.{SAMPLE_COUNT}"] = counts
+        part[f"L.{RENDER_SECONDS}"] = counts * self.seconds
+        exr.write(target, part)
+        return int(counts.max())
+
+
+def loop(folder, budget, resume=False, seed=1, quality="draft", **size):
+    folder = pathlib.Path(folder)
+    settings = adaptive.Settings(folder / "out.exr", folder / "passes", budget, resume=resume, quality=quality)
+    renderer = SyntheticRenderer(seed=seed, **size)
+    return renderer, adaptive.run(renderer, Polyrecon(), settings, Progress("none"))
+
+
+def main(words):
+    loop(words[0], Budget(samples=float(words[1])), resume="--resume" in words)
+
+
+if __name__ == "__main__":
+    sys.exit(run_main("synthetic", main, sys.argv[1:]))

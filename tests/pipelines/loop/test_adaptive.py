@@ -1,0 +1,159 @@
+import json
+import math
+import os
+import random
+import signal
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+import numpy as np
+
+from pipelines.loop import exr
+from pipelines.loop.budget import Budget
+from pipelines.loop.errors import DriverError, ExitCode
+from pipelines.loop.renderer import SAMPLE_COUNT
+from tests.pipelines.loop.synthetic import SyntheticRenderer, loop
+
+ROOT = Path(__file__).resolve().parents[3]
+
+
+class Folder(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+
+
+def counts_of(result, half=None):
+    parts = [p for p in result.journal["parts"] if half in (None, p["half"])]
+    return sum(exr.read(result.merged.parent / p["file"])[f"L.{SAMPLE_COUNT}"] for p in parts)
+
+
+class Statistics(Folder):
+    """One run of a large frame stands for many runs of a tiny one: its pixels are independent."""
+
+    def test_the_mean_is_unbiased_and_its_variance_right(self):
+        renderer, result = loop(self.folder, Budget(samples=32), width=192, height=128)
+        merged = exr.read(result.merged)
+        counts = counts_of(result)
+        self.assertGreater(counts[:, :96].mean(), 3 * counts[:, 96:].mean())  # it did adapt
+        error = merged["L.Combined.R"] - renderer.mean
+        # The true variance of (A + B) / 2, from the counts of each half.
+        variance = renderer.mean**2 * renderer.spread * sum(1 / counts_of(result, half) for half in "ab") / 4
+        for name, place in {"all": np.s_[:], "noisy": np.s_[:, :96], "clean": np.s_[:, 96:]}.items():
+            z = (error / np.sqrt(variance))[place]
+            self.assertLess(abs(z.mean()) * math.sqrt(z.size), 4, f"{name}: the mean is {z.mean():.4f} sigma off")
+            self.assertLess(abs((z**2).mean() - 1), 0.08, f"{name}: variance {(z**2).mean():.3f} of what is expected")
+            estimated = merged["L.Combined Variance.R"][place].mean() / variance[place].mean()
+            self.assertLess(abs(estimated - 1), 0.1, f"{name}: the estimated variance is {estimated:.3f} of the true one")
+        self.assertTrue(np.allclose(merged[f"L.{SAMPLE_COUNT}"], counts))
+
+    def test_judging_a_half_by_itself_would_be_biased(self):
+        """What the halves are for: more samples for what came out bright, weighed by count, lose light."""
+        renderer = SyntheticRenderer(width=192, height=128)
+        first = sum(renderer.sample(n) for n in range(4)) / 4
+        more = np.where(first > renderer.mean, 16, 0)
+        later = sum(renderer.sample(n) for n in range(4, 20)) / 16
+        own = np.where(more, (4 * first + 16 * later) / 20, first)
+        other = np.roll(more, 7, axis=0)  # decided by other pixels' samples
+        crossed = np.where(other, (4 * first + 16 * later) / 20, first)
+        self.assertLess(own.mean() / renderer.mean.mean(), 0.9)
+        self.assertAlmostEqual(crossed.mean() / renderer.mean.mean(), 1, delta=0.03)
+
+    def test_samples_follow_noise_and_cost(self):
+        _, result = loop(self.folder, Budget(samples=32))
+        counts = counts_of(result)
+        noisy, clean = counts[:, 4:44], counts[:, 52:]
+        self.assertGreater(noisy.mean(), 4 * clean.mean())
+        self.assertGreater(noisy[4:28].mean(), 1.2 * noisy[36:60].mean())  # the lower half costs three times as much
+
+
+class Budgets(Folder):
+    def test_samples_are_kept_to(self):
+        _, result = loop(self.folder, Budget(samples=24))
+        self.assertLessEqual(result.samples, 24 * 1.02)
+        self.assertGreater(result.samples, 18)
+        self.assertEqual(result.why_ended, "the samples are spent")
+
+    def test_no_number_of_the_sequence_is_used_twice(self):
+        renderer, _ = loop(self.folder, Budget(samples=32))
+        ranges = sorted(renderer.ranges)
+        for (first, length), (following, _) in zip(ranges, ranges[1:]):
+            self.assertLessEqual(first + length, following)
+
+    def test_a_target_ends_the_loop(self):
+        _, result = loop(self.folder, Budget(target=1.0))
+        self.assertEqual(len(result.journal["rounds"]), 1)
+        self.assertIn("target", result.why_ended)
+
+    def test_seconds_are_kept_to(self):
+        _, result = loop(self.folder, Budget(seconds=6))
+        self.assertEqual(result.why_ended, "the seconds are spent")
+        passes = [part["seconds"] for part in result.journal["parts"]]
+        rounds = [entry["seconds"] for entry in result.journal["rounds"]]
+        # One pass over it, and a last reconstruction that takes no longer than was reserved, four times a half's.
+        self.assertLess(result.seconds, 6 + max(passes) + 4 * (result.seconds - rounds[-1]))
+        self.assertLess(rounds[-2] if len(rounds) > 1 else 0, 6)
+
+
+class Resuming(Folder):
+    def run_killed(self, folder, seconds):
+        """Starts the loop and kills it after a while; whether it had ended by itself."""
+        resume = ["--resume"] if (folder / "passes" / "journal.json").exists() else []
+        words = [sys.executable, "-m", "tests.pipelines.loop.synthetic", str(folder), "24", *resume]
+        child = subprocess.Popen(words, cwd=ROOT, start_new_session=True, stderr=subprocess.PIPE)
+        try:
+            errors = child.communicate(timeout=seconds)[1]
+            self.assertEqual(child.returncode, 0, errors)
+            return True
+        except subprocess.TimeoutExpired:
+            os.killpg(child.pid, signal.SIGKILL)
+            child.communicate()
+            return False
+
+    def test_case32_killed_at_any_moment_it_goes_on_to_the_same_picture(self):
+        whole, broken = self.folder / "whole", self.folder / "broken ä #{"
+        broken.mkdir()
+        loop(whole, Budget(samples=24))
+        seed = random.randrange(1 << 30)
+        moments, ended, runs = random.Random(seed), False, 0
+        while not ended and runs < 15:
+            ended = self.run_killed(broken, moments.uniform(0.4, 1.0) * 1.5**runs)
+            runs += 1
+        self.assertTrue(ended, f"seed {seed}: never ended")
+        self.assertGreater(runs, 1, f"seed {seed}: never killed")
+        for name in ("out.exr", "passes/merged.exr"):
+            a, b = exr.read(whole / name), exr.read(broken / name)
+            for channel in a:
+                np.testing.assert_array_equal(a[channel], b[channel], f"seed {seed}, {runs} runs: {name} {channel}")
+        parts = json.loads((broken / "passes" / "journal.json").read_text())["parts"]
+        self.assertEqual(len({(p["round"], p["half"], p["first"]) for p in parts}), len(parts))
+
+    def test_more_budget_goes_on(self):
+        _, small = loop(self.folder, Budget(samples=16))
+        _, large = loop(self.folder, Budget(samples=32), resume=True)
+        before, after = small.journal["parts"], large.journal["parts"]
+        self.assertEqual(after[: len(before)], before)
+        self.assertGreater(large.samples, small.samples + 8)
+
+    def test_passes_are_not_overwritten_unasked(self):
+        loop(self.folder, Budget(samples=8))
+        with self.assertRaisesRegex(DriverError, "journal.json: .*--resume") as caught:
+            loop(self.folder, Budget(samples=8))
+        self.assertEqual(caught.exception.code, ExitCode.USAGE)
+
+    def test_damaged_and_foreign_journals_are_refused(self):
+        loop(self.folder, Budget(samples=8))
+        journal = self.folder / "passes" / "journal.json"
+        good = journal.read_text()
+        for text, line in ((good[:-20], "no journal"), (good.replace('"first_pass": 8', '"first_pass": 16'), "first_pass was 16")):
+            journal.write_text(text)
+            with self.assertRaisesRegex(DriverError, line):
+                loop(self.folder, Budget(samples=16), resume=True)
+
+
+if __name__ == "__main__":
+    unittest.main()
