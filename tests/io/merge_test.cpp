@@ -7,6 +7,8 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
+#include <vector>
 
 #include "io/exr_fixture.h"
 #include "io/read_frame.h"
@@ -60,7 +62,7 @@ TEST(MergeRenders, HalvesOfTheirOwnAreAveragedAlikeWhateverTheirCounts) {
   const TemporaryFolder folder;
   const std::string out = folder / "out.exr";
   std::vector<TestPart> renders;
-  for (const auto& [value, samples] : {std::pair{1.0, 1.0}, {4.0, 2.0}, {5.0, 10.0}, {8.0, 20.0}}) {
+  for (const auto& [value, samples] : std::vector<std::pair<double, double>>{{1, 1}, {4, 2}, {5, 10}, {8, 20}}) {
     TestPart part;
     part.channels = join({flat_layer("V.Combined", "RGBA", value), flat_layer("V.Sample Count", "X", samples)});
     renders.push_back(part);

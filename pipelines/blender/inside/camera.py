@@ -21,7 +21,7 @@ shader camera(string mask = "", float left = 0, float bottom = 0, float width = 
 {
   point place = camera_shader_raster_position();  // 0..1 over the frame, y up
   float x = (place[0] - left) / width, y = (place[1] - bottom) / height;
-  color inside = texture(mask, x, 1 - y, "interp", "closest", "wrap", "black");
+  color inside = texture(mask, x, 1 - y, "interp", "closest", "wrap", "black", "width", 0);
   if (inside[0] < 0.5) {
     throughput = 0.0;
     return;
@@ -89,10 +89,10 @@ def _reaches_beyond(camera_object, depsgraph):
 
 
 def filter_reach(scene):
-    """How far outside its pixel a sample may fall, in pixels."""
-    if scene.cycles.pixel_filter_type == "BOX":
-        return 0.0
-    return max(0.0, scene.cycles.filter_width / 2 - 0.5)
+    """How far outside its pixel a sample may fall, in pixels: Cycles' table for a filter of width w ends at w (Blackman-Harris)
+    or 1.5 w (Gauss) from the pixel's centre."""
+    ends = {"BOX": 0.5, "BLACKMAN_HARRIS": scene.cycles.filter_width, "GAUSSIAN": 1.5 * scene.cycles.filter_width}
+    return max(0.0, ends[scene.cycles.pixel_filter_type] - 0.5)
 
 
 class MaskCamera:
@@ -101,7 +101,7 @@ class MaskCamera:
     def __init__(self, scene):
         _provide_oslquery()
         self.camera = scene.camera.data
-        self.own_type = self.camera.type
+        self.own = {name: getattr(self.camera, name) for name in ("type", "shift_x", "shift_y")}
         text = bpy.data.texts.new(TEXT_NAME)
         text.write(SHADER % self._values(scene))
         self.camera.custom_mode = "INTERNAL"
@@ -126,14 +126,16 @@ class MaskCamera:
         errors = []
         self.camera.type = "CUSTOM"
         compiled = osl.update_custom_camera_shader(self.camera, lambda kind, text: errors.append(text))
-        self.camera.type = self.own_type
+        self.camera.type = self.own["type"]
         if not compiled:
             raise RuntimeError(f"the camera shader does not compile: {errors}")
 
     def use(self, mask):
         """mask: {path, left, bottom, width, height}: an image whose first channel is over 0.5 where samples are to be taken,
         and the place in the frame (0..1, from the bottom left) that it covers; None: the own camera."""
-        self.camera.type = "CUSTOM" if mask else self.own_type
+        # The shader's rays are shifted already; a shift of the camera would move the place that it is asked for.
+        for name, value in ({"type": "CUSTOM", "shift_x": 0, "shift_y": 0} if mask else self.own).items():
+            setattr(self.camera, name, value)
         if mask:
             for name, value in mask.items():
                 self.camera.cycles_custom["mask" if name == "path" else name] = value

@@ -1,0 +1,121 @@
+"""Builds a small .blend file; run inside Blender: make_scene.py OUT.blend KIND. Tiny frames, diffuse objects and a lamp."""
+
+import os
+import sys
+
+import bpy
+
+HOSTILE = "import pathlib; pathlib.Path({mark!r}).touch()"
+
+
+def base():
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    scene = bpy.context.scene
+    scene.render.engine = "CYCLES"
+    scene.render.resolution_x, scene.render.resolution_y, scene.render.resolution_percentage = 48, 32, 100
+    scene.world = bpy.data.worlds.new("World")
+    scene.world.use_nodes = True
+    scene.world.node_tree.nodes["Background"].inputs[0].default_value = (0.3, 0.4, 0.6, 1)
+    bpy.ops.mesh.primitive_plane_add(size=20)
+    for i, x in enumerate((-1.6, 0, 1.7)):
+        bpy.ops.mesh.primitive_uv_sphere_add(radius=0.7, location=(x, i * 1.5, 0.7))
+        material = bpy.data.materials.new(f"M{i}")
+        material.use_nodes = True
+        material.node_tree.nodes["Principled BSDF"].inputs["Base Color"].default_value = (0.8, 0.3 * i, 0.2, 1)
+        bpy.context.object.data.materials.append(material)
+    lamp = bpy.data.objects.new("Lamp", bpy.data.lights.new("Lamp", "AREA"))
+    lamp.data.energy, lamp.location = 200, (2, -2, 4)
+    scene.collection.objects.link(lamp)
+    camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
+    camera.location, camera.rotation_euler = (0.5, -6, 1.6), (1.45, 0, 0.06)
+    scene.collection.objects.link(camera)
+    scene.camera = camera
+    return scene
+
+
+def lens(scene):
+    """Everything that a perspective camera can do: shift, fit, pixel aspect, a wide polygonal aperture."""
+    camera = scene.camera.data
+    camera.lens, camera.shift_x, camera.shift_y = 40, 0.08, -0.05
+    camera.sensor_fit, camera.sensor_width, camera.sensor_height = "VERTICAL", 36, 20
+    camera.clip_start = 0.5
+    scene.render.pixel_aspect_x, scene.render.pixel_aspect_y = 1.0, 1.3
+    depth_of_field(scene)
+
+
+def depth_of_field(scene):
+    dof = scene.camera.data.dof
+    dof.use_dof, dof.focus_distance, dof.aperture_fstop = True, 6.5, 0.2
+    dof.aperture_blades, dof.aperture_rotation, dof.aperture_ratio = 5, 0.4, 1.6
+
+
+def orthographic(scene):
+    scene.camera.data.type, scene.camera.data.ortho_scale, scene.camera.data.shift_x = "ORTHO", 5, 0.05
+    depth_of_field(scene)
+    scene.camera.data.dof.aperture_fstop = 1.5
+
+
+def panoramic(scene):
+    scene.camera.data.type = "PANO"
+
+
+def still_motion_blur(scene):
+    scene.render.use_motion_blur = True
+
+
+def moving(scene):
+    scene.render.use_motion_blur = True
+    sphere = bpy.data.objects["Sphere"]
+    for frame, x in ((1, -2), (3, 2)):
+        sphere.location.x = x
+        sphere.keyframe_insert("location", frame=frame)
+    scene.frame_set(2)
+
+
+def switched_on(scene):
+    """Everything that the audit switches off."""
+    scene.render.use_motion_blur = True
+    scene.cycles.use_adaptive_sampling = False
+    scene.cycles.use_denoising = False
+    scene.render.use_compositing = scene.render.use_sequencer = True
+    scene.render.use_border, scene.render.border_max_x = True, 0.5
+
+
+def hostile(scene):
+    """A file that tries to run code in every way that a .blend has; each would leave a file beside this one."""
+    folder = os.path.dirname(os.path.abspath(sys.argv[-2]))
+
+    def code(name):
+        return HOSTILE.format(mark=os.path.join(folder, f"ran_{name}"))
+
+    text = bpy.data.texts.new("start.py")
+    text.write(code("text"))
+    text.use_module = True
+    handler = bpy.data.texts.new("handlers.py")
+    events = "load_post render_init render_pre frame_change_post depsgraph_update_post render_complete"
+    handler.write(f"import bpy\ndef run(*_): {code('handler')}\n"
+                  f"for event in {events.split()!r}: getattr(bpy.app.handlers, event).append(run)\n")  # fmt: skip
+    handler.use_module = True
+    drawing = bpy.data.texts.new("lines.py")
+    drawing.write(code("freestyle"))
+    scene.render.use_freestyle = True
+    settings = scene.view_layers[0].freestyle_settings
+    settings.mode = "SCRIPT"
+    settings.modules.new().script = drawing
+    driver = bpy.data.objects["Sphere"].driver_add("location", 0).driver
+    driver.type = "SCRIPTED"
+    driver.expression = f"(exec({code('driver')!r}), 0)[1]"
+
+
+KINDS = {f.__name__: f for f in (lens, depth_of_field, orthographic, panoramic, still_motion_blur, moving, switched_on, hostile)}
+
+
+def main():
+    out, kind = sys.argv[-2:]
+    scene = base()
+    if kind != "plain":
+        KINDS[kind](scene)
+    bpy.ops.wm.save_as_mainfile(filepath=os.path.abspath(out), check_existing=False)
+
+
+main()

@@ -1,0 +1,92 @@
+"""The mask camera makes the picture of Blender's own, and renders what the mask says."""
+
+import unittest
+
+import numpy as np
+
+from pipelines.blender import masks
+from pipelines.blender.renderer import BlenderRenderer
+from pipelines.loop import exr
+from pipelines.loop.renderer import SAMPLE_COUNT
+from tests.pipelines.blender.support import SceneTest
+
+SAMPLES = 16
+
+
+class Cameras(SceneTest):
+    def passes(self, kind, samples):
+        """{channel: (own camera, mask camera)} of the same samples of every pixel."""
+        renderer = BlenderRenderer(self.scene(kind), "bpy")
+        try:
+            audit = renderer.begin(None)
+            self.assertEqual(audit.method, "masks by a camera shader")
+            files = self.folder / "own.exr", self.folder / "masked.exr"
+            renderer.uniform(0, samples, files[0])
+            renderer.extra(0, np.full(renderer.shape, samples), files[1])
+        finally:
+            renderer.close()
+        own, masked = (exr.read(file) for file in files)
+        return {name: (own[name], masked[name]) for name in own if name in masked and "Render Seconds" not in name}
+
+    def assert_same_picture(self, kind):
+        """Both cameras draw the same numbers, so every sample's path is the same up to rounding, which may send single paths
+        elsewhere: nearly all pixels agree closely, and the rest does not add up."""
+        for name, (own, masked) in self.passes(kind, SAMPLES).items():
+            scale = np.abs(own).mean() + 1e-6
+            off = np.abs(own - masked) > 1e-3 * (np.abs(own) + scale)
+            self.assertLess(off.mean(), 0.03, f"{kind}: {name} differs in {off.mean():.1%} of the pixels")
+            self.assertLess(abs((own - masked).mean()) / scale, 2e-3, f"{kind}: {name}")
+
+    def test_plain(self):
+        self.assert_same_picture("plain")
+
+    def test_shift_fit_aspect_near_plane_and_polygonal_blurred_lens(self):
+        self.assert_same_picture("lens")
+
+    def test_orthographic(self):
+        self.assert_same_picture("orthographic")
+
+    def test_motion(self):
+        self.assert_same_picture("moving")
+
+    def test_a_panoramic_camera_falls_back(self):
+        renderer = BlenderRenderer(self.scene("panoramic"), "bpy")
+        self.addCleanup(renderer.close)
+        self.assertEqual(renderer.begin(None).method, "rectangles, since the camera is of type PANO")
+
+
+class Masks(SceneTest):
+    def test_each_pixel_gets_its_count_and_nothing_of_its_neighbours(self):
+        renderer = BlenderRenderer(self.scene(), "bpy")
+        self.addCleanup(renderer.close)
+        renderer.begin(None)
+        random = np.random.default_rng(5)
+        counts = random.choice([0, 1, 2, 8], size=renderer.shape)
+        counts[:, -6:] = 0
+        self.assertEqual(renderer.extra(8, counts, self.folder / "extra.exr"), 8)
+        part = exr.read(self.folder / "extra.exr")
+        np.testing.assert_array_equal(part[f"ViewLayer.{SAMPLE_COUNT}"], counts)
+        for samples in (1, 2, 8):
+            renderer.uniform(8, samples, self.folder / "whole.exr")
+            whole = exr.read(self.folder / "whole.exr")
+            for channel in "RGB":
+                name, place = f"ViewLayer.Combined.{channel}", counts == samples
+                difference = np.abs(part[name] - whole[name])[place] > 1e-3 * (whole[name][place] + 0.01)
+                self.assertLess(difference.mean(), 0.03, f"{samples} samples: rims are dark or bright")
+
+    def test_the_open_place_around_a_pixel(self):
+        inside = np.zeros((3, 4), bool)
+        inside[1, 2] = True
+        mask = masks.subpixel_mask(inside, 0.25, 1)
+        self.assertEqual(mask.shape, (20, 24))
+        self.assertEqual(masks.bounding_box(mask), (11, 7, 17, 13))  # 4 subpixels and one more on each side
+        self.assertEqual(masks.subpixel_mask(inside, 0, 0).sum(), 16)
+
+    def test_one_pass_a_count(self):
+        counts = np.array([[0, 4, 4], [0, 0, 1]])
+        self.assertEqual([(p.samples, p.box) for p in masks.plan(counts)], [(1, (2, 1, 3, 2)), (4, (1, 0, 3, 1))])
+        self.assertEqual(masks.plan(np.zeros((2, 2))), [])
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,144 @@
+"""adaptive.py as a user runs it, with both Blenders, on files and paths of every kind."""
+
+import hashlib
+import json
+import os
+import stat
+import time
+import unittest
+
+import numpy as np
+
+from pipelines.loop import exr
+from tests.pipelines.blender.support import BLENDER_3, SceneTest
+
+
+def executable(path, text):
+    path.write_text(text)
+    path.chmod(path.stat().st_mode | stat.S_IXUSR)
+    return path
+
+
+class Adaptive(SceneTest):
+    def check(self, scene, blender, method):
+        before = hashlib.sha256(scene.read_bytes()).digest()
+        out = self.folder / "out.exr"
+        done = self.driver("adaptive.py", scene, "-o", out, "--budget-spp", 16, "--first-pass", 4, "--quality", "draft", *blender)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn(f"extra samples: {method}", done.stdout)
+        self.assertEqual(before, hashlib.sha256(scene.read_bytes()).digest())
+        picture = exr.read(out)
+        self.assertTrue(all(np.isfinite(picture[f"ViewLayer.Combined.{c}"]).all() for c in "RGB"))
+        counts = exr.read(out.with_suffix(".passes") / "merged.exr")["ViewLayer.Sample Count.X"]
+        self.assertLessEqual(counts.mean(), 16 * 1.15)
+        self.assertGreater(counts.max(), counts.min())
+        self.assertEqual(sorted(p.name for p in self.folder.iterdir()), sorted([scene.name, "out.exr", "out.passes"]))
+        return out
+
+    def test_blender_5_with_masks(self):
+        out = self.check(self.scene("lens"), ["--bpy"], "masks by a camera shader")
+        page = (out.with_suffix(".passes") / "report.html").read_text()
+        self.assertEqual(page.count("data:image/png;base64,"), 1 + page.count("</b>: "))
+        self.assertNotIn("http", page)
+
+    def test_blender_3_with_rectangles(self):
+        self.check(self.scene(blender=BLENDER_3), ["--blender", BLENDER_3], "rectangles, since Blender before 5.0")
+
+    def test_case33_awkward_paths_and_frames(self):
+        scene = self.scene("moving", "-a 'b' \"{c}\" #ä日.blend")
+        folder = self.folder / "out {x} #1"
+        folder.mkdir()
+        done = self.driver("adaptive.py", "--bpy", "--budget-spp", 4, "--first-pass", 4, "--frames", "1-3x2", "--quality", "draft", "-o",
+                           folder / "<i>ä_##.exr", "--", scene.name)  # fmt: skip
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(sorted(p.name for p in folder.iterdir()),
+                         ["<i>ä_01.exr", "<i>ä_01.passes", "<i>ä_03.exr", "<i>ä_03.passes"])  # fmt: skip
+        first, second = (exr.read(folder / f"<i>ä_0{n}.exr")["ViewLayer.Combined.R"] for n in (1, 3))
+        self.assertGreater(np.abs(first - second).max(), 0.05)
+        self.assertIn("&lt;i&gt;ä_01.exr", (folder / "<i>ä_01.passes" / "report.html").read_text())
+
+    def test_wrong_use_is_told_before_any_work(self):
+        scene = self.folder / "none.blend"
+        for words, code, line in (
+            ([scene, "-o", "o.exr", "--budget-spp", 16], 4, "none.blend: no such file"),
+            ([scene, "-o", "o.exr"], 2, "required"),
+            ([scene, "-o", "o.exr", "--budget-spp", 4], 2, "less than --first-pass"),
+            ([scene, "-o", "o.exr", "--budget-spp", -4], 2, "not above 0"),
+        ):
+            done = self.driver("adaptive.py", *words)
+            self.assertEqual(done.returncode, code, done.stderr)
+            self.assertIn(line, done.stderr)
+
+
+class Hostile(SceneTest):
+    def test_case29_no_code_of_the_file_runs(self):
+        for blender in ("bpy", BLENDER_3):
+            scene = self.scene("hostile", blender=blender)
+            for mark in self.folder.glob("ran_*"):  # made while the file was built
+                mark.unlink()
+            out = self.folder / "out.exr"
+            done = self.driver("adaptive.py", scene, "-o", out, "--budget-spp", 8, "--first-pass", 4, "--blender", blender,
+                               "--quality", "draft", "--passes-dir", self.folder / f"passes_{blender == 'bpy'}")  # fmt: skip
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertIn("Freestyle off", done.stdout)
+            self.assertIn("Python drivers of the file are not run", done.stdout)
+            self.assertEqual(list(self.folder.glob("ran_*")), [], blender)
+
+    def test_the_file_would_run_it_if_it_were_let(self):
+        """The test above can fail: Blender itself, told to trust the file, runs it."""
+        import subprocess
+
+        scene = self.scene("hostile", blender=BLENDER_3)
+        subprocess.run([BLENDER_3, "-b", "-y", "--factory-startup", scene, "-o", self.folder / "x", "-f", "1"], capture_output=True)
+        names = {mark.name for mark in self.folder.glob("ran_*")}
+        self.assertLessEqual({"ran_text", "ran_handler", "ran_driver"}, names)
+
+
+class BadRenderers(SceneTest):
+    """Case 30: a renderer that dies, hangs, ends well without a file: 7, one line, nothing left running, resumable."""
+
+    def failing(self, body, *words):
+        """Runs the loop with a Blender that does `body` in its second pass, then with a good one from the journal."""
+        scene = self.scene(blender=BLENDER_3)
+        passes = self.folder / "p"
+        session = self.folder / "blender"
+        executable(session, f"""#!/usr/bin/env python3
+import subprocess, sys
+child = subprocess.Popen([{BLENDER_3!r}, *sys.argv[1:]], stdin=subprocess.PIPE, text=True)
+passes = 0
+for line in sys.stdin:
+    passes += '"render"' in line
+    if passes == 2:
+{body}
+    child.stdin.write(line)
+    child.stdin.flush()
+""")  # fmt: skip
+        arguments = [scene, "-o", self.folder / "o.exr", "--passes-dir", passes, "--budget-spp", 8, "--first-pass", 4, "--quality", "draft"]
+        done = self.driver("adaptive.py", *arguments, "--blender", session, *words)
+        self.assertEqual(done.returncode, 7, done.stderr)
+        self.assertEqual(len(done.stderr.strip().splitlines()), 1)
+        self.assertFalse((self.folder / "o.exr").exists())
+        self.assertEqual(len(json.loads((passes / "journal.json").read_text())["parts"]), 1)
+        again = self.driver("adaptive.py", *arguments, "--blender", BLENDER_3, "--resume")
+        self.assertEqual(again.returncode, 0, again.stderr)
+        return done.stderr
+
+    def test_case30_it_dies(self):
+        self.assertIn("Blender ended with code", self.failing("        child.kill(); child.wait(); sys.exit(11)"))
+
+    def test_case30_it_hangs(self):
+        begin = time.monotonic()
+        mark = f"{self.folder}/pid"
+        line = self.failing(f"        open({mark!r}, 'w').write(str(child.pid)); import time; time.sleep(1000)", "--pass-timeout", 15)
+        self.assertIn("did not answer within 15 s", line)
+        self.assertLess(time.monotonic() - begin, 200)
+        with self.assertRaises(ProcessLookupError):
+            os.kill(int(open(mark).read()), 0)
+
+    def test_case30_it_writes_no_file(self):
+        body = """        print('\\n@polyrecon {"seconds": 1}', flush=True); continue"""
+        self.assertIn("wrote no file", self.failing(body))
+
+
+if __name__ == "__main__":
+    unittest.main()
