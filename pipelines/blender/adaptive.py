@@ -20,20 +20,16 @@ if not __package__:  # run as a script from a checkout
 
 from ..loop import adaptive, report
 from ..loop.budget import Budget
-from ..loop.errors import DriverError, ExitCode, run_main
-from ..loop.frames import frame_path, parse_frames
+from ..loop.errors import run_main
+from ..loop.frames import frame_path
 from ..loop.polyrecon_cli import Polyrecon
-from ..loop.progress import STYLES, Progress
-from .renderer import BlenderRenderer
+from ..loop.progress import Progress
+from .options import add_common, frames_of, passes_of, positive, renderer_of
 
 
 def arguments(words):
     parser = argparse.ArgumentParser(prog="polyrecon-blender", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("scene", type=pathlib.Path, metavar="SCENE.blend")
-    parser.add_argument("-o", "--output", required=True, metavar="OUT.exr", help="clean picture; #### or %%04d is the frame")
-    frames = parser.add_mutually_exclusive_group()
-    frames.add_argument("--frame", type=int, help="frame to render, in place of the file's current one")
-    frames.add_argument("--frames", help="frames to render: 1-10,20-40x2")
+    add_common(parser)
     budget = parser.add_mutually_exclusive_group(required=True)
     budget.add_argument("--budget-spp", type=positive, metavar="N", help="samples per pixel on average")
     budget.add_argument("--budget-seconds", type=positive, metavar="S", help="seconds of everything, for each frame")
@@ -43,16 +39,7 @@ def arguments(words):
     parser.add_argument("--quality", choices=adaptive.LAST_OVER_ROUND, default="standard", help="of the last reconstruction (standard)")
     parser.add_argument("--method", choices=("auto", "osl", "regions"), default="auto",
                         help="how extra samples are rendered: by a camera with a mask (Blender 5), or as rectangles (auto)")  # fmt: skip
-    parser.add_argument("--visibility", choices=("auto", "shadow", "ambient-occlusion", "none"), default="auto", help="feature pass (auto)")
-    blender = parser.add_mutually_exclusive_group()
-    blender.add_argument("--blender", metavar="PATH", help="Blender to run ($BLENDER, else `blender`)")
-    blender.add_argument("--bpy", action="store_const", const="bpy", dest="blender", help="use the module bpy of this Python")
-    parser.add_argument("--polyrecon", metavar="PATH", help="polyrecon to run ($POLYRECON, else `polyrecon`)")
-    parser.add_argument("--passes-dir", type=pathlib.Path, metavar="DIR", help="for passes, maps, journal, report (OUT.passes)")
     parser.add_argument("--resume", action="store_true", help="go on with the passes of an earlier run")
-    parser.add_argument("--pass-timeout", type=positive, default=3600, metavar="S", help="a pass that takes longer has hung (3600)")
-    parser.add_argument("--progress", choices=STYLES, default="auto", help="json: one object a line on standard error")
-    parser.add_argument("-q", "--quiet", action="store_true", help="print nothing but errors")
     options = parser.parse_args(words)
     if options.first_pass != 4 and (options.first_pass < 8 or options.first_pass % 8):
         parser.error("--first-pass: 4 or a multiple of 8")
@@ -61,21 +48,11 @@ def arguments(words):
     return options
 
 
-def positive(word):
-    value = float(word)
-    if not 0 < value < float("inf"):
-        raise argparse.ArgumentTypeError(f"{word}: not above 0")
-    return value
-
-
 def work(words):
     options = arguments(words)
-    if not options.scene.is_file():
-        raise DriverError(ExitCode.MISSING, f"{options.scene}: no such file")
-    frames = parse_frames(options.frames) if options.frames else [options.frame]
+    frames = frames_of(options)
     polyrecon = Polyrecon(options.polyrecon)
-    visibility = None if options.visibility in ("auto", "none") else options.visibility
-    renderer = BlenderRenderer(options.scene, options.blender, options.method, visibility, options.pass_timeout)
+    renderer = renderer_of(options, options.method)
     try:
         with Progress("none" if options.quiet else options.progress) as progress:
             for frame in frames:
@@ -86,13 +63,10 @@ def work(words):
 
 def one_frame(options, renderer, polyrecon, frame, progress):
     output = frame_path(options.output, frame, bool(options.frames))
-    passes = options.passes_dir or output.with_suffix(".passes")
-    if options.frames and options.passes_dir:
-        passes = passes / f"{frame:04d}"
     status = options.scene.stat()
     settings = adaptive.Settings(
         output=output,
-        passes=passes,
+        passes=passes_of(options, output, frame),
         budget=Budget(options.budget_spp, options.budget_seconds, options.target),
         frame=frame,
         first_pass=options.first_pass,

@@ -71,35 +71,6 @@ void check_fits(Render& render, const Render& first) {
   render.layers = std::move(ordered);
 }
 
-/// A layer has to be in all renders, or in the first one alone.
-void check_absent(const std::vector<Render>& renders) {
-  const Render& first = renders.front();
-  for (std::size_t l = 0; l < first.layers.size(); ++l)
-    for (std::size_t k = 2; k < renders.size(); ++k)
-      if (renders[k].absent[l] != renders[1].absent[l])
-        misfit(renders[k].absent[l] ? renders[k] : renders[1], first, fmt::format("no layer {}", first.layers[l].name));
-}
-
-std::vector<Render> open_renders(const std::vector<std::string>& paths, const ReadLimits& limits) {
-  if (paths.size() < 2) throw Error(ExitCode::Usage, "merge needs at least two renders of the same frame");
-  std::vector<Render> renders;
-  for (const std::string& path : paths) {
-    Render render;
-    render.file = describe_file(path, limits);
-    if (render.file.format != "openexr")
-      throw Error(ExitCode::BadInput, fmt::format("{}: merge needs OpenEXR files", path));
-    render.layers = find_layers(render.file);
-    std::error_code failure;
-    for (const Render& other : renders)
-      if (std::filesystem::equivalent(path, other.file.path, failure))
-        throw Error(ExitCode::Usage, fmt::format("{}: given twice; renders have to be independent", path));
-    if (!renders.empty()) check_fits(render, renders.front());
-    renders.push_back(std::move(render));
-  }
-  check_absent(renders);
-  return renders;
-}
-
 /// What becomes of a layer.
 enum class Fate { Merged, Kept, Dropped };
 
@@ -128,6 +99,52 @@ Fate fate_of(const Render& first, const Layer& layer) {
   if (layer.companion != Companion::Mean || layer.role == Role::SampleCount) return Fate::Dropped;
   if (layer.role == Role::Other || all_uint(first, layer) || is_second_depth(first, layer)) return Fate::Kept;
   return Fate::Merged;
+}
+
+/// Whether a render that lacks the layer has another one of its role.
+bool has_stand_in(const Render& render, const Layer& layer) {
+  for (std::size_t l = 0; l < render.layers.size(); ++l) {
+    const Layer& other = render.layers[l];
+    if (!render.absent[l] && other.role == layer.role && other.companion == layer.companion &&
+        other.view_layer == layer.view_layer && other.view == layer.view)
+      return true;
+  }
+  return false;
+}
+
+/// Layers that only the first render has are kept from it; but all renders have the picture and one layer of each
+/// feature.
+void check_absent(const std::vector<Render>& renders) {
+  const Render& first = renders.front();
+  for (std::size_t l = 0; l < first.layers.size(); ++l) {
+    const Layer& layer = first.layers[l];
+    const auto lacks = [&](const Render& render) { return !render.absent.empty() && render.absent[l]; };
+    const auto lacking = std::find_if(renders.begin(), renders.end(), lacks);
+    if (lacking == renders.end()) continue;
+    const bool first_alone = std::all_of(renders.begin() + 1, renders.end(), lacks);
+    if (!first_alone || (fate_of(first, layer) == Fate::Merged && !has_stand_in(*lacking, layer)))
+      misfit(*lacking, first, fmt::format("no layer {}", layer.name));
+  }
+}
+
+std::vector<Render> open_renders(const std::vector<std::string>& paths, const ReadLimits& limits) {
+  if (paths.size() < 2) throw Error(ExitCode::Usage, "merge needs at least two renders of the same frame");
+  std::vector<Render> renders;
+  for (const std::string& path : paths) {
+    Render render;
+    render.file = describe_file(path, limits);
+    if (render.file.format != "openexr")
+      throw Error(ExitCode::BadInput, fmt::format("{}: merge needs OpenEXR files", path));
+    render.layers = find_layers(render.file);
+    std::error_code failure;
+    for (const Render& other : renders)
+      if (std::filesystem::equivalent(path, other.file.path, failure))
+        throw Error(ExitCode::Usage, fmt::format("{}: given twice; renders have to be independent", path));
+    if (!renders.empty()) check_fits(render, renders.front());
+    renders.push_back(std::move(render));
+  }
+  check_absent(renders);
+  return renders;
 }
 
 /// The name of a channel in the one part of the output.

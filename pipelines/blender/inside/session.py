@@ -28,27 +28,20 @@ class Session:
         self.scene = self.view_layer = self.mask_camera = None
 
     def open(self, path, frame, sequence, visibility, mask_camera):
-        """Opens a file (the first time) at a frame and sets it up. Nothing is ever saved."""
+        """Opens the file (the first time) at a frame, sets it up, and tells what it calls for. Nothing is ever saved."""
         if self.scene is None:
-            bpy.ops.wm.open_mainfile(filepath=path, load_ui=False, use_scripts=False)
-        scene = self.scene = bpy.context.scene
-        if scene.render.engine != "CYCLES":
-            raise RuntimeError(f"the scene's renderer is {scene.render.engine}, not Cycles")
-        scene.frame_set(scene.frame_current if frame is None else frame)
+            self.load(path, visibility)
+            self.sequence = sequence
+        scene = self.scene
+        scene.frame_set(self.own_frame if frame is None else frame)
         if scene.camera is None:
             raise RuntimeError("the scene has no camera")
-        self.view_layer = next((layer for layer in scene.view_layers if layer.use), scene.view_layers[0])
-        found = audit.effects(scene, self.view_layer)
-        switches = audit.switch_off(scene, self.view_layer)
-        self.choose_output(scene.render)
-        own_passes = self.own_passes()
-        self.choose_passes(visibility)
-        scene.render.use_persistent_data = True
-        self.sequence = sequence
+        if self.mask_camera:
+            self.mask_camera.remove()
         reason = "regions were asked for"
         if mask_camera:
             reason = camera.why_not(scene, scene.camera, bpy.context.evaluated_depsgraph_get())
-            self.mask_camera = None if reason else camera.MaskCamera(scene)
+        self.mask_camera = None if reason else camera.MaskCamera(scene)
         scale = scene.render.resolution_percentage / 100
         return {
             "width": int(scene.render.resolution_x * scale),
@@ -56,13 +49,26 @@ class Session:
             "frame": scene.frame_current,
             "view_layer": self.view_layer.name,
             "version": bpy.app.version_string,
-            "effects": found,
-            "switches": switches,
-            "own_passes": own_passes,
-            "has_shadow": hasattr(self.view_layer, "use_pass_shadow"),
+            "effects": self.effects,
+            "switches": self.switches,
+            "own_passes": [name for _, name in self.user_passes if name != "use_pass_combined"],
             "no_mask_camera": reason,
             "filter_reach": camera.filter_reach(scene),
         }
+
+    def load(self, path, visibility):
+        bpy.ops.wm.open_mainfile(filepath=path, load_ui=False, use_scripts=False)
+        scene = self.scene = bpy.context.scene
+        if scene.render.engine != "CYCLES":
+            raise RuntimeError(f"the scene's renderer is {scene.render.engine}, not Cycles")
+        self.own_frame = scene.frame_current
+        self.view_layer = next((layer for layer in scene.view_layers if layer.use), scene.view_layers[0])
+        self.effects = audit.effects(scene, self.view_layer)
+        self.switches = audit.switch_off(scene, self.view_layer)
+        self.choose_output(scene.render)
+        self.user_passes = self.passes_on()
+        self.choose_passes(visibility)
+        scene.render.use_persistent_data = True
 
     def choose_output(self, render):
         settings = render.image_settings
@@ -76,35 +82,31 @@ class Session:
         render.use_overwrite = True
         render.use_placeholder = False
 
-    def own_passes(self):
-        """The passes that the user switched on: [(owner, property)]."""
-        self.user_passes = [
+    def passes_on(self):
+        """The passes that are switched on: [(owner, property)]."""
+        return [
             (owner, p.identifier)
             for owner in (self.view_layer, self.view_layer.cycles)
             for p in owner.bl_rna.properties
-            if p.identifier.startswith(("use_pass_", "pass_debug_", "pass_render_")) and not p.is_readonly
-            and p.type == "BOOLEAN" and getattr(owner, p.identifier)
-        ]  # fmt: skip
-        return [name for _, name in self.user_passes if name != "use_pass_combined"]
+            if p.identifier.startswith(("use_pass_", "pass_debug_", "pass_render_"))
+            and p.type == "BOOLEAN"
+            and not p.is_readonly
+            and getattr(owner, p.identifier)
+        ]
 
     def choose_passes(self, visibility):
         """The passes of every part: picture, features, seconds."""
         for owner, name in self.user_passes:
             setattr(owner, name, False)
         layer = self.view_layer
-        layer.use_pass_combined = True
-        layer.cycles.denoising_store_passes = True
         wanted = {"shadow": "use_pass_shadow", "ambient-occlusion": "use_pass_ambient_occlusion"}.get(visibility)
-        if wanted and hasattr(layer, wanted):
-            setattr(layer, wanted, True)
-        if hasattr(layer.cycles, "pass_render_time"):
-            layer.cycles.pass_render_time = True
-        self.every_part = [
-            (owner, p.identifier)
-            for owner in (layer, layer.cycles)
-            for p in owner.bl_rna.properties
-            if p.identifier.startswith(("use_pass_", "pass_render_")) and p.type == "BOOLEAN" and getattr(owner, p.identifier)
-        ]
+        if wanted and not hasattr(layer, wanted):
+            raise RuntimeError(f"Blender {bpy.app.version_string} has no pass {visibility}")
+        for owner, name in ((layer, "use_pass_combined"), (layer.cycles, "denoising_store_passes"), (layer, wanted),
+                            (layer.cycles, "pass_render_time")):  # fmt: skip
+            if name and hasattr(owner, name):
+                setattr(owner, name, True)
+        self.every_part = self.passes_on()
 
     def render(self, target, first, samples, crop=None, mask=None, own_passes=False):
         """Samples first .. first + samples - 1 into an EXR. crop: [x0, y0, x1, y1], pixels from the top left, end excluded;

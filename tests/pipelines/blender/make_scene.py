@@ -8,19 +8,24 @@ import bpy
 HOSTILE = "import pathlib; pathlib.Path({mark!r}).touch()"
 
 
+def use_nodes(block):
+    if bpy.app.version < (5, 0):  # always on since
+        block.use_nodes = True
+
+
 def base():
     bpy.ops.wm.read_factory_settings(use_empty=True)
     scene = bpy.context.scene
     scene.render.engine = "CYCLES"
     scene.render.resolution_x, scene.render.resolution_y, scene.render.resolution_percentage = 48, 32, 100
     scene.world = bpy.data.worlds.new("World")
-    scene.world.use_nodes = True
+    use_nodes(scene.world)
     scene.world.node_tree.nodes["Background"].inputs[0].default_value = (0.3, 0.4, 0.6, 1)
     bpy.ops.mesh.primitive_plane_add(size=20)
     for i, x in enumerate((-1.6, 0, 1.7)):
         bpy.ops.mesh.primitive_uv_sphere_add(radius=0.7, location=(x, i * 1.5, 0.7))
         material = bpy.data.materials.new(f"M{i}")
-        material.use_nodes = True
+        use_nodes(material)
         material.node_tree.nodes["Principled BSDF"].inputs["Base Color"].default_value = (0.8, 0.3 * i, 0.2, 1)
         bpy.context.object.data.materials.append(material)
     lamp = bpy.data.objects.new("Lamp", bpy.data.lights.new("Lamp", "AREA"))
@@ -53,6 +58,17 @@ def orthographic(scene):
     scene.camera.data.type, scene.camera.data.ortho_scale, scene.camera.data.shift_x = "ORTHO", 5, 0.05
     depth_of_field(scene)
     scene.camera.data.dof.aperture_fstop = 1.5
+
+
+def caustic(scene):
+    """Uneven, skewed noise: glass over a floor, a small lamp. A tiny frame."""
+    scene.render.resolution_x, scene.render.resolution_y = 24, 16
+    glass = bpy.data.materials["M1"].node_tree.nodes["Principled BSDF"]
+    glass.inputs["Roughness"].default_value = 0.05
+    glass.inputs["Transmission Weight" if "Transmission Weight" in glass.inputs else "Transmission"].default_value = 1
+    bpy.data.objects["Lamp"].data.size = 0.2
+    scene.world.node_tree.nodes["Background"].inputs[1].default_value = 0.1
+    scene.cycles.sample_clamp_indirect = 0
 
 
 def panoramic(scene):
@@ -107,7 +123,7 @@ def hostile(scene):
     driver.expression = f"(exec({code('driver')!r}), 0)[1]"
 
 
-KINDS = {f.__name__: f for f in (lens, depth_of_field, orthographic, panoramic, still_motion_blur, moving, switched_on, hostile)}
+KINDS = {f.__name__: f for f in (lens, depth_of_field, caustic, orthographic, panoramic, still_motion_blur, moving, switched_on, hostile)}
 
 
 def main():

@@ -1,0 +1,80 @@
+#!/usr/bin/env python3
+"""Renders a .blend file with Cycles as several subsets of one sample sequence and merges them: a noisy picture with its
+features, and mean, variance and half buffers of each, ready for `polyrecon denoise`.
+
+examples:
+  render_passes.py shot.blend -o noisy.exr --spp 64 && polyrecon denoise -i noisy.exr -o clean.exr
+  render_passes.py shot.blend -o 'out/noisy_####.exr' --frames 1-100 --spp 32 --bpy
+
+The mean of the subsets is the ordinary render of all samples; nothing is lost by splitting it. The file is never changed and
+no script in it is run."""
+
+import argparse
+import pathlib
+import sys
+
+if not __package__:  # run as a script from a checkout
+    sys.path[0] = str(pathlib.Path(__file__).resolve().parents[2])
+    __package__ = "pipelines.blender"
+
+from ..loop.errors import DriverError, ExitCode, run_main
+from ..loop.frames import frame_path
+from ..loop.polyrecon_cli import Polyrecon
+from ..loop.progress import Progress
+from .options import add_common, frames_of, passes_of, renderer_of
+
+
+def arguments(words):
+    parser = argparse.ArgumentParser(prog="polyrecon-blender-passes", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    add_common(parser)
+    parser.add_argument("--spp", type=int, required=True, metavar="N", help="samples per pixel in all")
+    parser.add_argument("--parts", type=int, default=8, metavar="K", help="subsets; more tell the variance better (8)")
+    parser.add_argument("--keep-parts", action="store_true", help="keep the subsets in --passes-dir")
+    options = parser.parse_args(words)
+    if options.parts < 2 or options.spp < options.parts or options.spp % options.parts:
+        parser.error(f"--spp {options.spp} is no multiple of --parts {options.parts}, or less than two parts")
+    return options
+
+
+def work(words):
+    options = arguments(words)
+    frames = frames_of(options)
+    polyrecon = Polyrecon(options.polyrecon)
+    renderer = renderer_of(options)
+    try:
+        with Progress("none" if options.quiet else options.progress) as progress:
+            for frame in frames:
+                one_frame(options, renderer, polyrecon, frame, progress)
+    finally:
+        renderer.close()
+
+
+def one_frame(options, renderer, polyrecon, frame, progress):
+    output = frame_path(options.output, frame, bool(options.frames))
+    passes = passes_of(options, output, frame)
+    try:
+        passes.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise DriverError(ExitCode.OUTPUT, f"{passes}: {error.strerror}") from error
+    renderer.begin(frame)
+    each = options.spp // options.parts
+    parts = [passes / f"part_{k}.exr" for k in range(options.parts)]
+    for k, part in enumerate(parts):
+        progress.update("pass", frame=frame, samples=k * each, done=k / options.parts)
+        renderer.uniform(k * each, each, part)
+    told = polyrecon.run("merge", *parts, "-o", output)
+    if not options.keep_parts:
+        for part in parts:
+            part.unlink()
+        if not any(passes.iterdir()):
+            passes.rmdir()
+    if not options.quiet:
+        print(told, end="")
+
+
+def main(words=None):
+    return run_main("polyrecon-blender-passes", work, words)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,80 @@
+#!/usr/bin/env python3
+"""The loop's noisy mean over many seeds of a tiny frame against the uniform mean: prints z values, ends with 1 where they do not
+agree. 200 seeds take some minutes, so this is no part of ctest:
+
+    POLYRECON=build/release/src/polyrecon build/venv/bin/python3 tests/pipelines/blender/unbiased.py --seeds 200
+"""
+
+import argparse
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+sys.path[0] = str(pathlib.Path(__file__).resolve().parents[3])
+
+import numpy as np  # noqa: E402
+
+from pipelines.blender.renderer import BlenderRenderer  # noqa: E402
+from pipelines.loop import adaptive, exr  # noqa: E402
+from pipelines.loop.budget import Budget  # noqa: E402
+from pipelines.loop.polyrecon_cli import Polyrecon  # noqa: E402
+from pipelines.loop.progress import Progress  # noqa: E402
+
+MAKE_SCENE = pathlib.Path(__file__).with_name("make_scene.py")
+
+
+class Seeded(BlenderRenderer):
+    """Shifts the sequence: `first` numbers of another run are other samples, as another seed's are."""
+
+    offset = 0
+
+    def _render(self, **job):
+        return super()._render(**{**job, "first": job["first"] + self.offset})
+
+
+def picture(path):
+    channels = exr.read(path, lambda name: name.startswith("ViewLayer.Combined."))
+    return np.stack([channels[f"ViewLayer.Combined.{c}"] for c in "RGB"], -1).astype(float)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--seeds", type=int, default=200)
+    parser.add_argument("--spp", type=int, default=24)
+    parser.add_argument("--kind", default="caustic", help="scene of make_scene.py")
+    options = parser.parse_args()
+    polyrecon = Polyrecon()
+    adapted, uniform, counts = [], [], []
+    with tempfile.TemporaryDirectory() as folder:
+        folder = pathlib.Path(folder)
+        scene = folder / "scene.blend"
+        subprocess.run([sys.executable, MAKE_SCENE, scene, options.kind], check=True, stdout=subprocess.DEVNULL)
+        renderer = Seeded(scene, "bpy")
+        try:
+            for seed in range(options.seeds):
+                renderer.offset = seed * 4096
+                passes = folder / f"p{seed}"
+                settings = adaptive.Settings(folder / "o.exr", passes, Budget(samples=options.spp), quality="draft")
+                result = adaptive.run(renderer, polyrecon, settings, Progress("none"))
+                adapted.append(picture(result.merged))
+                counts.append(exr.read(result.merged)["ViewLayer.Sample Count.X"])
+                renderer.uniform(2048, options.spp, folder / "u.exr")
+                uniform.append(picture(folder / "u.exr"))
+        finally:
+            renderer.close()
+    adapted, uniform = np.array(adapted), np.array(uniform)
+    n = options.seeds
+    error = np.sqrt(adapted.var(0, ddof=1) / n + uniform.var(0, ddof=1) / n)
+    z = ((adapted.mean(0) - uniform.mean(0)) / np.maximum(error, 1e-9))[error > 1e-9]
+    frames = [run.mean((1, 2, 3)) for run in (adapted, uniform)]
+    whole = (frames[0].mean() - frames[1].mean()) / np.sqrt(sum(f.var(ddof=1) / n for f in frames))
+    print(f"{n} seeds, {np.mean(counts):.1f} samples per pixel, {np.min(counts):.0f} to {np.max(counts):.0f}")
+    print(f"frame mean: adaptive {frames[0].mean():.6f}, uniform {frames[1].mean():.6f}: z = {whole:.2f}")
+    print(f"pixels: rms of z {np.sqrt((z**2).mean()):.3f} (1 expected), mean {z.mean():+.3f}, beyond 3: {(abs(z) > 3).mean():.4f} (0.0027 expected)")
+    print(f"variance of a pixel, adaptive / uniform: {adapted.var(0).mean() / uniform.var(0).mean():.3f}")
+    return int(abs(whole) > 3 or np.sqrt((z**2).mean()) > 1.1)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
