@@ -102,7 +102,8 @@ class MaskCamera:
         _provide_oslquery()
         self.camera = scene.camera.data
         self.own = {name: getattr(self.camera, name) for name in ("type", "shift_x", "shift_y")}
-        text = self.text = bpy.data.texts.new(TEXT_NAME)
+        text = bpy.data.texts.get(TEXT_NAME) or bpy.data.texts.new(TEXT_NAME)  # of the frame before
+        text.clear()
         text.write(SHADER % self._values(scene))
         self.camera.custom_mode = "INTERNAL"
         self.camera.custom_shader = text
@@ -140,11 +141,6 @@ class MaskCamera:
             for name, value in mask.items():
                 self.camera.cycles_custom["mask" if name == "path" else name] = value
             self.camera.update_tag()
-
-    def remove(self):
-        """Back to the scene's own camera; another frame may have another one."""
-        self.use(None)
-        bpy.data.texts.remove(self.text)
 
 
 def _provide_oslquery():

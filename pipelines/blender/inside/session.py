@@ -37,7 +37,7 @@ class Session:
         if scene.camera is None:
             raise RuntimeError("the scene has no camera")
         if self.mask_camera:
-            self.mask_camera.remove()
+            self.mask_camera.use(None)  # of the frame before; another one may have another camera
         reason = "regions were asked for"
         if mask_camera:
             reason = camera.why_not(scene, scene.camera, bpy.context.evaluated_depsgraph_get())

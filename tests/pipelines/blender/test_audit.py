@@ -35,7 +35,7 @@ class Audits(SceneTest):
 
     def test_effects_are_found(self):
         _, effects, _ = self.render(self.scene("lens"))
-        self.assertEqual({k: v for k, v in effects.items() if v}, {"depth of field": True, "lamps": 1})
+        self.assertEqual({k: v for k, v in effects.items() if v}, {"depth of field": True, "lamps": 1, "denoising": True})
 
 
 if __name__ == "__main__":
