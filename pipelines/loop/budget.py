@@ -38,7 +38,7 @@ class Spent:
 
 def next_slice(budget, spent):
     """Samples per pixel of the next round, and why there is none (or ''). The slices grow geometrically; the last one takes
-    what is left, and one that would leave less than half of itself takes that too."""
+    what is left, and one that would leave no more than half of itself takes that too."""
     step = GROWTH * spent.worth
     if budget.samples:
         left, reason = budget.samples - spent.samples, "the samples are spent"
@@ -51,7 +51,7 @@ def next_slice(budget, spent):
         left, reason = _needed(budget.target, spent, step), ""
     if left < LEAST_SAMPLES:
         return 0.0, reason
-    return (left if left < 1.5 * step else step), ""
+    return (left if left <= 1.5 * step else step), ""
 
 
 def _needed(target, spent, step):

@@ -12,8 +12,9 @@ def quantise(wanted, cost):
     The map is smoothed first, so that neighbours mostly share a count: borders between counts cost samples. Rounding to a
     power of two costs little: sum v / n is flat around its minimum (3 % more variance at most, a factor of sqrt 2 off).
     cost: seconds of a sample, same shape, any unit."""
-    smooth = gaussian_blur(np.maximum(np.nan_to_num(wanted), 0), COHERENCE)
-    budget = float((cost * smooth).sum())
+    wanted = np.maximum(np.nan_to_num(wanted), 0)
+    smooth = gaussian_blur(wanted, COHERENCE)
+    budget = float((cost * wanted).sum())
     if budget <= 0:
         return np.zeros(wanted.shape, int)
     low, high = 1e-3, 1e3  # of the factor that makes the costs equal; the cost grows with it

@@ -1,0 +1,59 @@
+import unittest
+from pathlib import Path
+
+from pipelines.loop.budget import Budget, Spent, next_slice
+from pipelines.loop.errors import DriverError
+from pipelines.loop.frames import frame_path, parse_frames
+
+
+def spent(samples, seconds=10.0, error=0.1, variance=0.08):
+    """Of 10 seconds 8 were rendering; the result takes 2 more."""
+    return Spent(samples, seconds, 0.8 * seconds, samples, 2.0, error, variance)
+
+
+class Slices(unittest.TestCase):
+    def test_samples_double_and_the_last_takes_the_rest(self):
+        done = []
+        n = 8.0
+        while extra := next_slice(Budget(samples=64), spent(n))[0]:
+            done.append(extra)
+            n += extra
+        self.assertEqual(done, [8, 16, 32])
+        self.assertEqual(next_slice(Budget(samples=20), spent(8.0))[0], 8 + 4)  # 4 more would be no round of their own
+        self.assertEqual(next_slice(Budget(samples=8), spent(8.0)), (0.0, "the samples are spent"))
+
+    def test_case31_seconds_leave_room_for_the_result(self):
+        # 8 samples took 8 of the 10 seconds; of 25, 2 are kept for the result, 13 are left: 13 samples, over 1.5 x 8.
+        self.assertEqual(next_slice(Budget(seconds=25), spent(8.0))[0], 8)
+        self.assertAlmostEqual(next_slice(Budget(seconds=20), spent(8.0))[0], 8)
+        self.assertAlmostEqual(next_slice(Budget(seconds=15), spent(8.0))[0], 3)
+        self.assertEqual(next_slice(Budget(seconds=12), spent(8.0)), (0.0, "the seconds are spent"))
+
+    def test_a_target_takes_what_it_needs(self):
+        self.assertEqual(next_slice(Budget(target=0.2), spent(8.0))[0], 0)
+        # 0.02 + 0.08 * 8 / (8 + n) = 0.06 at n = 8
+        self.assertAlmostEqual(next_slice(Budget(target=0.06), spent(8.0))[0], 8)
+        self.assertAlmostEqual(next_slice(Budget(target=0.09), spent(8.0))[0], 8 / 7)
+        self.assertEqual(next_slice(Budget(target=0.001), spent(8.0))[0], 8)  # below what is held for bias: one step
+
+
+class Frames(unittest.TestCase):
+    def test_ranges(self):
+        self.assertEqual(parse_frames("1-3,10-20x5,2"), [1, 2, 3, 10, 15, 20])
+        self.assertEqual(parse_frames("7"), [7])
+        self.assertEqual(parse_frames("-2-1"), [-2, -1, 0, 1])
+        for bad in ("", "a", "3-1", "1-", "1-5x0", "1;2"):
+            with self.assertRaises(DriverError, msg=bad):
+                parse_frames(bad)
+
+    def test_names(self):
+        self.assertEqual(frame_path("o/a#b_####.exr", 7), Path("o/a#b_0007.exr"))
+        self.assertEqual(frame_path("o/a_%03d.exr", 7), Path("o/a_007.exr"))
+        self.assertEqual(frame_path("o/a_#.exr", None), Path("o/a_#.exr"))
+        self.assertEqual(frame_path("o/a.exr", 7), Path("o/a.exr"))
+        with self.assertRaises(DriverError):
+            frame_path("o/a.exr", 7, several=True)
+
+
+if __name__ == "__main__":
+    unittest.main()

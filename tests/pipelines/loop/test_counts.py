@@ -1,0 +1,59 @@
+import unittest
+
+import numpy as np
+
+from pipelines.loop.counts import MOST, cost_of_samples, gaussian_blur, quantise
+
+ONES = np.ones((32, 48))
+
+
+class Counts(unittest.TestCase):
+    def test_powers_of_two_that_cost_what_was_wanted(self):
+        random = np.random.default_rng(1)
+        wanted = np.exp(gaussian_blur(random.normal(0, 12, ONES.shape), 4) + 2)
+        cost = np.where(np.arange(48) < 24, 1.0, 5.0) * ONES
+        counts = quantise(wanted, cost)
+        self.assertLessEqual((cost * counts).sum(), (cost * wanted).sum() * 1.02)
+        self.assertGreater((cost * counts).sum(), (cost * wanted).sum() * 0.9)
+        used = counts[counts > 0]
+        np.testing.assert_array_equal(2 ** np.rint(np.log2(used)).astype(int), used)
+        self.assertGreater(np.corrcoef(np.log2(wanted).ravel(), np.log2(counts + 0.5).ravel())[0, 1], 0.9)
+
+    def test_neighbours_mostly_share_a_count(self):
+        wanted = np.random.default_rng(2).exponential(8, (64, 64))
+        counts = quantise(wanted, np.ones((64, 64)))
+        self.assertLess((counts[:, 1:] != counts[:, :-1]).mean(), 0.15)
+
+    def test_case34_nothing_one_pixel_everything_and_no_numbers(self):
+        self.assertEqual(quantise(0 * ONES, ONES).sum(), 0)
+        self.assertTrue((quantise(4 * ONES, ONES) == 4).all())
+        self.assertEqual(quantise(np.nan * ONES, ONES).sum(), 0)
+        one = 0 * ONES
+        one[7, 9] = 640
+        counts = quantise(one, ONES)
+        self.assertGreater(counts[7, 9], 8)
+        self.assertLessEqual(counts.sum(), 640)
+        self.assertEqual(counts[20:].sum(), 0)
+        holed = 4 * ONES
+        holed[3, 3] = np.nan
+        self.assertTrue(np.isin(quantise(holed, ONES), (2, 4, 8)).all())
+        self.assertLessEqual(quantise(1e9 * ONES, ONES).max(), MOST)
+
+
+class Costs(unittest.TestCase):
+    def test_smoothed_relative_and_bounded(self):
+        counts = 8 * ONES
+        seconds = np.where(np.arange(48) < 24, 1.0, 3.0) * counts
+        cost = cost_of_samples(seconds, counts)
+        self.assertAlmostEqual(cost[16, 44] / cost[16, 4], 3, delta=0.05)
+        self.assertAlmostEqual(cost.mean(), 1, delta=0.05)
+        seconds[5, 5] = 1e12
+        self.assertLessEqual(cost_of_samples(seconds, counts).max(), 16)
+
+    def test_unknown_is_the_same_everywhere(self):
+        for seconds in (None, 0 * ONES, np.nan * ONES):
+            self.assertTrue((cost_of_samples(seconds, ONES) == 1).all())
+
+
+if __name__ == "__main__":
+    unittest.main()
