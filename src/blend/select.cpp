@@ -10,6 +10,8 @@ namespace polyrecon {
 namespace {
 
 constexpr double brightness_sigma = 1;
+// Relative noise variance below and above which candidates count alike: keeps shares finite and above zero.
+constexpr Real least_relative_variance = Real(1e-12), most_relative_variance = Real(1e12);
 constexpr double pi = 3.14159265358979323846;
 
 void for_rows(int height, const std::function<void(int)>& body) {
@@ -51,9 +53,9 @@ Image raw_risk(const HalfPair& pair, const Candidate& candidate, const Image& sc
   return out;
 }
 
-/// exp(-D / (softness SE)) of a candidate against the best one of each pixel.
-Image share(const std::vector<Image>& raw, const std::vector<Image>& risk, const std::vector<int>& best, std::size_t k,
-            const SelectParams& params) {
+/// exp(-z^2 / 2), z = D / SE, of a candidate against the best one of each pixel.
+Image likelihood(const std::vector<Image>& raw, const std::vector<Image>& risk, const std::vector<int>& best,
+                 std::size_t k, const SelectParams& params) {
   const int width = raw[k].width(), height = raw[k].height();
   Image moments(width, height, 2);
   const auto best_at = [&](int x, int y) { return static_cast<std::size_t>(best[raw[k].index(x, y)]); };
@@ -77,10 +79,29 @@ Image share(const std::vector<Image>& raw, const std::vector<Image>& risk, const
       const double error = std::sqrt(std::max(0.0, square - mean * mean) / independent);
       const double above =
           static_cast<double>(risk[k].at(x, y, 0)) - static_cast<double>(risk[best_at(x, y)].at(x, y, 0));
-      out.at(x, y, 0) = static_cast<Real>(above > 0 ? std::exp(-above / (params.softness * error + 1e-30)) : 1.0);
+      const double z = above / (error + 1e-30);
+      out.at(x, y, 0) = static_cast<Real>(above > 0 ? std::exp(-0.5 * z * z) : 1.0);
     }
   });
   return out;
+}
+
+/// Divides by the standard deviation of the candidate's noise, relative like the risk.
+void favour_little_noise(const Image& variance, const Image& scale, double sigma, Image& shares) {
+  if (variance.empty()) return;
+  Image relative(shares.width(), shares.height(), 1);
+  for_rows(shares.height(), [&](int y) {
+    for (int c = 0; c < 3; ++c)
+      for (int x = 0; x < shares.width(); ++x) relative.at(x, y, 0) += variance.at(x, y, c) * scale.at(x, y, c);
+  });
+  relative = gaussian_blur(relative, sigma);
+  for_rows(shares.height(), [&](int y) {
+    for (int x = 0; x < shares.width(); ++x) {
+      const Real v = relative.at(x, y, 0) + least_relative_variance;
+      shares.at(x, y, 0) /=
+          std::sqrt(v < most_relative_variance ? v : most_relative_variance);  // NaN: radiance underflows
+    }
+  });
 }
 
 std::vector<int> least_risk(const std::vector<Image>& risk) {
@@ -123,7 +144,9 @@ Candidate select(const HalfPair& pair, const Image& brightness, const std::vecto
   const std::vector<int> best = least_risk(risk);
   Image total(width, height, 1);
   for (std::size_t k = 0; k < candidates.size(); ++k) {
-    shares.push_back(gaussian_blur(share(raw, risk, best, k, params), params.map_sigma));
+    Image share = likelihood(raw, risk, best, k, params);
+    favour_little_noise(candidates[k].variance, scale, params.risk_sigma, share);
+    shares.push_back(gaussian_blur(share, params.map_sigma));
     for_rows(height, [&](int y) {
       for (int x = 0; x < width; ++x) total.at(x, y, 0) += shares[k].at(x, y, 0);
     });

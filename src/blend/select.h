@@ -19,7 +19,6 @@ struct Candidate {
 struct SelectParams {
   double risk_sigma = 4;   ///< Gaussian over which cross-validated errors are averaged, pixels.
   double map_sigma = 1.5;  ///< Gaussian by which the choice itself is smoothed.
-  double softness = 0.5;   ///< Candidates within this many standard errors of the best share the pixel.
 };
 
 /// Pixels around a region that select looks at.
@@ -29,9 +28,13 @@ int select_halo(const SelectParams& params);
 /// the noisy ones,
 ///     risk = mean over RGB of [ ((f_A - B)^2 + (f_B - A)^2) / 2 - (f_A - f_B)^2 / 4 ] / (brightness^2 + epsilon)
 /// is, but for the noise of A and B that all candidates share, an unbiased estimate of the relative squared error of
-/// (f_A + f_B) / 2. Averaged over risk_sigma; a candidate's share is exp(-D / (softness SE)) with D its risk above the
-/// best's and SE the standard error of D. Shares are smoothed by map_sigma. brightness: 3 channels, a guess of the
-/// result. All images of one size; at least one candidate.
+/// (f_A + f_B) / 2. Averaged over risk_sigma; a candidate's share is
+///     exp(-z^2 / 2) / s,   z = D / SE,
+/// with D its risk above the best's and SE the standard error of D (how likely the difference is chance), and s the
+/// standard deviation of its own noise, from the windows' variance averaged alike: of candidates that cannot be told
+/// apart by their risk the less noisy ones count for more. Candidates without a variance have s = 1. Shares are
+/// smoothed by map_sigma. brightness: 3 channels, a guess of the result. All images of one size; at least one
+/// candidate.
 Candidate select(const HalfPair& pair, const Image& brightness, const std::vector<Candidate>& candidates,
                  const SelectParams& params);
 

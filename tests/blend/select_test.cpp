@@ -14,10 +14,10 @@ namespace {
 
 using test::image_of;
 
-Candidate candidate_of(const Image& a, const Image& b, Real label) {
+Candidate candidate_of(const Image& a, const Image& b, Real label, Real variance = Real(0.7)) {
   return {{a, b},
           Image(a.width(), a.height(), 3, label),
-          Image(a.width(), a.height(), 3, label),
+          Image(a.width(), a.height(), 3, variance),
           Image(a.width(), a.height(), 1, label)};
 }
 
@@ -41,6 +41,17 @@ TEST(Select, TakesTheClearlyBetterCandidateInEachHalfOfTheImage) {
       EXPECT_NEAR(static_cast<double>(out.order.at(x, y, 0)), x < 40 ? 3 : 1, 1e-3) << x << " " << y;
       EXPECT_NEAR(static_cast<double>(out.half[0].at(x, y, 1)), static_cast<double>(truth.at(x, y, 1)), 1e-3);
     }
+}
+
+TEST(Select, OfCandidatesEquallyNearTheLessNoisyCountsMore) {
+  // The same pixels twice: z = 0, shares are as 1 / s = 1 : 1 / 2.
+  const Image truth(20, 20, 3, Real(1));
+  const HalfPair pair = test::pair_of(truth, 0.3, 5), fit = test::pair_of(truth, 0.1, 6);
+  const Candidate out = select(pair, truth,
+                               {candidate_of(fit.color[0], fit.color[1], 0, Real(0.01)),
+                                candidate_of(fit.color[0], fit.color[1], 3, Real(0.04))},
+                               SelectParams{});
+  EXPECT_LT(test::max_difference(out.order, Image(20, 20, 1, Real(1))), 1e-5);  // 2/3 x 0 + 1/3 x 3
 }
 
 TEST(Select, SharesSumToOne) {
@@ -70,6 +81,7 @@ TEST(Select, OneCandidateIsTheResult) {
 /// double.
 TEST(Select, RiskAndSharesOfThreePixelsByHand) {
   const double a[] = {1.0, 1.4, 0.7}, b[] = {1.2, 0.9, 1.1}, brightness[] = {1.0, 2.0, 0.5};
+  const double variance[] = {0.02, 0.05};  // of each candidate
   const double f[2][2][3] = {{{1.1, 1.1, 1.1}, {1.0, 0.7, 0.9}},
                              {{0.8, 1.1, 1.3}, {1.3, 1.3, 1.3}}};  // candidate, half, pixel
   const auto row = [](const double* v) { return image_of(1, 3, 3, [v](int, int y, int) { return v[y]; }); };
@@ -119,15 +131,23 @@ TEST(Select, RiskAndSharesOfThreePixelsByHand) {
     const double se =
         std::sqrt(std::max(0.0, mean2[i] - mean[i] * mean[i]) / (4 * M_PI * params.risk_sigma * params.risk_sigma));
     share[best][i] = 1;
-    share[other][i] = std::exp(-(risk[other][i] - risk[best][i]) / (params.softness * se));
+    const double z = (risk[other][i] - risk[best][i]) / se;
+    share[other][i] = std::exp(-0.5 * z * z);
     both |= share[other][i] > 0.01 && share[other][i] < 0.99;
   }
   ASSERT_TRUE(both) << "the case must have a pixel that is shared";
-  for (int k = 0; k < 2; ++k) blur(share[k], params.map_sigma, smooth[k]);
+  for (int k = 0; k < 2; ++k) {
+    double relative[3], noise[3];
+    for (int i = 0; i < 3; ++i) relative[i] = 3 * variance[k] / (scale[i] + pair.epsilon);
+    blur(relative, params.risk_sigma, noise);
+    for (int i = 0; i < 3; ++i) share[k][i] /= std::sqrt(noise[i]);
+    blur(share[k], params.map_sigma, smooth[k]);
+  }
 
-  const Candidate out =
-      select(pair, row(brightness),
-             {candidate_of(row(f[0][0]), row(f[0][1]), 0), candidate_of(row(f[1][0]), row(f[1][1]), 1)}, params);
+  const Candidate out = select(pair, row(brightness),
+                               {candidate_of(row(f[0][0]), row(f[0][1]), 0, Real(variance[0])),
+                                candidate_of(row(f[1][0]), row(f[1][1]), 1, Real(variance[1]))},
+                               params);
   for (int i = 0; i < 3; ++i) {
     const double s = smooth[1][i] / (smooth[0][i] + smooth[1][i]);
     EXPECT_NEAR(static_cast<double>(out.order.at(0, i, 0)), s, 1e-4) << i;
