@@ -5,6 +5,7 @@
 
 OUT.exr becomes OUT_0.exr, OUT_1.exr, ... where --parts is over 1: consecutive pieces of ONE sample sequence, so that
 their mean is the ordinary render of --spp samples, or with --seeds renders of --spp samples each with seeds 1, 2, ...
+With --frames FIRST-LAST every frame of an animation: OUT.0001.exr or OUT.0001_0.exr, ...
 """
 
 import argparse
@@ -20,14 +21,15 @@ import bpy  # noqa: E402  (exists only inside Blender)
 def arguments():
     words = sys.argv[sys.argv.index("--") + 1 :] if "--" in sys.argv else sys.argv[1:]
     parser = argparse.ArgumentParser(prog="render.py")
-    parser.add_argument("scene", choices=("study", "glass", "lighthouse", "gallery", "meadow", "fan"))
+    parser.add_argument("scene", choices=("study", "glass", "lighthouse", "gallery", "meadow", "fan", "parade"))
     parser.add_argument("out")
     parser.add_argument("--size", default="320x180")
     parser.add_argument("--spp", type=int, default=16)
     parser.add_argument("--parts", type=int, default=1)
+    parser.add_argument("--frames", help="FIRST-LAST")
     parser.add_argument("--seeds", action="store_true")
     parser.add_argument(
-        "--passes", default="", help="of: denoising, samples, light-groups, shadow, ao, cryptomatte, depth"
+        "--passes", default="", help="of: denoising, samples, light-groups, shadow, ao, cryptomatte, depth, vector"
     )
     parser.add_argument("--depth", default="32", choices=("16", "32"), help="bits of a stored value")
     parser.add_argument("--codec", default="ZIP")
@@ -41,6 +43,7 @@ def choose_passes(view_layer, names):
     view_layer.cycles.denoising_store_passes = "denoising" in names
     view_layer.cycles.pass_debug_sample_count = "samples" in names
     view_layer.use_pass_z = "depth" in names
+    view_layer.use_pass_vector = "vector" in names
     view_layer.use_pass_ambient_occlusion = "ao" in names
     if "shadow" in names:
         view_layer.use_pass_shadow = True  # gone since Blender 4
@@ -90,6 +93,16 @@ def main():
     if options.save_blend:
         bpy.ops.wm.save_as_mainfile(filepath=os.path.abspath(options.save_blend), check_existing=False)
     stem, extension = os.path.splitext(os.path.abspath(options.out))
+    if not options.frames:
+        render_parts(scene, options, stem, extension)
+        return
+    first, last = (int(n) for n in options.frames.split("-"))
+    for frame in range(first, last + 1):
+        scene.frame_set(frame)
+        render_parts(scene, options, f"{stem}.{frame:04d}", extension)
+
+
+def render_parts(scene, options, stem, extension):
     for part in range(options.parts):
         if options.seeds:
             scene.cycles.seed = part + 1
