@@ -1,0 +1,1 @@
+"""Frames over machines, by engines that exist: Slurm and Open Job Description."""

@@ -1,0 +1,122 @@
+#!/usr/bin/env python3
+"""Writes an Open Job Description bundle for one sequence: the template with what a worker must have, and its values."""
+
+import argparse
+import math
+import os
+import pathlib
+import sys
+
+if not __package__:  # run as a script from a checkout
+    sys.path[0] = str(pathlib.Path(__file__).resolve().parents[2])
+    __package__ = "pipelines.farm"
+
+from ..loop.errors import DriverError, ExitCode, run_main
+from ..loop.polyrecon_cli import Polyrecon
+from . import frames as frame_names
+from .plan import add_plan_options, first_frame, limit_of, parse_words, quality_of, request_of, seconds_of, size
+from .requirements import MIB, Node, chunk_for, threads_for
+
+TEMPLATE = pathlib.Path(__file__).with_name("template.yaml")
+MOST_TASKS = 1000
+EXAMPLES = """\
+examples:
+  polyrecon-farm openjd -i shot.####.exr -o clean/shot.####.exr --frames 1-240 --bundle denoise_shot
+  deadline bundle submit denoise_shot
+  polyrecon-farm openjd -i shot.####.exr -o clean/shot.####.exr --frames 1-240 --bundle denoise_shot \\
+      --worker-cpus 16 --worker-memory 64G -- --quality best --aov 'Diffuse Direct'
+"""
+
+
+def load_template():
+    try:
+        import yaml
+    except ImportError as error:
+        raise DriverError(ExitCode.MISSING, "the Python module yaml is not there (Debian: python3-yaml)") from error
+    return yaml, yaml.safe_load(TEMPLATE.read_text())
+
+
+def range_text(frames):
+    """Ranges without steps, which Open Job Description and the program write alike."""
+    return frame_names.text(sorted(frames))
+
+
+def template_for(template, request, threads, more):
+    """The template with what a worker must have, and the further words of the program."""
+    denoise, report = template["steps"]
+    denoise["hostRequirements"] = {
+        "amounts": [
+            {"name": "amount.worker.vcpu", "min": threads},
+            {"name": "amount.worker.memory", "min": math.ceil(request / MIB)},
+        ]
+    }
+    for step in (denoise, report):
+        step["script"]["actions"]["onRun"]["args"] += more
+    return template
+
+
+def without_quality(words):
+    """Quality is a parameter of the template."""
+    kept = list(words)
+    while "--quality" in kept:
+        at = kept.index("--quality")
+        del kept[at : at + 2]
+    return [word for word in kept if not word.startswith("--quality=")]
+
+
+def write_bundle(options):
+    frames = frame_names.parse(options.frames)
+    polyrecon = Polyrecon(options.polyrecon)
+    frame = first_frame(options, frames, polyrecon)
+    request = request_of(options, frame)
+    worker = Node(options.worker_cpus, options.worker_memory)
+    threads = options.threads or threads_for(request, [worker] if worker.memory else [])
+    chunk = options.chunk or chunk_for(
+        seconds_of(options, frame, threads), options.task_minutes, len(frames), MOST_TASKS
+    )
+    yaml, template = load_template()
+    template = template_for(template, request, threads, without_quality(options.options))
+    values = {
+        "InputFolder": os.path.dirname(os.path.abspath(options.input)),
+        "InputName": os.path.basename(options.input),
+        "OutputFolder": os.path.dirname(os.path.abspath(options.output)),
+        "OutputName": os.path.basename(options.output),
+        "Frames": range_text(frames),
+        "FramesPerTask": chunk,
+        "Quality": quality_of(options.options),
+        "Threads": threads,
+        "MaxMemory": str(limit_of(options, request)),
+    }
+    folder = pathlib.Path(options.bundle)
+    parameters = {"parameterValues": [{"name": name, "value": value} for name, value in values.items()]}
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        (folder / "template.yaml").write_text(yaml.safe_dump(template, sort_keys=False))
+        (folder / "parameter_values.yaml").write_text(yaml.safe_dump(parameters, sort_keys=False))
+    except OSError as error:
+        raise DriverError(ExitCode.OUTPUT, f"{folder}: {error.strerror}") from error
+    print(f"{folder}: {len(frames)} frames, {chunk} a task; a task: {threads} threads, {request / 1e9:.2f} GB")
+
+
+def arguments(words):
+    parser = argparse.ArgumentParser(
+        prog="polyrecon-farm openjd",
+        description=__doc__,
+        epilog=EXAMPLES,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    add_plan_options(parser)
+    parser.add_argument("--bundle", required=True, metavar="FOLDER", help="where template and parameter values go")
+    parser.add_argument("--worker-cpus", type=int, default=0, metavar="N", help="processors of a worker")
+    parser.add_argument("--worker-memory", type=size, default=0, metavar="SIZE", help="memory of a worker, 64G")
+    return parse_words(parser, words)
+
+
+def main(words=None):
+    return run_main(
+        "polyrecon-farm", lambda words: write_bundle(arguments(sys.argv[1:] if words is None else words)), words
+    )
+
+
+if __name__ == "__main__":
+    sys.exit(main())

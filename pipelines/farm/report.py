@@ -1,0 +1,190 @@
+#!/usr/bin/env python3
+"""Looks at every frame of a job and says which are finished, and what they took."""
+
+import argparse
+import collections
+import concurrent.futures
+import json
+import math
+import pathlib
+import re
+import sys
+
+if not __package__:  # run as a script from a checkout
+    sys.path[0] = str(pathlib.Path(__file__).resolve().parents[2])
+    __package__ = "pipelines.farm"
+
+from ..loop import process
+from ..loop.errors import DriverError, ExitCode, run_main
+from ..loop.polyrecon_cli import find_polyrecon
+from . import frames as frame_names
+from .job import COMPLAINT, RECORDS, REPORT_FILE, Job, write_json
+
+EXAMPLES = """\
+examples:
+  polyrecon-farm report out/polyrecon_farm/shot                 # a job's folder, at any time
+  polyrecon-farm report -i shot.####.exr -o out/shot.####.exr --frames 1-100 -- --quality best
+"""
+FINISHED = re.compile(r"frame (-?\d+): .*, finished already: skipped")
+
+
+def look_at(job, frames):
+    """Which of these frames are finished, by the program itself: the output decodes to its last byte, and was made of
+    this very input with these settings. Returns (finished frames, {frame: what is wrong with its input})."""
+    code, output, errors = process.run(job.words(frames, "--dry-run"))
+    if code not in (ExitCode.DONE, ExitCode.MISSING):
+        raise DriverError(
+            ExitCode.CHECK, f"frames {frame_names.text(frames)}: {errors.strip() or f'ended with {code}'}"
+        )
+    finished = {int(match[1]) for line in output.splitlines() if (match := FINISHED.fullmatch(line))}
+    return finished, {int(match[1]): match[2] for line in errors.splitlines() if (match := COMPLAINT.match(line))}
+
+
+def look_at_all(job, processes, done):
+    """look_at by several processes at once; done(frames looked at) is called as they come in."""
+    size = min(50, max(1, math.ceil(len(job.frames) / processes)))
+    finished, wrong, seen = set(), {}, 0
+    with concurrent.futures.ThreadPoolExecutor(processes) as pool:
+        groups = frame_names.chunks(job.frames, size)
+        for group, (some, bad) in zip(groups, pool.map(lambda group: look_at(job, group), groups)):
+            finished |= some
+            wrong.update(bad)
+            seen += len(group)
+            done(seen)
+    return finished, wrong
+
+
+def records_of(folder):
+    """What the tasks wrote down, in order of time; a task that is writing or was killed is in it without an end."""
+    records = []
+    for path in pathlib.Path(folder, RECORDS).glob("*.json"):
+        try:
+            records.append(json.loads(path.read_text()))
+        except (OSError, ValueError):
+            continue
+    return sorted(records, key=lambda record: record["begun"])
+
+
+def frames_in(text):
+    return len(frame_names.parse(text)) if text else 0
+
+
+def nodes_of(ended):
+    """{node: frames, seconds of its tasks, frames per hour of one task}."""
+    nodes = collections.defaultdict(lambda: {"tasks": 0, "frames": 0, "seconds": 0.0, "cpu_seconds": 0.0})
+    for record in ended:
+        node = nodes[record["node"]]
+        node["tasks"] += 1
+        node["frames"] += frames_in(record["written"])
+        node["seconds"] += record["seconds"]
+        node["cpu_seconds"] += record["cpu_seconds"]
+    for node in nodes.values():
+        node["frames_per_hour"] = 3600 * node["frames"] / node["seconds"] if node["seconds"] else 0.0
+    return dict(nodes)
+
+
+def summary(job, finished, wrong, records):
+    ended = [record for record in records if "exit_code" in record]
+    unfinished = [frame for frame in job.frames if frame not in finished]
+    for record in ended:  # what only the pixels tell
+        wrong = {**wrong, **{int(frame): text for frame, text in record["complaints"].items()}}
+    written = sum(frames_in(record["written"]) for record in ended)
+    return {
+        "frames": len(job.frames),
+        "finished": len(job.frames) - len(unfinished),
+        "unfinished": frame_names.text(unfinished),
+        "reasons": {str(frame): wrong[frame] for frame in unfinished if frame in wrong},
+        "attempts": len(records),
+        "attempts_without_end": [f"{r['node']}: {r['frames']}" for r in records if "exit_code" not in r],
+        "attempts_that_failed": [f"{r['node']}: {r['frames']}: {r['exit_code']}" for r in ended if r["exit_code"]],
+        "nodes": nodes_of(ended),
+        "seconds": max((r["begun"] + r["seconds"] for r in ended), default=0)
+        - min((r["begun"] for r in ended), default=0),
+        "peak_bytes": max((r["peak_bytes"] for r in ended), default=0),
+        "bytes_asked": job.request,
+        "bytes_read_per_frame": sum(r.get("bytes_read", 0) for r in ended) / written if written else 0,
+        "bytes_written_per_frame": sum(r.get("bytes_written", 0) for r in ended) / written if written else 0,
+    }
+
+
+def text_of(found):
+    lines = [f"{found['finished']} of {found['frames']} frames are finished"]
+    if found["unfinished"]:
+        lines.append(f"not finished: {found['unfinished']}")
+    lines += [f"frame {frame}: {why}" for frame, why in found["reasons"].items()]
+    for name, node in sorted(found["nodes"].items()):
+        lines.append(
+            f"{name}: {node['frames']} frames by {node['tasks']} tasks, {node['seconds']:.0f} s "
+            f"({node['cpu_seconds']:.0f} s of processors), {node['frames_per_hour']:.0f} frames an hour and task"
+        )
+    lines += [f"no end, the node died or is at it still: {attempt}" for attempt in found["attempts_without_end"]]
+    lines += [f"failed, and with which code: {attempt}" for attempt in found["attempts_that_failed"]]
+    if found["peak_bytes"]:
+        asked = f", of {found['bytes_asked'] / 1e6:.0f} MB that it asked for" if found["bytes_asked"] else ""
+        lines.append(f"most memory of a task: {found['peak_bytes'] / 1e6:.0f} MB{asked}")
+        lines.append(
+            f"a frame read {found['bytes_read_per_frame'] / 1e6:.1f} MB and wrote "
+            f"{found['bytes_written_per_frame'] / 1e6:.1f} MB"
+        )
+    return "\n".join(lines)
+
+
+def make_report(job, folder, processes, openjd):
+    def told(seen):
+        if openjd:
+            print(f"openjd_progress: {100 * seen / len(job.frames):.1f}", flush=True)
+
+    finished, wrong = look_at_all(job, processes, told)
+    found = summary(job, finished, wrong, records_of(folder) if folder else [])
+    if folder:
+        write_json(pathlib.Path(folder) / REPORT_FILE, found)
+    print(text_of(found), flush=True)
+    if openjd:
+        print(f"openjd_status: {found['finished']} of {found['frames']} frames are finished", flush=True)
+    if found["unfinished"]:
+        if openjd:
+            print(f"openjd_fail: not finished: {found['unfinished']}", flush=True)
+        raise DriverError(ExitCode.MISSING, f"not finished: {found['unfinished']}")
+
+
+def arguments(words):
+    parser = argparse.ArgumentParser(
+        prog="polyrecon-farm report",
+        description=__doc__,
+        epilog=EXAMPLES,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("folder", nargs="?", help="folder of a job that was submitted")
+    parser.add_argument("-i", "--input", metavar="PATTERN", help="in place of a folder: the renders, shot.####.exr")
+    parser.add_argument("-o", "--output", metavar="PATTERN", help="the results")
+    parser.add_argument("--frames", metavar="RANGES", help="1-10,20-40x2")
+    parser.add_argument("--processes", type=int, default=1, metavar="N", help="looking at frames at once (default: 1)")
+    parser.add_argument("--progress", choices=["none", "openjd"], default="none")
+    parser.add_argument("--polyrecon", metavar="PATH", help="the program")
+    parser.add_argument("options", nargs="*", metavar="-- OPTION", help="what else the frames were denoised with")
+    at = words.index("--") if "--" in words else len(words)
+    options = parser.parse_args(words[:at])
+    options.options = words[at + 1 :]
+    if bool(options.folder) == bool(options.input):
+        parser.error("either the folder of a job, or -i, -o and --frames")
+    if options.input and not (options.output and options.frames):
+        parser.error("-i needs -o and --frames")
+    return options
+
+
+def main(words=None):
+    def work(words):
+        options = arguments(sys.argv[1:] if words is None else words)
+        if options.folder:
+            job = Job.load(options.folder)
+        else:
+            frames = frame_names.parse(options.frames)
+            program = str(find_polyrecon(options.polyrecon))
+            job = Job(options.input, options.output, frames, program, options.options)
+        make_report(job, options.folder, max(1, options.processes), options.progress == "openjd")
+
+    return run_main("polyrecon-farm", work, words)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,245 @@
+#!/usr/bin/env python3
+"""Denoises a sequence on a Slurm cluster: an array job, one task a chunk of frames, and a report when all have ended."""
+
+import argparse
+import itertools
+import json
+import math
+import os
+import pathlib
+import re
+import shlex
+import shutil
+import sys
+import time
+
+if not __package__:  # run as a script from a checkout
+    sys.path[0] = str(pathlib.Path(__file__).resolve().parents[2])
+    __package__ = "pipelines.farm"
+
+from ..loop import process
+from ..loop.errors import DriverError, ExitCode, run_main
+from ..loop.polyrecon_cli import Polyrecon
+from . import frames as frame_names
+from .job import JOB_FILE, REPORT_FILE, Job
+from .plan import add_plan_options, first_frame, limit_of, parse_words, positive, request_of, seconds_of
+from .requirements import MIB, Node, chunk_for, threads_for
+
+EXAMPLES = """\
+examples:
+  polyrecon-farm slurm submit -i shot.####.exr -o clean/shot.####.exr --frames 1-240
+  polyrecon-farm slurm submit -i shot.####.exr -o clean/shot.####.exr --frames 1-240 --after 4711 \\
+      --partition night --sbatch=--account=film --wait -- --quality best --aov 'Diffuse Direct'
+  polyrecon-farm slurm submit -i shot.####.exr -o clean/shot.####.exr --frames 1-240 --dry-run
+  polyrecon-farm report clean/polyrecon_farm/shot        # how far it is
+"""
+REPORT_LOG = "report.txt"
+POLL_SECONDS = 2
+MOST_UNANSWERED = 20
+# Tasks and the report are Python without a shell: sbatch takes a copy of this file, which finds the driver again.
+SCRIPT = """\
+#!/usr/bin/env python3
+import sys
+sys.path.insert(0, {root!r})
+from {module} import main
+sys.exit(main({words!r}))
+"""
+
+
+def slurm(*words):
+    """Output of one of Slurm's commands."""
+    if not shutil.which(words[0]):
+        raise DriverError(ExitCode.MISSING, f"{words[0]} is not on the PATH: is this a machine of the cluster?")
+    code, output, errors = process.run(words, timeout=120)
+    if code:
+        raise DriverError(ExitCode.USAGE, f"{words[0]}: {' '.join(errors.split()) or f'ended with {code}'}")
+    return output
+
+
+def nodes_of(partition):
+    """The kinds of node of a partition. A cluster that does not manage memory says 1 MB."""
+    words = ["sinfo", "-h", "-N", "-o", "%c %m", *(["-p", partition] if partition else [])]
+    nodes = set()
+    for line in slurm(*words).splitlines():
+        cpus, megabytes = (int(word.rstrip("+")) for word in line.split())
+        nodes.add(Node(cpus, megabytes * MIB if megabytes > 1 else 0))
+    if not nodes:
+        raise DriverError(ExitCode.USAGE, f"--partition {partition}: no nodes")
+    return nodes
+
+
+def most_tasks():
+    """How many tasks an array may have."""
+    match = re.search(r"^MaxArraySize\s*=\s*(\d+)", slurm("scontrol", "show", "config"), re.MULTILINE)
+    return max(1, int(match[1]) - 1) if match else 1000
+
+
+def plan(options):
+    """The job, and the bytes to ask for each task (0: the cluster does not manage memory)."""
+    frames = frame_names.parse(options.frames)
+    polyrecon = Polyrecon(options.polyrecon)
+    frame = first_frame(options, frames, polyrecon)
+    request = request_of(options, frame)
+    nodes = nodes_of(options.partition)
+    threads = options.threads or threads_for(request, nodes)
+    chunk = options.chunk
+    if not chunk:
+        chunk = chunk_for(seconds_of(options, frame, threads), options.task_minutes, len(frames), most_tasks())
+    job = Job(
+        input=os.path.abspath(options.input),
+        output=os.path.abspath(options.output),
+        frames=frames,
+        polyrecon=str(polyrecon.program),
+        options=options.options,
+        chunk=chunk,
+        threads=threads,
+        memory=limit_of(options, request),
+        request=request,
+    )
+    return job, request if any(node.memory for node in nodes) else 0
+
+
+def common_words(options, job_name, folder, log):
+    """Words of sbatch for both jobs. Slurm expands % in the name of a log."""
+    words = ["sbatch", "--parsable", f"--job-name={job_name}", "--open-mode=append", "--requeue"]
+    words.append(f"--output={str(folder).replace('%', '%%')}/{log}")
+    if options.partition:
+        words.append(f"--partition={options.partition}")
+    return [*words, *options.sbatch]
+
+
+def array_words(options, job, request, name, folder):
+    limit = f"%{options.max_running}" if options.max_running else ""
+    words = [*common_words(options, name, folder, "log.%a.txt"), f"--array=0-{len(job.chunks) - 1}{limit}"]
+    words += ["--ntasks=1", f"--cpus-per-task={job.threads}"]
+    if request:
+        words.append(f"--mem={math.ceil(request / MIB)}M")
+    if options.after:
+        words.append(f"--dependency=afterany:{options.after}")
+    return [*words, str(folder / "task")]
+
+
+def report_words(options, job, request, name, folder, array):
+    words = [*common_words(options, f"{name}-report", folder, REPORT_LOG), f"--dependency=afterany:{array}"]
+    words += ["--ntasks=1", f"--cpus-per-task={job.threads}"]
+    if request:
+        words.append(f"--mem={math.ceil(request / MIB)}M")
+    return [*words, str(folder / "report")]
+
+
+def write_script(path, module, words):
+    package = f"{__package__}.{module}"
+    root = str(pathlib.Path(__file__).resolve().parents[__package__.count(".") + 1])
+    try:
+        path.write_text(SCRIPT.format(root=root, module=package, words=words))
+    except OSError as error:
+        raise DriverError(ExitCode.OUTPUT, f"{path}: {error.strerror}") from error
+
+
+def holds_another(folder, job):
+    return (folder / JOB_FILE).exists() and Job.load(folder) != job
+
+
+def job_folder(options, name, job):
+    """--folder, else one beside the results, with a number where the name is another job's: its tasks may still run."""
+    if options.folder:
+        folder = pathlib.Path(options.folder).absolute()
+        if holds_another(folder, job):
+            raise DriverError(ExitCode.USAGE, f"{folder}: holds another job, name another --folder")
+        return folder
+    jobs = pathlib.Path(job.output).parent / "polyrecon_farm"
+    names = itertools.chain([name], (f"{name}_{number}" for number in itertools.count(2)))
+    return next(jobs / one for one in names if not holds_another(jobs / one, job))
+
+
+def make_folder(folder, job):
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise DriverError(ExitCode.OUTPUT, f"{folder}: {error.strerror}") from error
+    for old in (REPORT_LOG, REPORT_FILE):
+        (folder / old).unlink(missing_ok=True)
+    job.save(folder)
+    write_script(folder / "task", "task", [str(folder)])
+    write_script(folder / "report", "report", [str(folder)])
+
+
+def describe(job, request):
+    asked = f", {request / 1e9:.2f} GB" if request else ""
+    return f"{len(job.frames)} frames, {len(job.chunks)} tasks of {job.chunk}; a task: {job.threads} threads{asked}"
+
+
+def submit(options):
+    job, request = plan(options)
+    name = options.name or re.sub(r"\W+", "_", pathlib.Path(options.input).name.split("#")[0].split("%")[0]).strip("_")
+    name = name or "polyrecon"
+    folder = job_folder(options, name, job)
+    print(describe(job, request), flush=True)
+    if options.dry_run:
+        print(shlex.join(array_words(options, job, request, name, folder)))
+        print(shlex.join(report_words(options, job, request, name, folder, "ARRAY")))
+        return
+    make_folder(folder, job)
+    array = slurm(*array_words(options, job, request, name, folder)).strip().split(";")[0]
+    report = slurm(*report_words(options, job, request, name, folder, array)).strip().split(";")[0]
+    print(f"job {array}, and {report} for the report; all in {folder}", flush=True)
+    if options.wait:
+        wait_for(report, folder)
+
+
+def is_over(job):
+    """Whether no task of the job waits or runs any more; None where Slurm does not answer, a busy controller does not
+    always. It forgets jobs some minutes after their end."""
+    code, output, errors = process.run(["squeue", "-h", "-j", job, "-o", "%T"], timeout=120)
+    if code and "Invalid job id" not in errors:
+        return None
+    return not output.strip()
+
+
+def wait_for(job, folder):
+    """Until the report is there; prints it. Raises what it says."""
+    unanswered = 0
+    while not (over := is_over(job)):
+        unanswered = unanswered + 1 if over is None else 0
+        if unanswered == MOST_UNANSWERED:
+            raise DriverError(ExitCode.INTERNAL, f"squeue does not answer any more; job {job} goes on, see {folder}")
+        time.sleep(POLL_SECONDS)
+    log, found = folder / REPORT_LOG, folder / REPORT_FILE
+    if not found.exists():
+        raise DriverError(ExitCode.INTERNAL, f"job {job} ended without a report, see {log}")
+    print(log.read_text(), end="", flush=True)
+    if unfinished := json.loads(found.read_text())["unfinished"]:
+        raise DriverError(ExitCode.MISSING, f"not finished: {unfinished}")
+
+
+def arguments(words):
+    parser = argparse.ArgumentParser(
+        prog="polyrecon-farm slurm",
+        description=__doc__,
+        epilog=EXAMPLES,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    commands = parser.add_subparsers(dest="command", required=True)
+    sub = commands.add_parser(
+        "submit", help=__doc__, epilog=EXAMPLES, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    add_plan_options(sub)
+    sub.add_argument("--partition", metavar="NAME")
+    sub.add_argument("--after", metavar="JOB", help="wait for the end of this job, the render")
+    sub.add_argument("--max-running", type=positive, metavar="N", help="tasks at once, where storage is slow")
+    sub.add_argument(
+        "--sbatch", action="append", default=[], metavar="=OPTION", help="any option of sbatch (repeatable)"
+    )
+    sub.add_argument("--name", help="of the job (default: the input's)")
+    sub.add_argument("--folder", help="for logs, records and the report (default: beside the results)")
+    sub.add_argument("--wait", action="store_true", help="until the report is there; its exit code: 4, frames missing")
+    sub.add_argument("--dry-run", action="store_true", help="only print what would be submitted")
+    return parse_words(parser, words)
+
+
+def main(words=None):
+    return run_main("polyrecon-farm", lambda words: submit(arguments(sys.argv[1:] if words is None else words)), words)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

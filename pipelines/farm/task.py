@@ -1,0 +1,113 @@
+#!/usr/bin/env python3
+"""What one task of a farm job runs: the frames of its chunk, and a record of what they took."""
+
+import argparse
+import os
+import pathlib
+import socket
+import subprocess
+import sys
+import time
+
+if not __package__:  # run as a script from a checkout
+    sys.path[0] = str(pathlib.Path(__file__).resolve().parents[2])
+    __package__ = "pipelines.farm"
+
+from ..loop import process
+from ..loop.errors import DriverError, ExitCode, run_main
+from . import frames as frame_names
+from .job import COMPLAINT, RECORDS, Job, write_json
+
+
+def identities(job, frames):
+    """{frame: what changes when its output is written anew}."""
+    found = {}
+    for frame in frames:
+        try:
+            status = os.stat(frame_names.path(job.output, frame))
+            found[frame] = (status.st_ino, status.st_mtime_ns)
+        except OSError:
+            found[frame] = None
+    return found
+
+
+def traffic(pid):
+    """Bytes that a process asked its files for and gave them, caches not counted; it may have ended, unwaited for."""
+    try:
+        lines = pathlib.Path(f"/proc/{pid}/io").read_text().splitlines()
+    except OSError:
+        return {}
+    counts = dict(line.split(": ") for line in lines)
+    return {"bytes_read": int(counts["rchar"]), "bytes_written": int(counts["wchar"])}
+
+
+def run_counted(words):
+    """Runs a command to its end. Returns its exit code, what it took, and its complaints of single frames."""
+    begun = time.time()
+    child = process.start(words, stderr=subprocess.PIPE, text=True, errors="replace")
+    try:
+        complaints = {}
+        for line in child.stderr:
+            print(line, end="", file=sys.stderr, flush=True)
+            if match := COMPLAINT.match(line):
+                complaints[match[1]] = match[2]
+        os.waitid(os.P_PID, child.pid, os.WEXITED | os.WNOWAIT)
+        counts = traffic(child.pid)
+        _, status, usage = os.wait4(child.pid, 0)
+        child.returncode = os.waitstatus_to_exitcode(status)
+    except BaseException:
+        process.stop(child)
+        raise
+    finally:
+        child.stderr.close()
+    counts.update(
+        seconds=time.time() - begun,
+        cpu_seconds=usage.ru_utime + usage.ru_stime,
+        peak_bytes=usage.ru_maxrss * 1024,
+        exit_code=child.returncode,
+        complaints=complaints,
+    )
+    return child.returncode, counts
+
+
+def attempt_name(index):
+    """Of this run of the task: a task that is requeued keeps its first record."""
+    job, restart = os.environ.get("SLURM_JOB_ID", str(os.getpid())), os.environ.get("SLURM_RESTART_COUNT", "0")
+    return f"{index}.{job}.{restart}.json"
+
+
+def run_chunk(folder, index):
+    job = Job.load(folder)
+    if not 0 <= index < len(job.chunks):
+        raise DriverError(ExitCode.USAGE, f"{folder}: no chunk {index}, there are {len(job.chunks)}")
+    frames = job.chunks[index]
+    path = pathlib.Path(folder) / RECORDS / attempt_name(index)
+    node = os.environ.get("SLURMD_NODENAME") or socket.gethostname()
+    record = {"chunk": index, "frames": frame_names.text(frames), "node": node, "begun": time.time()}
+    write_json(path, record)
+    before = identities(job, frames)
+    code, counts = run_counted(job.words(frames, "--progress", "none"))
+    after = identities(job, frames)
+    written = [frame for frame in frames if after[frame] and after[frame] != before[frame]]
+    write_json(path, {**record, **counts, "written": frame_names.text(written)})
+    if code:
+        known = code in ExitCode.__members__.values()
+        raise DriverError(code if known else ExitCode.INTERNAL, f"frames {frame_names.text(frames)}: ended with {code}")
+
+
+def main(words=None):
+    def work(words):
+        parser = argparse.ArgumentParser(prog="polyrecon-farm task", description=__doc__)
+        parser.add_argument("folder", help="the job's folder")
+        parser.add_argument("index", type=int, nargs="?", help="chunk, counted from 0 (default: $SLURM_ARRAY_TASK_ID)")
+        options = parser.parse_args(words)
+        index = options.index if options.index is not None else os.environ.get("SLURM_ARRAY_TASK_ID")
+        if index is None:
+            parser.error("which chunk?")
+        run_chunk(options.folder, int(index))
+
+    return run_main("polyrecon-farm", work, words)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
