@@ -1,0 +1,153 @@
+"""A Slurm cluster of this machine alone: munged, slurmctld, one slurmd a node; ports, key and folders of its own.
+
+Each daemon is process 1 of its own process namespace: when it is killed, all that it started dies with it, like a
+machine that loses power, and nothing is ever left behind. Another Slurm on this machine is not touched.
+"""
+
+import os
+import pathlib
+import shutil
+import signal
+import socket
+import subprocess
+import tempfile
+import time
+
+START_SECONDS = 40
+# A node counts as dead after the one, a requeued task waits for the other, by default 300 and 120; not less than these.
+DEAD_AFTER_SECONDS = 5
+CREDENTIAL_SECONDS = 5
+
+CONFIGURATION = """\
+ClusterName=polyrecon_test
+SlurmctldHost={host}(127.0.0.1)
+SlurmctldPort={ports[0]}
+SlurmUser=root
+AuthType=auth/munge
+AuthInfo=socket={folder}/munge.socket,cred_expire={credential}
+StateSaveLocation={folder}/state
+SlurmctldPidFile={folder}/slurmctld.pid
+SlurmctldLogFile={folder}/slurmctld.log
+SlurmdPidFile={folder}/slurmd.%n.pid
+SlurmdLogFile={folder}/slurmd.%n.log
+SlurmdSpoolDir={folder}/spool.%n
+SlurmdParameters=config_overrides
+SlurmdTimeout={dead}
+MessageTimeout=5
+ReturnToService=2
+ProctrackType=proctrack/linuxproc
+TaskPlugin=task/none
+SwitchType=switch/none
+MpiDefault=none
+SchedulerType=sched/builtin
+SchedulerParameters=batch_sched_delay=0,sched_interval=1,sched_min_interval=0
+SelectType=select/cons_tres
+SelectTypeParameters=CR_CPU_Memory
+AccountingStorageType=accounting_storage/none
+JobAcctGatherType=jobacct_gather/none
+"""
+NODE = "NodeName={name} NodeHostname={host} NodeAddr=127.0.0.1 Port={port} CPUs=1 RealMemory={memory} State=UNKNOWN\n"
+
+
+def free_ports(count):
+    sockets = [socket.socket() for _ in range(count)]
+    try:
+        for one in sockets:
+            one.bind(("127.0.0.1", 0))
+        return [one.getsockname()[1] for one in sockets]
+    finally:
+        for one in sockets:
+            one.close()
+
+
+class Cluster:
+    """Use as a context. `environment` is what Slurm's commands need to reach it."""
+
+    def __init__(self, nodes, megabytes):
+        self.nodes, self.megabytes, self.daemons = nodes, megabytes, {}
+
+    def __enter__(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="polyrecon_slurm_"))
+        try:
+            self._configure()
+            self._start(
+                "munge", ["munged", "--foreground", f"--socket={self.folder}/munge.socket", *self._munge_files()]
+            )
+            self._wait(lambda: (self.folder / "munge.socket").exists())
+            self._start("controller", ["slurmctld", "-D", "-f", self.folder / "slurm.conf"])
+            for node in self.nodes:
+                self.boot(node)
+            self.wait_idle()
+        except BaseException:
+            self.__exit__()
+            raise
+        return self
+
+    def __exit__(self, *_):
+        for name in reversed(list(self.daemons)):
+            self.kill(name)
+        shutil.rmtree(self.folder)
+
+    def boot(self, node):
+        self._start(node, ["slurmd", "-D", "-N", node, "-f", self.folder / "slurm.conf"])
+
+    def kill(self, name):
+        """Kills a daemon and, by the namespace, every process that it started."""
+        unshare = self.daemons.pop(name)
+        if unshare.poll() is not None:
+            return
+        for child in pathlib.Path(f"/proc/{unshare.pid}/task/{unshare.pid}/children").read_text().split():
+            os.kill(int(child), signal.SIGKILL)
+        unshare.wait()
+
+    def wait_idle(self):
+        self._wait(lambda: self.states() == {node: "idle" for node in self.nodes})
+
+    def run(self, *words):
+        done = subprocess.run(words, env=self.environment, capture_output=True, text=True, timeout=60)
+        return done.stdout if done.returncode == 0 else ""
+
+    def states(self):
+        return dict(line.split() for line in self.run("sinfo", "-h", "-N", "-o", "%N %T").splitlines())
+
+    def _configure(self):
+        self.folder.chmod(0o755)  # munged wants its socket where all can reach it
+        ports = free_ports(1 + len(self.nodes))
+        host = socket.gethostname()
+        text = CONFIGURATION.format(
+            host=host, ports=ports, folder=self.folder, dead=DEAD_AFTER_SECONDS, credential=CREDENTIAL_SECONDS
+        )
+        for node, port in zip(self.nodes, ports[1:]):
+            (self.folder / f"spool.{node}").mkdir()
+            text += NODE.format(name=node, host=host, port=port, memory=self.megabytes)
+        text += "PartitionName=main Nodes=ALL Default=YES MaxTime=INFINITE State=UP\n"
+        (self.folder / "state").mkdir()
+        (self.folder / "slurm.conf").write_text(text)
+        self.environment = dict(os.environ, SLURM_CONF=str(self.folder / "slurm.conf"))
+
+    def _munge_files(self):
+        key = self.folder / "munge.key"
+        key.write_bytes(os.urandom(128))
+        key.chmod(0o400)
+        return [f"--key-file={key}", *(f"--{kind}-file={self.folder}/munge.{kind}" for kind in ("pid", "log", "seed"))]
+
+    def _start(self, name, words):
+        with open(self.folder / f"{name}.out", "a") as log:
+            self.daemons[name] = subprocess.Popen(
+                ["unshare", "--pid", "--fork", "--kill-child", "--mount-proc", *map(str, words)],
+                env=self.environment,
+                stdin=subprocess.DEVNULL,
+                stdout=log,
+                stderr=log,
+                start_new_session=True,
+            )
+
+    def _wait(self, ready):
+        end = time.monotonic() + START_SECONDS
+        while not ready():
+            for name, daemon in self.daemons.items():
+                if daemon.poll() is not None:
+                    raise RuntimeError(f"{name} ended: {(self.folder / f'{name}.out').read_text()}")
+            if time.monotonic() > end:
+                raise RuntimeError(f"no cluster within {START_SECONDS} s: {self.states()}")
+            time.sleep(0.1)

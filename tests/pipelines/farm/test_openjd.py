@@ -1,0 +1,103 @@
+import os
+import re
+import subprocess
+import sys
+import sysconfig
+import tempfile
+import unittest
+from pathlib import Path
+
+import yaml
+
+from .shot import make_shot
+
+ROOT = Path(__file__).resolve().parents[3]
+FARM = ROOT / "pipelines/farm"
+POLYRECON = os.path.abspath(os.environ["POLYRECON"])
+OPENJD = Path(sysconfig.get_path("scripts")) / "openjd"
+
+
+def run(*words):
+    return subprocess.run([str(word) for word in words], capture_output=True, text=True)
+
+
+class Template(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+        (self.folder / "in").mkdir()
+        (self.folder / "out").mkdir()
+        make_shot(self.folder / "in", [1, 2, 3, 4, 5, 8])
+
+    def parameters(self, **more):
+        values = {
+            "InputFolder": self.folder / "in",
+            "OutputFolder": self.folder / "out",
+            "Frames": "1-5,8",
+            "FramesPerTask": 2,
+            "Quality": "draft",
+            "Threads": 1,
+            "Polyrecon": POLYRECON,
+            "PolyreconFarm": FARM / "farm.py",
+            **more,
+        }
+        return [word for name, value in values.items() for word in ("-p", f"{name}={value}")]
+
+    def outputs(self):
+        return sorted(path.name for path in (self.folder / "out").iterdir())
+
+    def test_the_template_is_valid(self):
+        done = run(OPENJD, "check", FARM / "template.yaml")
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        done = run(OPENJD, "summary", FARM / "template.yaml", *self.parameters())
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        self.assertIn("Report", done.stdout)
+
+    def test_it_runs_chunks_and_the_report(self):
+        done = run(OPENJD, "run", FARM / "template.yaml", "--step", "Report", "--run-dependencies", *self.parameters())
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        self.assertEqual(self.outputs(), [f"shot.{frame:04d}.exr" for frame in (1, 2, 3, 4, 5, 8)])
+        self.assertIn("6 of 6 frames are finished", done.stdout)
+        # Chunks of at most two frames that follow each other: 1-2, 3-4, 5, 8 or such.
+        self.assertGreaterEqual(done.stdout.count("openjd_progress: 100.0"), 4)
+        percents = [float(text) for text in re.findall(r"openjd_progress: ([0-9.]+)", done.stdout)]
+        self.assertTrue(all(0 <= percent <= 100 for percent in percents))
+        self.assertIn("openjd_status: frame 1 (1 of 2)", done.stdout)
+
+    def test_a_broken_frame_fails_its_task_and_no_other(self):
+        broken = self.folder / "in/shot.0003.exr"
+        broken.write_bytes(broken.read_bytes()[:-1])
+        words = ["--step", "Denoise", *self.parameters()]
+        done = run(OPENJD, "run", FARM / "template.yaml", *words, "--task-param", "Frames=3-4")
+        self.assertNotEqual(done.returncode, 0)
+        self.assertIn("openjd_fail: ", done.stdout)
+        self.assertIn("shot.0003.exr", done.stdout)
+        self.assertEqual(self.outputs(), ["shot.0004.exr"])
+
+    def test_a_bundle_for_a_shot(self):
+        bundle = self.folder / "bundle"
+        words = ["-i", self.folder / "in/shot.####.exr", "-o", self.folder / "out/shot.####.exr", "--frames", "1-5x2"]
+        words += ["--bundle", bundle, "--worker-cpus", "4", "--worker-memory", "16G", "--polyrecon", POLYRECON]
+        done = run(sys.executable, FARM / "farm.py", "openjd", *words, "--", "--quality", "draft", "--keep-noisy")
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        checked = run(OPENJD, "check", bundle / "template.yaml")
+        self.assertEqual(checked.returncode, 0, checked.stdout + checked.stderr)
+        amounts = yaml.safe_load((bundle / "template.yaml").read_text())["steps"][0]["hostRequirements"]["amounts"]
+        self.assertEqual([amount["name"] for amount in amounts], ["amount.worker.vcpu", "amount.worker.memory"])
+        values = yaml.safe_load((bundle / "parameter_values.yaml").read_text())["parameterValues"]
+        given = {value["name"]: value["value"] for value in values}
+        self.assertEqual((given["Frames"], given["Quality"], given["Threads"]), ("1,3,5", "draft", 1))
+        # parameter_values.yaml is Deadline Cloud's; openjd takes the same values by name.
+        given.update(Polyrecon=POLYRECON, PolyreconFarm=FARM / "farm.py")
+        done = run(
+            OPENJD,
+            "run",
+            bundle / "template.yaml",
+            "--step",
+            "Report",
+            "--run-dependencies",
+            *(word for name, value in given.items() for word in ("-p", f"{name}={value}")),
+        )
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        self.assertEqual(self.outputs(), [f"shot.{frame:04d}.exr" for frame in (1, 3, 5)])

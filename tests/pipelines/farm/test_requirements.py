@@ -1,0 +1,144 @@
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+from pipelines.farm import frames
+from pipelines.farm.requirements import Frame, Model, Node, chunk_for, frame_of, threads_for
+from pipelines.loop.errors import DriverError, ExitCode
+
+from .shot import make_shot
+
+ROOT = Path(__file__).resolve().parents[3]
+POLYRECON = os.path.abspath(os.environ["POLYRECON"])
+GB = 10**9
+
+
+class Frames(unittest.TestCase):
+    def test_ranges(self):
+        self.assertEqual(frames.parse("1-3,10-20x5,15-16,7"), [1, 2, 3, 10, 15, 20, 16, 7])
+        self.assertEqual(frames.parse("-2-1"), [-2, -1, 0, 1])
+        self.assertEqual(frames.parse("10-20:5"), [10, 15, 20])
+        for wrong in ("", "a", "3-1", "1-4x0", "1,,2", "1-"):
+            with self.assertRaises(DriverError) as caught:
+                frames.parse(wrong)
+            self.assertEqual(caught.exception.code, ExitCode.USAGE)
+
+    def test_text_comes_back(self):
+        for numbers in ([1, 2, 3, 9], [5], [-3, -2, 7, 8, 20], [3, 1, 2]):
+            self.assertEqual(frames.parse(frames.text(numbers)), numbers)
+
+    def test_names_are_those_of_the_program(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for pattern in ("a.####.exr", "b_%04d.exr", "c#.exr", "d.%d.exr"):
+                plan = subprocess.run(
+                    [POLYRECON, "denoise", "-i", f"{folder}/{pattern}", "-o", f"{folder}/o.####.exr"]
+                    + ["--frames=-3,7,12345", "--dry-run"],
+                    capture_output=True,
+                    text=True,
+                )
+                for frame in (-3, 7, 12345):
+                    self.assertIn(f"{folder}/{Path(frames.path(pattern, frame))}: ", plan.stderr)
+
+
+class Threads(unittest.TestCase):
+    def test_memory_and_processors_run_out_together(self):
+        node = Node(64, 256 * GB)
+        self.assertEqual(threads_for(4 * GB, [node]), 1)  # 64 tasks fit
+        self.assertEqual(threads_for(8 * GB, [node]), 2)  # 32 fit
+        self.assertEqual(threads_for(100 * GB, [node]), 32)
+        self.assertEqual(threads_for(256 * GB, [node]), 64)
+
+    def test_a_frame_for_which_no_node_is_large_enough(self):
+        with self.assertRaises(DriverError) as caught:
+            threads_for(9 * GB, [Node(4, 8 * GB), Node(64, 0)])
+        self.assertEqual(caught.exception.code, ExitCode.MEMORY)
+        self.assertEqual(threads_for(9 * GB, [Node(64, 0)]), 1)  # the cluster does not know its memory
+
+    def test_chunks_fill_the_time_and_the_array(self):
+        self.assertEqual(chunk_for(60, 10, 1000, 1000), 10)
+        self.assertEqual(chunk_for(6000, 10, 100, 1000), 1)
+        self.assertEqual(chunk_for(0.1, 10, 50, 1000), 50)
+        self.assertEqual(chunk_for(6000, 10, 5000, 1000), 5)
+
+
+class Requirements(unittest.TestCase):
+    def test_the_model_holds_for_a_real_run(self):
+        """Peak memory of this very build is not above what is asked for, and the model not far above the peak."""
+        model = Model()
+        sample = Path(os.environ["POLYRECON_SAMPLES"]) / "glass_16.exr"
+        frame = frame_of(
+            json.loads(subprocess.run([POLYRECON, "inspect", "--json", sample], capture_output=True).stdout)
+        )
+        self.assertEqual((frame.width, frame.height, frame.channels), (320, 180, 58))
+        with tempfile.TemporaryDirectory() as folder:
+            for k in (1, 2):
+                os.symlink(sample, f"{folder}/in.{k}.exr")
+            child = subprocess.Popen(
+                [
+                    POLYRECON,
+                    "denoise",
+                    "-i",
+                    f"{folder}/in.#.exr",
+                    "-o",
+                    f"{folder}/out.#.exr",
+                    "--frames",
+                    "1-2",
+                    "--quiet",
+                ]
+                + ["--quality", "draft", "--threads", "1"]
+            )
+            _, status, usage = os.wait4(child.pid, 0)
+            child.returncode = os.waitstatus_to_exitcode(status)
+        self.assertEqual(child.returncode, 0)
+        peak = usage.ru_maxrss * 1024
+        self.assertLessEqual(peak, model.request_bytes(frame, "draft"))
+        self.assertLess(model.peak_bytes(frame, "draft"), 2 * peak)
+
+    def test_larger_asks_for_more(self):
+        model, small = Model(), Frame(1920, 1080, 42, 41)
+        for quality in ("draft", "standard", "best"):
+            self.assertLess(model.peak_bytes(small, quality), model.peak_bytes(Frame(3840, 2160, 42, 41), quality) / 2)
+        self.assertLess(model.wall_seconds(small, "standard", 2), model.wall_seconds(small, "standard", 1))
+
+
+class Commands(unittest.TestCase):
+    def farm(self, *words):
+        return subprocess.run(
+            [sys.executable, ROOT / "pipelines/farm/farm.py", *map(str, words)], capture_output=True, text=True
+        )
+
+    def test_every_command_has_help(self):
+        self.assertEqual(self.farm().returncode, 2)
+        listed = self.farm("--help").stdout
+        for command in ("slurm", "openjd", "report", "cost"):
+            self.assertIn(command, listed)
+            done = self.farm(command, "--help")
+            self.assertEqual((done.returncode, done.stderr), (0, ""))
+
+    def test_cost_follows_price_and_frames(self):
+        def cost(*words):
+            table = self.farm("cost", *words).stdout.splitlines()
+            return [float(line.split("|")[-2]) for line in table[2:]]
+
+        once, twice = cost("--frames", "1000", "--price", "10"), cost("--frames", "2000", "--price", "10")
+        self.assertEqual(len(once), 3)
+        for a, b in zip(once, twice):
+            self.assertAlmostEqual(b / a, 2, places=2)
+        for a, b in zip(once, cost("--frames", "1000", "--price", "20")):
+            self.assertAlmostEqual(b / a, 2, places=2)
+
+    def test_report_without_a_job(self):
+        with tempfile.TemporaryDirectory() as folder:
+            make_shot(folder, [1, 2])
+            words = ["-i", f"{folder}/shot.####.exr", "-o", f"{folder}/clean.####.exr"]
+            subprocess.run([POLYRECON, "denoise", *words, "--frames", "1", "--quiet"], check=True)
+            done = self.farm("report", *words, "--frames", "1-2", "--polyrecon", POLYRECON)
+            self.assertEqual(done.returncode, 4)
+            self.assertIn("1 of 2 frames are finished\nnot finished: 2\n", done.stdout)
+            # Other settings: frame 1 is not what was asked for.
+            done = self.farm("report", *words, "--frames", "1", "--polyrecon", POLYRECON, "--", "--quality", "best")
+            self.assertEqual(done.returncode, 4)

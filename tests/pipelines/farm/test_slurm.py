@@ -1,0 +1,166 @@
+import json
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+from pathlib import Path
+
+from pipelines.farm.requirements import MIB, Model, frame_of
+
+from .cluster import Cluster
+from .shot import make_shot
+
+ROOT = Path(__file__).resolve().parents[3]
+POLYRECON = os.path.abspath(os.environ["POLYRECON"])
+FRAMES = range(1, 25)
+NODES = ("node1", "node2")
+LIMIT_SECONDS = 250
+
+
+def files_in(folder):
+    return {path.name: path.read_bytes() for path in Path(folder).iterdir() if path.is_file() and path.name[0] != "."}
+
+
+def identities(folder):
+    return {path.name: (path.stat().st_ino, path.stat().st_mtime_ns) for path in Path(folder).glob("shot.*.exr")}
+
+
+@unittest.skipUnless(os.geteuid() == 0, "a slurmctld of one's own needs root")
+class Slurm(unittest.TestCase):
+    """One cluster of two nodes, one shot, for all tests here."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.cluster = cls.enterClassContext(Cluster(NODES, 2000))
+        cls.folder = Path(cls.enterClassContext(tempfile.TemporaryDirectory()))
+        (cls.folder / "in").mkdir()
+        (cls.folder / "local").mkdir()
+        make_shot(cls.folder / "in", FRAMES)
+        cls.words = ["-i", cls.folder / "in/shot.####.exr", "--frames", "1-24"]
+        subprocess.run(
+            [POLYRECON, "denoise", *cls.words, "-o", cls.folder / "local/shot.####.exr", "--quiet"], check=True
+        )
+
+    @classmethod
+    def enterClassContext(cls, context):  # unittest has it since Python 3.11
+        entered = context.__enter__()
+        cls.addClassCleanup(context.__exit__, None, None, None)
+        return entered
+
+    def setUp(self):
+        self.cluster.wait_idle()
+        self.out = Path(tempfile.mkdtemp(dir=self.folder))
+
+    def submit(self, *more, folder=None, words=None):
+        words = words or [*self.words, "-o", self.out / "shot.####.exr"]
+        command = [sys.executable, ROOT / "pipelines/farm/slurm.py", "submit", *words, "--polyrecon", POLYRECON]
+        command += ["--folder", folder or self.out / "job", *more]
+        return subprocess.Popen(
+            [str(word) for word in command],
+            env=self.cluster.environment,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+
+    def finish(self, process):
+        """Returns (exit code, what it printed)."""
+        try:
+            output, errors = process.communicate(timeout=LIMIT_SECONDS)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            self.fail(f"not finished: {self.cluster.run('squeue')} {process.communicate()}")
+        return process.returncode, output + errors
+
+    def report(self):
+        return json.loads((self.out / "job" / "report.json").read_text())
+
+    def kill_in_the_middle(self, running, node):
+        """Kills the node while it works on a chunk of which one frame is there and another one is not."""
+        end = time.monotonic() + LIMIT_SECONDS
+        while time.monotonic() < end and running.poll() is None:
+            for path in (self.out / "job/records").glob("[0-9]*.json"):
+                record = json.loads(path.read_text())
+                first = int(record["frames"].split("-")[0])
+                done = [(self.out / f"shot.{frame:04d}.exr").exists() for frame in (first, first + 2)]
+                if record["node"] == node and "exit_code" not in record and done == [True, False]:
+                    self.cluster.kill(node)
+                    return record["frames"]
+            time.sleep(0.005)
+        self.fail(f"{node} never worked: {self.cluster.run('squeue')} {self.finish(running)}")
+
+    def test_case_13_two_nodes_on_one_frame(self):
+        words = ["-i", self.folder / "in/shot.####.exr", "-o", self.out / "shot.####.exr", "--frames", "1-4"]
+        both = [self.submit("--wait", "--chunk", "4", folder=self.out / job, words=words) for job in ("job", "other")]
+        for running in both:
+            code, output = self.finish(running)
+            self.assertEqual(code, 0, output)
+        local = files_in(self.folder / "local")
+        self.assertEqual(files_in(self.out), {name: local[name] for name in sorted(local)[:4]})
+        records = [json.loads(path.read_text()) for path in self.out.glob("*/records/*.json")]
+        self.assertEqual(sorted(record["node"] for record in records), sorted(NODES))
+
+    def test_case_14_finished_frames_stay_and_broken_ones_are_named(self):
+        for path in sorted((self.folder / "local").iterdir())[:22]:
+            shutil.copy2(path, self.out)
+        cut = self.out / "shot.0003.exr"
+        cut.write_bytes(cut.read_bytes()[:-1])
+        before = identities(self.out)
+        broken = self.folder / "in/shot.0026.exr"
+        broken.write_bytes((self.folder / "in/shot.0001.exr").read_bytes()[:-1])
+        self.addCleanup(broken.unlink)
+        words = ["-i", self.folder / "in/shot.####.exr", "-o", self.out / "shot.####.exr", "--frames", "1-26"]
+        code, output = self.finish(self.submit("--wait", "--chunk", "13", words=words))
+        self.assertEqual(code, 4, output)
+        self.assertEqual(files_in(self.out), files_in(self.folder / "local"))
+        after = identities(self.out)
+        self.assertEqual(
+            {name for name in after if after[name] != before.get(name)},
+            {f"shot.{frame:04d}.exr" for frame in (3, 23, 24)},
+        )
+        found = self.report()
+        self.assertEqual((found["finished"], found["unfinished"]), (24, "25-26"))
+        self.assertEqual(sorted(found["reasons"]), ["25", "26"])
+        self.assertIn("shot.0026.exr", found["reasons"]["26"])
+        self.assertEqual(len(found["attempts_that_failed"]), 1)
+
+    def test_tasks_ask_for_what_the_model_says(self):
+        running = self.submit("--dry-run", "--sbatch=--comment=a b", "--", "--quality", "best")
+        code, output = self.finish(running)
+        self.assertEqual(code, 0, output)
+        array = output.splitlines()[1]
+        self.assertIn("'--comment=a b'", array)
+        self.assertIn("--requeue", array)
+        self.assertIn("--cpus-per-task=1", array)
+        inspection = json.loads(
+            subprocess.run(
+                [POLYRECON, "inspect", "--json", self.folder / "in/shot.0001.exr"], capture_output=True
+            ).stdout
+        )
+        asked = Model().request_bytes(frame_of(inspection), "best") // MIB
+        self.assertIn(f"--mem={asked}M", array)
+        self.assertFalse((self.out / "job").exists())
+
+    def test_what_slurm_refuses_is_told_in_one_line(self):
+        code, output = self.finish(self.submit("--memory", "1T"))
+        self.assertEqual((code, len(output.splitlines())), (33, 1), output)
+        code, output = self.finish(self.submit("--partition", "nowhere"))
+        self.assertEqual((code, len(output.splitlines())), (2, 1), output)
+
+    def test_case_35_a_node_dies_in_the_middle(self):
+        running = self.submit("--chunk", "3", "--wait")
+        self.addCleanup(self.cluster.boot, "node2")
+        lost = self.kill_in_the_middle(running, "node2")
+        code, output = self.finish(running)
+        self.assertEqual(code, 0, output)
+        self.assertEqual(files_in(self.out), files_in(self.folder / "local"))
+        found = self.report()
+        self.assertEqual((found["finished"], found["unfinished"]), (24, ""))
+        self.assertEqual(found["attempts_without_end"], [f"node2: {lost}"])
+        self.assertEqual(found["attempts"], 9)
+        # What the dead node had written is not written again.
+        self.assertLess(found["nodes"]["node1"]["frames"], 24)
+        self.assertIn("24 of 24 frames are finished", output)
