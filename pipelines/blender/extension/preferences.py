@@ -21,13 +21,18 @@ class PolyreconPreferences(bpy.types.AddonPreferences):
     )
 
     def draw(self, _context):
-        for name in ("program", "drivers", "python"):
-            self.layout.prop(self, name)
-        for find in (lambda: [program()], lambda: driver_words("adaptive.py")):
-            try:
-                self.layout.label(text="found: " + " ".join(map(str, find())), icon="CHECKMARK")
-            except programs.Problem as problem:
-                self.layout.label(text=str(problem), icon="ERROR")
+        draw(self.layout, self)
+
+
+def draw(layout, chosen):
+    """The fields, and what they come to."""
+    for name in ("program", "drivers", "python"):
+        layout.prop(chosen, name)
+    for find in (lambda: [program()], lambda: driver_words("adaptive.py")):
+        try:
+            layout.label(text="found: " + " ".join(map(str, find())), icon="CHECKMARK")
+        except programs.Problem as problem:
+            layout.label(text=str(problem), icon="ERROR")
 
 
 def _chosen(name):

@@ -78,6 +78,15 @@ class Extension(unittest.TestCase):
         found = exr.read(self.folder / name, lambda channel: channel.startswith("ViewLayer.Combined."))
         return np.stack([found[f"ViewLayer.Combined.{c}"] for c in "RGB"], axis=-1)
 
+    def drawn(self, draw):
+        """What draw(popup) puts into a layout of Blender's, as text: a layout can be asked without a window."""
+        popup = bpy.context.window_manager.popmenu_begin__internal("test", icon="NONE")
+        draw(popup)
+        return str(popup.layout.introspect())
+
+    def panel(self):
+        return self.drawn(lambda popup: bpy.types.POLYRECON_PT_render.draw(popup, bpy.context))
+
     def test_manifest_passes_blenders_checks(self):
         checked = extension_tool("validate", SOURCE)
         self.assertEqual(checked.returncode, 0, checked.stdout + checked.stderr)
@@ -87,6 +96,8 @@ class Extension(unittest.TestCase):
         panel = bpy.types.POLYRECON_PT_render
         self.assertEqual((panel.bl_space_type, panel.bl_context), ("PROPERTIES", "render"))
         self.assertTrue(panel.poll(bpy.context))
+        for button in ("set_up_passes", "denoise", "adaptive"):
+            self.assertIn(f"bpy.ops.polyrecon.{button}()", self.panel())
         self.scene.render.engine = "BLENDER_WORKBENCH"
         self.assertFalse(panel.poll(bpy.context))
 
@@ -107,9 +118,13 @@ class Extension(unittest.TestCase):
         job = self.jobs.current
         self.assertTrue(job.running)  # the operator came back while the program works
         self.assertFalse(bpy.ops.polyrecon.denoise.poll())  # one job at a time
+        self.assertIn("bpy.ops.polyrecon.cancel()", self.panel())
         self.assertLess(self.finish(job), 0.5)
         self.assertEqual((job.state, job.problem), ("done", ""))
         self.assertEqual(self.scene.render.image_settings.file_format, before)
+        self.assertNotIn("bpy.ops.polyrecon.cancel()", shown := self.panel())
+        self.assertIn("Denoise: done", shown)
+        self.assertIn("bpy.ops.polyrecon.show(which='ERROR')", shown)
         noisy, clean = self.combined("clean_0001_noisy.exr"), self.combined("clean_0001.exr")
         self.assertGreater(np.abs(clean - noisy).max(), 1e-3)
         self.assertAlmostEqual(clean.mean() / noisy.mean(), 1, delta=1e-3)
@@ -189,6 +204,13 @@ class Extension(unittest.TestCase):
         self.finish(job)
         self.assertEqual(job.state, "failed")
         self.assertIn("no.exr", job.problem)
+        self.assertIn(job.problem, self.panel())
+
+    def test_preferences_tell_what_they_find(self):
+        draw = sys.modules[MODULE + ".preferences"].draw
+        shown = self.drawn(lambda popup: draw(popup.layout, self.preferences))
+        self.assertIn(str(find_polyrecon()), shown)
+        self.assertIn("PolyreconPreferences.python", shown)
 
     def test_command_line(self):
         """What `blender -c polyrecon` calls; the Blender that is a module has no such switch."""
