@@ -134,7 +134,6 @@ class Extension(unittest.TestCase):
             self.assertEqual(bpy.data.images[name].type, kind)
         self.assertGreater(bpy.data.images["clean_0001_error.png"].size[0], 0)
 
-    @unittest.skipUnless((SOURCE.parent / "adaptive.py").exists(), "no adaptive.py beside it")
     def test_renders_adaptively_and_goes_on(self):
         self.scene.polyrecon.limit, self.scene.polyrecon.spp = "SPP", 12
         self.assertEqual(bpy.ops.polyrecon.adaptive(), {"FINISHED"})
@@ -161,7 +160,6 @@ class Extension(unittest.TestCase):
         self.assertEqual(before, {path: after[path] for path in before})  # nothing was rendered again
         self.assertGreater(len(after), len(before))
 
-    @unittest.skipUnless((SOURCE.parent / "adaptive.py").exists(), "no adaptive.py beside it")
     def test_cancel_stops_the_loop_and_its_blender(self):
         self.scene.polyrecon.seconds = 600
         self.scene.cycles.samples = 4
