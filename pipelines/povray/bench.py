@@ -29,13 +29,13 @@ HERE = pathlib.Path(__file__).resolve().parent
 EXAMPLES = pathlib.Path("/usr/share/doc/povray/examples")  # Debian: povray-examples
 SCENES = {
     "still_life": (HERE.parents[1] / "samples/scenes/still_life.pov", 160, 90),
-    "focalblur": (EXAMPLES / "camera/focalblur.pov", 160, 120),
-    "arealit2": (EXAMPLES / "lights/arealit2.pov", 160, 120),
-    "pawns": (EXAMPLES / "advanced/pawns.pov", 160, 120),
-    "woodbox": (EXAMPLES / "advanced/woodbox.pov", 160, 120),
+    "arealit2": (EXAMPLES / "lights/arealit2.pov", 128, 96),
+    "woodbox": (EXAMPLES / "advanced/woodbox.pov", 128, 96),
+    "pawns": (EXAMPLES / "advanced/pawns.pov", 128, 96),
+    "focalblur": (EXAMPLES / "camera/focalblur.pov", 96, 72),
 }
 REFERENCE_GRID = 32
-BAND = 15  # rows of the reference that are rendered at once
+BAND = 24  # rows of the reference that are rendered at once
 
 
 def main(words=None):

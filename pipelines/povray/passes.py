@@ -37,6 +37,10 @@ FLAT = "global_settings { max_trace_level 1 }"  # no reflections, nothing seen t
 SEEN_SHARE = 0.02  # a pass that answers in fewer pixels than this is not worth its renders
 DIFFUSE_RESIDUAL = 0.1  # relative departure from c N.D at which the lamps do not measure normals
 DEPTH_RESIDUAL = 0.03  # relative disagreement of lamp and fog at which the camera is elsewhere
+MOST_CAMERAS = 3  # of a scene file that are tried
+AFTER_LOCATION = (
+    "(?:up|right|direction|sky|look_at|angle|aperture|blur_samples|focal_point|confidence|variance|perspective|orthographic)"
+)
 SHADOW = 0.02  # light that a shadow has to take to count as one
 
 
@@ -200,7 +204,7 @@ def _working_gamma(lamps):
         return 1.0
 
     def excess(gamma):
-        low, middle, high = (image[lit].astype(np.float64) ** (1 / gamma) for image in (plain, dim, bright))
+        low, middle, high = (np.maximum(image[lit], 0.0) ** (1 / gamma) for image in (plain, dim, bright))
         return float(np.median((high - low) / (middle - low)) - 4)
 
     return min(np.arange(1.0, 3.01, 0.02).round(2).tolist(), key=lambda gamma: abs(excess(gamma)))
@@ -221,24 +225,26 @@ def _plan_normal(lamps, plan):
 def _plan_depth(scene, lamps, plan, camera):
     """Tries both tricks. The lamp is cheaper, the fog sees more and needs no place: the lamp is taken where it agrees
     with the fog and sees as much."""
-    place = camera_place(scene, camera)
+    places = camera_places(scene, camera)
     fog = _scaled(lamps, DepthTrick(None, 10.0))
-    lamp = _scaled(lamps, DepthTrick(place, fog.trick.d if fog else 10.0)) if place else None
-    if lamp and fog:
-        both = lamp.seen & fog.seen
-        error = np.median(np.abs(lamp.z[both] / fog.z[both] - 1)) if both.any() else np.inf
-        if error > DEPTH_RESIDUAL:
-            plan.decide("depth by lamp", False, f"the camera is not at {place} (distances are off by {error:.0%})")
-            lamp = None
-        elif (fog.seen & ~lamp.seen).mean() > SEEN_SHARE:
-            plan.decide("depth by lamp", False, "glass, mirrors or unlit surfaces do not answer it, fog sees them")
-            lamp = None
+    lamp = None
+    for place in places:
+        lamp = _scaled(lamps, DepthTrick(place, fog.trick.d if fog else 10.0))
+        both = lamp.seen & fog.seen if lamp and fog else np.zeros(1, bool)
+        error = float(np.median(np.abs(lamp.z[both] / fog.z[both] - 1))) if both.any() else 0.0
+        if error <= DEPTH_RESIDUAL:
+            break
+        plan.decide("depth by lamp", False, f"the camera is not at {place} (distances are off by {error:.0%})")
+        lamp = None
+    if lamp and fog and (fog.seen & ~lamp.seen).mean() > SEEN_SHARE:
+        plan.decide("depth by lamp", False, "glass, mirrors or unlit surfaces do not answer it, fog sees them")
+        lamp = None
     chosen = lamp or fog
     if not chosen:
-        plan.decide("depth", False, f"{'' if place else 'no place of the camera found, and '}the fog shows nothing")
+        plan.decide("depth", False, f"{'' if places else 'no place of the camera found, and '}the fog shows nothing")
     elif chosen is lamp:
         checked = "agrees with fog" if fog else "not checked: fog shows nothing"
-        plan.depth = plan.decide("depth", True, f"by a fading lamp at {place} ({checked})") and lamp.trick
+        plan.depth = plan.decide("depth", True, f"by a fading lamp at {lamp.trick.place} ({checked})") and lamp.trick
     else:
         plan.depth = plan.decide("depth", True, "by fog") and fog.trick
 
@@ -267,24 +273,23 @@ def _scaled(lamps, trick):
     return None
 
 
-def camera_place(scene, given=None):
-    """The camera's place as text "<x,y,z>": as given, or by what the scene file's last camera says after `location`, which
-    POV-Ray itself evaluates at the end of the scene. None where that does not work: the camera stands in another file, is
-    a named one, is moved by transformations, or its words no longer mean anything there."""
+def camera_places(scene, given=None):
+    """Where the camera may be, texts "<x,y,z>": as given, or what the scene file's cameras, last one first, say after
+    `location`, as POV-Ray itself evaluates it at the end of the scene. Empty where that does not work: the camera stands
+    in another file, is a named one, is moved by transformations, or its words no longer mean anything there."""
     if given:
-        return f"<{given}>"
+        return [f"<{given}>"]
     text = re.sub(r"//[^\n]*|/\*.*?\*/", " ", scene.path.read_text(errors="replace"), flags=re.DOTALL)
     cameras = [_braces(text, found.end()) for found in re.finditer(r"\bcamera\s*\{", text)]
-    if not cameras or re.search(r"\b(translate|rotate|scale|matrix|transform)\b", cameras[-1]):
-        return None
-    words = r"(?:up|right|direction|sky|look_at|angle|aperture|blur_samples|focal_point|confidence|variance|perspective|#)"
-    found = re.search(rf"\blocation\b(.*?)(?=\b{words}\b|\#|$)", cameras[-1], re.DOTALL)
-    if not found:
-        return None
-    marker = "polyrecon camera:"
-    tail = f'#debug concat("\\n{marker}", vstr(3, <0,0,0> + ({found[1].strip()}), ",", 0, 9), "\\n")'
-    printed = scene.debug(tail, marker)
-    return f"<{printed[-1]}>" if printed else None
+    places = []
+    for camera in cameras[::-1][:MOST_CAMERAS]:
+        found = re.search(rf"\blocation\b(.*?)(?=\b{AFTER_LOCATION}\b|\#|$)", camera, re.DOTALL)
+        if not found or re.search(r"\b(translate|rotate|scale|matrix|transform)\b", camera):
+            continue
+        marker = "polyrecon camera:"
+        tail = f'#debug concat("\\n{marker}", vstr(3, <0,0,0> + ({found[1].strip()}), ",", 0, 9), "\\n")'
+        places += [f"<{printed}>" for printed in scene.debug(tail, marker)[-1:]]
+    return places
 
 
 def _braces(text, start):

@@ -16,7 +16,9 @@ import time
 import numpy as np
 
 from ..loop import exr
+from ..loop.arguments import positive
 from ..loop.errors import run_main
+from ..loop.renderer import SAMPLE_COUNT
 from . import passes, regions
 from .scene import Scene
 from .subpixels import estimate, join
@@ -56,7 +58,7 @@ def _main(words):
         features = passes.render_features(scene, plan, FIRST_GRID)
         say(f"  {len(features)} feature passes in {time.monotonic() - begun:.1f} s")
         layers = {"Combined": beauty, **features}
-        exr.write(options.output, channels(layers, samples), {"Software": "polyrecon, POV-Ray"})
+        exr.write(options.output, {**channels(layers), SAMPLE_COUNT: samples}, {"Software": "polyrecon, POV-Ray"})
 
 
 def render_beauty(scene, grid, say=lambda text: None):
@@ -95,25 +97,21 @@ def noise(beauty):
     return near.repeat(NOISE_BLOCK, 0).repeat(NOISE_BLOCK, 1)[:height, :width]
 
 
-def channels(layers, samples):
+def channels(layers):
     """{layer: Estimate} as channels, with the names that `polyrecon denoise` and `polyrecon merge` know."""
     found = {}
     for name, layer in layers.items():
         suffixes = {"Denoising Normal": "XYZ", "Denoising Depth": "Z", "Visibility": "X"}.get(name, "RGB")
         for kind, planes in (("", layer.mean), (" Variance", layer.variance), (" A", layer.a), (" B", layer.b)):
             found.update({f"{name}{kind}.{suffix}": planes[..., i] for i, suffix in enumerate(suffixes)})
-    found["Sample Count.X"] = samples
     return found
 
 
-def add_scene_options(parser):
-    """The options that say what is rendered, the same for adaptive.py."""
-    parser.add_argument("scene", metavar="SCENE.pov")
-    parser.add_argument("-o", "--output", required=True, metavar="FILE.exr")
+def add_povray_arguments(parser):
+    """The options that both drivers have."""
     parser.add_argument("--camera", metavar="X,Y,Z", type=_place, help="place of the camera, where the scene does not tell it")
     parser.add_argument("--povray", default="povray", metavar="PATH", help="the program (povray)")
-    parser.add_argument("--timeout", type=float, metavar="SECONDS", help="longest time of one POV-Ray run (no limit)")
-    parser.add_argument("-q", "--quiet", action="store_true", help="print nothing but errors")
+    parser.add_argument("--timeout", type=positive, metavar="SECONDS", help="longest time of one POV-Ray run (no limit)")
 
 
 def _place(text):
@@ -142,7 +140,10 @@ def _parser():
         "  render_passes.py scene.pov -o merged.exr --subpixels 8 -- scene.ini +Ltextures Declare=Night=1\n"
         "  polyrecon denoise -i merged.exr -o clean.exr",
     )
-    add_scene_options(parser)
+    parser.add_argument("scene", metavar="SCENE.pov")
+    parser.add_argument("-o", "--output", required=True, metavar="FILE.exr")
+    parser.add_argument("-q", "--quiet", action="store_true", help="print nothing but errors")
+    add_povray_arguments(parser)
     parser.add_argument(
         "--subpixels",
         type=_grid,

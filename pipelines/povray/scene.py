@@ -231,6 +231,8 @@ class Scene:
         tells whether the scene can be parsed at all."""
         run = self._start(0, _AsAsked())
         self._image(_AsAsked(), run)
+        version = re.search(r"POV-Ray (\d\S*)", self.messages) or re.search(r"Ray Tracer Version (\S+)", self.messages)
+        self.version = f"POV-Ray {version[1]}" if version else "POV-Ray"
         found = re.search(r"Image resolution\W+(\d+) by (\d+)", self.messages)
         if not found:
             raise DriverError(ExitCode.RENDERER, f"{self.path}: POV-Ray did not say the image's size")

@@ -1,0 +1,59 @@
+#!/usr/bin/env python3
+"""Renders a POV-Ray scene, taking samples only where the reconstruction needs them, and writes the clean picture.
+
+examples:
+  adaptive.py scene.pov -o scene.exr --budget-spp 64 -- +W640 +H360
+  adaptive.py scene.pov -o 'out/scene_####.exr' --frames 1-10 --budget-seconds 120 -- scene.ini +KFF10
+  adaptive.py scene.pov -o scene.exr --target 0.001 -- scene.ini +Ltextures
+  adaptive.py scene.pov -o scene.exr --budget-spp 128 --resume -- +W640 +H360   # goes on, after an interruption or with more
+
+What follows -- are POV-Ray's own options. The scene's files are not touched. Passes, merged picture, error map, sample maps,
+journal and report.html stay in --passes-dir."""
+
+if not __package__:  # run as a script from a checkout
+    import pathlib
+    import sys
+
+    sys.path[0] = str(pathlib.Path(__file__).resolve().parents[2])
+    __package__ = "pipelines.povray"
+
+import argparse
+import pathlib
+import sys
+
+from ..loop import command
+from ..loop.errors import DriverError, ExitCode, run_main
+from .render_passes import add_povray_arguments, split_words
+from .renderer import PovrayRenderer
+
+
+def main(words=None):
+    return run_main("polyrecon-povray", _main, words)
+
+
+def _main(words):
+    ours, povrays = split_words(words)
+    options = _arguments(ours)
+    if not options.scene.is_file():
+        raise DriverError(ExitCode.MISSING, f"{options.scene}: no such scene")
+    renderer = PovrayRenderer(options.scene, povrays, options.povray, options.timeout, options.first_pass, options.camera)
+    command.run_frames(options, renderer, {"renderer": "POV-Ray", "options": povrays, "camera": options.camera})
+
+
+def _arguments(words):
+    parser = argparse.ArgumentParser(
+        prog="polyrecon-povray",
+        usage="%(prog)s SCENE.pov -o OUT.exr (--budget-spp N | --budget-seconds S | --target E) [options] [-- POV-Ray's options]",
+        description=__doc__,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("scene", type=pathlib.Path, metavar="SCENE.pov")
+    command.add_arguments(parser, 16, "subpixels of the first pass: 4, 16, 36, 64 (16)")
+    add_povray_arguments(parser)
+    options = parser.parse_args(words)
+    command.check_budget(parser, options)
+    return options
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,70 @@
+import json
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import time
+
+import numpy as np
+
+from pipelines.loop import exr
+from pipelines.povray.scene import Scene
+from pipelines.povray.subpixels import estimate
+
+from .scenes import BALL, CAMERA, HEAD, NOISY_LAMP, SIZE, InFolder
+
+DRIVER = pathlib.Path(__file__).parents[3] / "pipelines" / "povray" / "adaptive.py"
+
+
+class Adaptive(InFolder):
+    def command(self, *words):
+        return [sys.executable, "-B", DRIVER, "ball.pov", "-o", "ball.exr", *words, "--", *SIZE]
+
+    def run_driver(self, *words, code=0):
+        done = subprocess.run(self.command(*words), capture_output=True, text=True)
+        self.assertEqual(done.returncode, code, done.stderr)
+        return done
+
+    def test_killed_resumed_and_within_its_budget(self):
+        self.scene(HEAD % 1 + CAMERA + BALL + NOISY_LAMP, "ball.pov")
+        killed = subprocess.Popen(self.command("--budget-spp", "48"), stderr=subprocess.DEVNULL)
+        while not pathlib.Path("ball.passes/part_0b1.exr").exists():
+            self.assertIsNone(killed.poll())
+            time.sleep(0.05)
+        killed.send_signal(signal.SIGTERM)
+        self.assertEqual(killed.wait(20), 143)
+        self.assertFalse(pathlib.Path("ball.exr").exists())
+        self.run_driver("--budget-spp", "48", code=2)  # passes of an earlier run are not overwritten unasked
+        said = self.run_driver("--budget-spp", "48", "--resume").stdout
+        self.assertIn("report:", said)
+
+        journal = json.loads(pathlib.Path("ball.passes/journal.json").read_text())
+        self.assertLessEqual(sum(part["spp"] for part in journal["parts"]), 48 + 1e-6)
+        self.assertGreater(len(journal["rounds"]), 1)
+        names = [part["file"] for part in journal["parts"]]
+        self.assertEqual(len(names), len(set(names)))
+        merged = exr.read("ball.passes/merged.exr")
+        counts = merged["Sample Count.X"]
+        np.testing.assert_allclose(counts.mean(), sum(part["spp"] for part in journal["parts"]), rtol=1e-6)
+        for layer in ("Combined Variance.R", "Denoising Normal Variance.X", "Denoising Depth.Z", "Visibility A.X"):
+            self.assertIn(layer, merged)
+        # Samples went where the noise is: the penumbra on the wall.
+        with Scene("ball.pov", SIZE) as scene:
+            reference = estimate(scene.render(20), 20)
+        noisy = reference.variance.mean(-1) > np.quantile(reference.variance.mean(-1), 0.9)
+        self.assertGreater(counts[noisy].mean(), 1.3 * counts[~noisy].mean())
+        # Unbiased and better: the clean picture is nearer to the reference than the noisy one.
+        errors = [
+            np.mean((np.stack([found[f"Combined.{c}"] for c in "RGB"], -1) - reference.mean) ** 2 / (reference.mean**2 + 0.01))
+            for found in (merged, exr.read("ball.exr"))
+        ]
+        self.assertLess(errors[1], errors[0])
+        self.assertTrue(os.path.getsize("ball.passes/report.html") > 10000)
+
+    def test_wrong_use(self):
+        self.scene(HEAD % 1 + CAMERA + BALL + NOISY_LAMP, "ball.pov")
+        self.run_driver("--budget-spp", "8", code=2)
+        self.run_driver("--budget-spp", "64", "--first-pass", "8", code=2)
+        self.run_driver(code=2)
+        self.assertEqual(os.listdir(), ["ball.pov"])
