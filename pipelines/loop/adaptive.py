@@ -172,6 +172,7 @@ class _Loop:
     def reconstruct_half(self, number, half):
         merged, clean, error = (self.file(number, f"{kind}_{half}") for kind in ("merged", "clean", "error"))
         self.polyrecon.run("merge", *self.journal.files(half), "-o", merged, "--quiet")
+        self.renderer.complete(merged)
         begin = time.monotonic()
         self.polyrecon.run("denoise", "-i", merged, "-o", clean, "--quality", ROUND_QUALITY, "--error-map", error, "--quiet")
         self.reserve = (time.monotonic() - begin) * LAST_OVER_ROUND[self.settings.quality]
@@ -234,6 +235,7 @@ class _Loop:
         self.tell("result", done=1.0)
         halves = [self.journal.files(half) for half in HALVES]
         self.polyrecon.run("merge", *halves[0], "--half-b", *halves[1], "-o", merged, "--quiet")
+        self.renderer.complete(merged)
         self.polyrecon.run("denoise", "-i", merged, "-o", self.settings.output, "--quality", self.settings.quality, "--error-map",
                            error_map, "--quiet")  # fmt: skip
         self.save()

@@ -69,5 +69,9 @@ class Renderer(abc.ABC):
         A renderer that cannot sample single pixels may take more than it is asked for; `Sample Count.X` says what was
         taken, and must not depend on the values of the samples, else the picture would be biased."""
 
+    def complete(self, merged: pathlib.Path) -> None:
+        """Adds to a file of merged parts what is rendered once and for all, feature passes for instance. They must not
+        depend on the samples of the picture."""
+
     def close(self) -> None:
         """Ends what runs in the background. Called once, in every case."""

@@ -42,7 +42,7 @@ class PovrayRenderer(Renderer):
         self.scene = Scene(self.path, options, self.povray, self.timeout)
         self.name = self.scene.version
         self.plan = passes.make_plan(self.scene, self.camera)
-        self.first = None  # subpixels of the first pass
+        self.first = self.features = None  # subpixels of the first pass; channels of the feature passes
         self.seconds_per_sample = 0.0
         return Audit(
             width=self.scene.width,
@@ -64,10 +64,7 @@ class PovrayRenderer(Renderer):
         subpixels = blocks(self.first, self.grid)
         mean = np.mean([subpixels[:, :, y, x] for y, x in fields], axis=0, dtype=np.float64)
         counts = np.full(mean.shape[:2], samples, np.float32)
-        # The halves are merged apart, so the first part of each has the features.
-        starts_half = first in (0, self.grid**2 // 2)
-        features = passes.render_features(self.scene, self.plan, FIRST_GRID) if starts_half else {}
-        self._write(target, mean, counts, features, [])
+        self._write(target, mean, counts, [])
 
     def extra(self, first, counts, target):
         mean = np.zeros((*counts.shape, 3))
@@ -79,8 +76,14 @@ class PovrayRenderer(Renderer):
             rows, columns = slice(shot.crop.y0, shot.crop.y1), slice(shot.crop.x0, shot.crop.x1)
             mean[rows, columns] = blocks(image, shot.scale).mean((2, 3), dtype=np.float64)
             taken[rows, columns] = shot.scale**2
-        self._write(target, mean, taken, {}, shots)
+        self._write(target, mean, taken, shots)
         return int(taken.max())
+
+    def complete(self, merged):
+        """The feature passes: of all parts the same, rendered when they are first asked for."""
+        if self.features is None:
+            self.features = channels(passes.render_features(self.scene, self.plan, FIRST_GRID))
+        exr.write(merged, {**exr.read(merged), **self.features})
 
     def close(self):
         if self.scene:
@@ -118,10 +121,10 @@ class PovrayRenderer(Renderer):
                 used += [(row[:4], row[4]) for row in json.loads(exr.metadata(path).get(GRIDS, "[]"))]
         return used
 
-    def _write(self, target, mean, counts, features, shots):
+    def _write(self, target, mean, counts, shots):
         rows = [[s.crop.x0, s.crop.y0, s.crop.x1, s.crop.y1, s.scale] for s in shots]
         beauty = {f"Combined.{c}": mean[..., i] for i, c in enumerate("RGB")}
-        exr.write(target, {**beauty, **channels(features), SAMPLE_COUNT: counts}, {GRIDS: json.dumps(rows)})
+        exr.write(target, {**beauty, SAMPLE_COUNT: counts}, {GRIDS: json.dumps(rows)})
 
 
 def field_order(n):

@@ -40,7 +40,8 @@ class Adaptive(InFolder):
         self.assertIn("report:", said)
 
         journal = json.loads(pathlib.Path("ball.passes/journal.json").read_text())
-        self.assertLessEqual(sum(part["spp"] for part in journal["parts"]), 48 + 1e-6)
+        # No more than one row of the last pass over the budget: a pass is never empty.
+        self.assertLess(sum(part["spp"] for part in journal["parts"]), 48 + 1)
         self.assertGreater(len(journal["rounds"]), 1)
         names = [part["file"] for part in journal["parts"]]
         self.assertEqual(len(names), len(set(names)))
