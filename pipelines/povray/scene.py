@@ -23,6 +23,7 @@ from ..loop.errors import DriverError, ExitCode
 
 # POV-Ray's own configuration (/etc/povray/3.7/povray.conf) lets it write there.
 WORK_PARENT = pathlib.Path("/tmp")
+WORK_PREFIX = "polyrecon-povray-"
 # Last word on the command line, after the user's: linear EXR without alpha, one ray a (sub)pixel, no window, no waiting, no old file.
 FORCED = ("+FE", "-UA", "-A", "-D", "-P", "-C", "Fatal_Console=on", "Render_Console=on")
 
@@ -101,7 +102,8 @@ class Scene:
             raise DriverError(ExitCode.MISSING, f"{povray}: no such program (Debian: apt-get install povray; --povray)")
         self.timeout = timeout
         self.messages = ""  # what POV-Ray wrote in its last run
-        self.work = pathlib.Path(tempfile.mkdtemp(prefix="polyrecon-povray-", dir=WORK_PARENT))
+        _remove_stale_work()
+        self.work = pathlib.Path(tempfile.mkdtemp(prefix=f"{WORK_PREFIX}{os.getpid()}-", dir=WORK_PARENT))
         try:
             (self.work / "scene.pov").symlink_to(self.path)
             self.options = self._safe_options(options)
@@ -237,6 +239,19 @@ class Scene:
         if not found:
             raise DriverError(ExitCode.RENDERER, f"{self.path}: POV-Ray did not say the image's size")
         return int(found[1]), int(found[2])
+
+
+def _remove_stale_work():
+    """Work folders of this user whose driver was killed outright."""
+    for folder in WORK_PARENT.glob(f"{WORK_PREFIX}*-*"):
+        process_number = folder.name[len(WORK_PREFIX) :].partition("-")[0]
+        try:
+            if folder.stat().st_uid == os.getuid():
+                os.kill(int(process_number), 0)
+        except ProcessLookupError:
+            shutil.rmtree(folder, ignore_errors=True)
+        except (OSError, ValueError):
+            continue
 
 
 def _read_rgb(path, scale, crop):

@@ -35,20 +35,20 @@ def estimate(image, n):
     """Means, variances and halves of the pixels of an image of subpixels.
 
     The grid is a stratified sample: what changes evenly across the pixel adds next to nothing to the error of the mean,
-    but all of its variance to the plain sample variance. So the variance of a subpixel is taken from differences of
-    neighbours, E (y_i - y_j)^2 / 2, as in collapsed strata (Cochran, Sampling Techniques, 5A.12): too high still by what
-    changes from one subpixel to the next, hence on the safe side. The halves are the two colours of a chessboard: each
-    covers the whole pixel, and no row or column is in one half more than in the other.
+    but all of its variance to the plain sample variance. So the variance of a subpixel is taken from the mixed differences
+    of four neighbours, E (y_00 - y_01 - y_10 + y_11)^2 / 4, which are 0 for whatever is linear across the pixel (Cochran,
+    Sampling Techniques, 8.11: systematic sampling in two dimensions). The halves are the two colours of a chessboard:
+    each covers the whole pixel, and no row or column is in one half more than in the other.
     """
     subpixels = np.asarray(blocks(image, n), np.float64)
     mean = subpixels.mean((2, 3))
     if n == 1:
         return Estimate(mean, np.zeros_like(mean), mean, mean)
-    vertical = ((subpixels[:, :, 1:] - subpixels[:, :, :-1]) ** 2).mean((2, 3))
-    horizontal = ((subpixels[:, :, :, 1:] - subpixels[:, :, :, :-1]) ** 2).mean((2, 3))
+    rows = subpixels[:, :, 1:] - subpixels[:, :, :-1]
+    variance = ((rows[:, :, :, 1:] - rows[:, :, :, :-1]) ** 2).mean((2, 3)) / (4 * n * n)
     white = np.add.outer(np.arange(n), np.arange(n)) % 2 == 0
     halves = (subpixels[:, :, field].mean(2) for field in (white, ~white))
-    return Estimate(mean, (vertical + horizontal) / (4 * n * n), *halves)
+    return Estimate(mean, variance, *halves)
 
 
 def join(first, count, second, more):

@@ -85,6 +85,17 @@ class Scenes(InFolder):
         path.chmod(0o755)
         return str(path)
 
+    def test_what_a_killed_driver_left_is_removed(self):
+        ended = subprocess.Popen(["true"])
+        ended.wait()
+        stale = pathlib.Path(f"/tmp/polyrecon-povray-{ended.pid}-test")
+        alive = pathlib.Path(f"/tmp/polyrecon-povray-{os.getpid()}-test")
+        for folder in (stale, alive):
+            folder.mkdir()
+            self.addCleanup(lambda folder=folder: folder.exists() and folder.rmdir())
+        with Scene(self.scene(FLAT), SIZE):
+            self.assertEqual((stale.exists(), alive.exists()), (False, True))
+
     def test_time_limit(self):
         grace, process.GRACE_SECONDS = process.GRACE_SECONDS, 0.5
         self.addCleanup(setattr, process, "GRACE_SECONDS", grace)
