@@ -1,4 +1,4 @@
-"""What the command lines of all adaptive drivers share."""
+"""What the command line of an adaptive driver needs, beside its renderer."""
 
 import pathlib
 
