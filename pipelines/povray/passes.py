@@ -276,7 +276,7 @@ def _scaled(lamps, trick):
 def camera_places(scene, given=None):
     """Where the camera may be, texts "<x,y,z>": as given, or what the scene file's cameras, last one first, say after
     `location`, as POV-Ray itself evaluates it at the end of the scene. Empty where that does not work: the camera stands
-    in another file, is a named one, is moved by transformations, or its words no longer mean anything there."""
+    in another file, is moved by transformations, or its words no longer mean anything there."""
     if given:
         return [f"<{given}>"]
     text = re.sub(r"//[^\n]*|/\*.*?\*/", " ", scene.path.read_text(errors="replace"), flags=re.DOTALL)

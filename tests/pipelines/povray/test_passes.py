@@ -55,8 +55,16 @@ class Passes(InFolder):
             self.assertGreater(found["Visibility"][on_ball].min(), 0.99)
 
     def test_fog_where_the_camera_is_not_found(self):
-        plan, found = self.look(HEAD % 1 + "#declare C = " + CAMERA + "camera { C }" + BALL + LAMP)
+        self.scene(CAMERA, "camera.inc")
+        plan, found = self.look(HEAD % 1 + '#include "camera.inc"\n' + BALL + LAMP)
         self.assertIsNone(plan.depth.place)
+        self.check_ball(found)
+
+    def test_a_named_camera_after_one_that_is_not_there(self):
+        named = CAMERA.replace("camera {", "#declare C = camera {") + "#if (0) camera { location <9,9,9> } #end camera { C }\n"
+        plan, found = self.look(HEAD % 1 + named + BALL + LAMP)
+        self.assertIn("not at <9", self.decided(plan, "depth by lamp").reason)
+        self.assertIn("-5.0", plan.depth.place)
         self.check_ball(found)
 
     def test_fog_for_mirrors_and_glass(self):
@@ -73,11 +81,12 @@ class Passes(InFolder):
 
     def test_a_camera_inside_of_a_solid_has_no_fog(self):
         room = BALL.replace("plane { -z, -2 hollow", "box { -10, <10,10,2>")
-        named = CAMERA.replace("camera", "#declare C = camera") + "camera { C }"
-        plan, found = self.look(HEAD % 1 + named + room + LAMP)
+        self.scene(CAMERA, "camera.inc")
+        elsewhere = '#include "camera.inc"\n'
+        plan, found = self.look(HEAD % 1 + elsewhere + room + LAMP)
         self.assertFalse(self.decided(plan, "depth").run)
         self.assertNotIn("Denoising Depth", found)
-        plan, found = self.look(HEAD % 1 + named + room + LAMP, camera="0,0,-5")
+        plan, found = self.look(HEAD % 1 + elsewhere + room + LAMP, camera="0,0,-5")
         self.assertIn("not checked", self.decided(plan, "depth").reason)
         self.check_ball(found)
 
