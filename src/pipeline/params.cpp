@@ -20,7 +20,7 @@ Params params_for(Quality quality) {
     params.stride = 5;
     params.coverage = 0.25;
     params.max_order = 1;
-    params.cleaning.search_radius = 3;
+    params.cleaning.search_radius = 2;
     params.cleaning.patch_radius = 2;
   } else if (quality == Quality::Best) {
     params.stages = 3;
