@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "support/images.h"
+#include "support/random.h"
 #include "support/scene.h"
 
 namespace polyrecon {
@@ -94,6 +95,23 @@ TEST(NoiseVariance, FromTheImageOfASceneWithFeaturesIsOfTheRightSize) {
   const double ratio = mean_ratio(variance_of(frame).variance, truth);
   EXPECT_GT(ratio, 0.7);
   EXPECT_LT(ratio, 1.5);
+}
+
+TEST(NoiseVariance, FeaturesBeyondWhatTheModelHoldsAreLeftOut) {
+  // 7 channels of the scene and 3 more in each further pass: the fourth one does not fit into 16.
+  Frame frame = test::make_scene(40, 36, 0.2, 8).frame;
+  frame.beauty.variance = frame.beauty.half_a = frame.beauty.half_b = Image();
+  test::Random random(9);
+  Image full;
+  for (int more = 1; more <= 5; ++more) {
+    const Image noise = test::image_of(40, 36, 3, [&](int, int, int) { return random.normal(); });
+    frame.features.push_back({FeatureKind::Albedo, {"More", noise, {}, {}, {}}});
+    const Image out = variance_of(frame).variance;
+    if (more == 3) full = out;
+    if (more > 3) {
+      EXPECT_TRUE(test::same_bits(out, full)) << more;
+    }
+  }
 }
 
 TEST(NoiseVariance, OfBadAndTinyImagesIsFiniteAndNotNegative) {
