@@ -10,6 +10,7 @@
 
 #include "cli/checks.h"
 #include "cli/commands.h"
+#include "cli/read_limits.h"
 #include "cli/report_output.h"
 #include "features/prepare.h"
 
@@ -149,6 +150,7 @@ void setup_inspect(CLI::App& app, Command& chosen) {
   sub->add_option("file", o->input, "Render to look at")->required()->type_name("FILE");
   sub->add_flag("--json", o->json, "Print JSON");
   sub->add_option("--view-layer", o->read.view_layer, "View layer to choose roles from")->type_name("NAME");
+  add_read_limits(*sub, o->read.limits);
   sub->footer(
       "Examples:\n"
       "  polyrecon inspect render.exr\n"
