@@ -9,6 +9,8 @@
 #include <algorithm>
 #include <array>
 #include <fstream>
+#include <map>
+#include <string_view>
 
 #include "core/error.h"
 #include "io/exr_chunks.h"
@@ -62,6 +64,10 @@ class HeaderWalk {
 
   std::uint64_t position() const { return position_; }
 
+  [[noreturn]] void damaged(const std::string& attribute) {
+    fail(path_, fmt::format("incomplete or damaged header (attribute {})", attribute));
+  }
+
  private:
   [[noreturn]] void cut() { fail(path_, "incomplete: the file ends inside its header"); }
 
@@ -69,6 +75,58 @@ class HeaderWalk {
   std::ifstream stream_;
   std::uint64_t bytes_, position_ = 0;
 };
+
+/// Bytes of the types whose size is fixed, 0 for others. OpenEXR reads these whatever the size field says: where the
+/// two differ, it would go on to read from another place than this walk.
+std::uint32_t fixed_size(std::string_view type) {
+  static const std::map<std::string_view, std::uint32_t> sizes{{"box2f", 16},
+                                                               {"box2i", 16},
+                                                               {"chromaticities", 32},
+                                                               {"compression", 1},
+                                                               {"deepImageState", 1},
+                                                               {"double", 8},
+                                                               {"envmap", 1},
+                                                               {"float", 4},
+                                                               {"int", 4},
+                                                               {"keycode", 28},
+                                                               {"lineOrder", 1},
+                                                               {"m33d", 72},
+                                                               {"m33f", 36},
+                                                               {"m44d", 128},
+                                                               {"m44f", 64},
+                                                               {"rational", 8},
+                                                               {"tiledesc", 9},
+                                                               {"timecode", 8},
+                                                               {"v2d", 16},
+                                                               {"v2f", 8},
+                                                               {"v2i", 8},
+                                                               {"v3d", 24},
+                                                               {"v3f", 12},
+                                                               {"v3i", 12}};
+  const auto found = sizes.find(type);
+  return found == sizes.end() ? 0 : found->second;
+}
+
+/// Walks over an attribute's value; the counts inside must agree with its size too.
+void walk_value(HeaderWalk& walk, const std::string& attribute, const std::string& type, std::uint32_t size) {
+  constexpr std::uint32_t channel_bytes = 16;  // after its name: type, linearity, samplings
+  const std::uint64_t end = walk.position() + size;
+  if (const std::uint32_t fixed = fixed_size(type); fixed != 0 && fixed != size) walk.damaged(attribute);
+  if (type == "chlist") {  // ends with an empty name
+    std::string last_name = "?";
+    while (walk.position() < end && !(last_name = walk.name()).empty()) walk.skip(channel_bytes, attribute);
+    if (!last_name.empty()) walk.damaged(attribute);
+  } else if (type == "stringvector") {
+    while (walk.position() < end) walk.skip(walk.number(), attribute);
+  } else if (type == "preview") {
+    const std::uint64_t width = walk.number(), height = walk.number();
+    if (width > size || height > size || width * height * 4 + 8 != size) walk.damaged(attribute);
+    walk.skip(size - 8, attribute);
+  } else {
+    walk.skip(size, attribute);
+  }
+  if (walk.position() != end) walk.damaged(attribute);
+}
 
 std::uint64_t side(int low, int high) { return static_cast<std::uint64_t>(std::int64_t{high} - low + 1); }
 
@@ -125,8 +183,8 @@ std::uint64_t check_attribute_sizes(const std::string& path, std::uint64_t file_
       continue;
     }
     first_in_header = false;
-    walk.name();  // its type
-    walk.skip(walk.number(), attribute);
+    const std::string type = walk.name();
+    walk_value(walk, attribute, type, walk.number());
   }
 }
 

@@ -258,7 +258,9 @@ INSTANTIATE_TEST_SUITE_P(
                       },
                       [](std::string& b) { patch(b, kTiles, 4, 0); },
                       [](std::string& b) { patch(b, kWindow, 0, 0x7fffffff); },  // the size of the attribute itself
-                      [](std::string& b) { patch(b, std::string("channels\0chlist\0", 16), 0, 0xffffffff); }));
+                      [](std::string& b) { patch(b, std::string("channels\0chlist\0", 16), 0, 0xffffffff); },
+                      // a size that is not the type's: OpenEXR reads on from another place
+                      [](std::string& b) { patch(b, std::string("pixelAspectRatio\0float\0", 23), 0, 40); }));
 
 /// The tightest packing there is must not be taken for a lie: an image of one value in every compression.
 TEST(Case03, ConstantImagesAreBelieved) {
