@@ -46,6 +46,7 @@ Json json_of(const PartInfo& part) {
 Json json_of(const Layer& layer, const LayerStatistics* s) {
   Json out{{"name", layer.name},
            {"view_layer", layer.view_layer},
+           {"view", layer.view},
            {"file", layer.file},
            {"part", layer.part},
            {"channels", layer.channels},
@@ -105,7 +106,8 @@ std::string text_of(const PartInfo& part, std::size_t index) {
 }
 
 std::string text_of(const Layer& layer, const LayerStatistics* s) {
-  std::string line = fmt::format("  {:<38} {:<12} {:<20}", layer.name.empty() ? "(no name)" : layer.name,
+  const std::string view = layer.view.empty() ? "" : fmt::format(" [{}]", layer.view);
+  std::string line = fmt::format("  {:<38} {:<12} {:<20}", (layer.name.empty() ? "(no name)" : layer.name) + view,
                                  name_of(layer.role), name_of(layer.companion));
   if (s) {
     line += fmt::format(" {:>11.4g} .. {:<11.4g} mean {:<10.4g}", s->minimum, s->maximum, s->mean);
