@@ -44,13 +44,20 @@ void residual_variance(const Image& y, const Image& features, int cx, int cy, Wi
   }
 }
 
+/// As many features as the local model holds, in the frame's order.
 Image mended_features(const Frame& frame) {
+  std::vector<const Image*> used;
   int channels = 0;
-  for (const Feature& feature : frame.features) channels += feature.pass.mean.channels();
+  for (const Feature& feature : frame.features) {
+    const Image& mean = feature.pass.mean;
+    if (channels + mean.channels() > max_feature_channels) continue;
+    channels += mean.channels();
+    used.push_back(&mean);
+  }
   Image out(frame.width(), frame.height(), channels);
   int channel = 0;
-  for (const Feature& feature : frame.features) {
-    Image mean = feature.pass.mean;
+  for (const Image* feature : used) {
+    Image mean = *feature;
     mend(mean, 1);
     for (int c = 0; c < mean.channels(); ++c, ++channel)
       std::copy(mean.plane(c), mean.plane(c) + mean.pixels(), out.plane(channel));

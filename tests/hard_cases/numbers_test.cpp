@@ -192,7 +192,9 @@ TEST(Case18, HardFeaturesAreFinite) {
 
 TEST(Case18, MoreFeaturesThanTheModelHoldsAreLeftOut) {
   Scene scene = make_scene(40, 36, 0.3, 15);
-  for (int k = 0; k < 6; ++k) scene.frame.features.push_back(scene.frame.features[static_cast<std::size_t>(k % 2)]);
+  for (int k = 0; k < 12; ++k) scene.frame.features.push_back(scene.frame.features[static_cast<std::size_t>(k % 2)]);
+  EXPECT_TRUE(finite(run(scene.frame)));
+  scene.frame.beauty.variance = scene.frame.beauty.half_a = scene.frame.beauty.half_b = Image();  // estimated then
   EXPECT_TRUE(finite(run(scene.frame)));
 }
 
