@@ -5,6 +5,7 @@
 #include <map>
 
 #include "cli/choice.h"
+#include "cli/read_limits.h"
 
 namespace polyrecon {
 namespace {
@@ -142,6 +143,7 @@ void add_denoise_options(CLI::App& app, DenoiseOptions& options) {
   add_method_options(app, options);
   add_sample_map_options(app, options.sampling);
   add_run_options(app, options);
+  add_read_limits(app, options.read.limits);
 }
 
 }  // namespace polyrecon

@@ -10,6 +10,7 @@
 
 #include "cli/checks.h"
 #include "cli/commands.h"
+#include "cli/read_limits.h"
 #include "cli/report_output.h"
 #include "features/prepare.h"
 
@@ -45,6 +46,7 @@ Json json_of(const PartInfo& part) {
 Json json_of(const Layer& layer, const LayerStatistics* s) {
   Json out{{"name", layer.name},
            {"view_layer", layer.view_layer},
+           {"view", layer.view},
            {"file", layer.file},
            {"part", layer.part},
            {"channels", layer.channels},
@@ -104,7 +106,8 @@ std::string text_of(const PartInfo& part, std::size_t index) {
 }
 
 std::string text_of(const Layer& layer, const LayerStatistics* s) {
-  std::string line = fmt::format("  {:<38} {:<12} {:<20}", layer.name.empty() ? "(no name)" : layer.name,
+  const std::string view = layer.view.empty() ? "" : fmt::format(" [{}]", layer.view);
+  std::string line = fmt::format("  {:<38} {:<12} {:<20}", (layer.name.empty() ? "(no name)" : layer.name) + view,
                                  name_of(layer.role), name_of(layer.companion));
   if (s) {
     line += fmt::format(" {:>11.4g} .. {:<11.4g} mean {:<10.4g}", s->minimum, s->maximum, s->mean);
@@ -149,6 +152,7 @@ void setup_inspect(CLI::App& app, Command& chosen) {
   sub->add_option("file", o->input, "Render to look at")->required()->type_name("FILE");
   sub->add_flag("--json", o->json, "Print JSON");
   sub->add_option("--view-layer", o->read.view_layer, "View layer to choose roles from")->type_name("NAME");
+  add_read_limits(*sub, o->read.limits);
   sub->footer(
       "Examples:\n"
       "  polyrecon inspect render.exr\n"

@@ -9,6 +9,7 @@
 
 #include "cli/checks.h"
 #include "cli/commands.h"
+#include "cli/read_limits.h"
 #include "core/error.h"
 
 namespace polyrecon {
@@ -58,6 +59,7 @@ void setup_merge(CLI::App& app, Command& chosen) {
       ->check(CLI::PositiveNumber)
       ->type_name("N");
   sub->add_flag("-q,--quiet", o->quiet, "Print nothing but errors");
+  add_read_limits(*sub, o->merge.limits);
   sub->footer(
       "Examples:\n"
       "  polyrecon merge part*.exr -o merged.exr\n"

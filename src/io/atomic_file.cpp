@@ -67,6 +67,9 @@ class Temporary {
 
   void flush() {
     if (::fsync(descriptor_) != 0) fail(target_, "flushing it to disk", errno);
+    // Some network file systems tell of a full disk only when a descriptor is closed; the lock keeps the other one.
+    const int copy = ::dup(descriptor_);
+    if (copy < 0 || ::close(copy) != 0) fail(target_, "closing it", errno);
   }
 
   void take_name_of_target() {

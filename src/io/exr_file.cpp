@@ -17,6 +17,7 @@
 #include "core/error.h"
 #include "io/channel_reader.h"
 #include "io/exr_attributes.h"
+#include "io/exr_chunks.h"
 #include "io/exr_guard.h"
 #include "io/plain_image_file.h"
 
@@ -85,7 +86,7 @@ void describe_exr(FileInfo& file, const ReadLimits& limits) {
     fail(file.path, fmt::format("incomplete or damaged header ({})", first_line(problem.what())));
   }
   check_claims(file.path, file.bytes, headers, limits);
-  check_chunk_tables(file.path, table_begin, headers);
+  check_chunks(file.path, file.bytes, table_begin, headers);
   file.format = "openexr";
   for (const Imf::Header& header : headers) file.parts.push_back(describe_part(header));
 }

@@ -9,8 +9,11 @@
 #include <algorithm>
 #include <array>
 #include <fstream>
+#include <map>
+#include <string_view>
 
 #include "core/error.h"
+#include "io/exr_chunks.h"
 
 namespace polyrecon {
 namespace {
@@ -61,6 +64,10 @@ class HeaderWalk {
 
   std::uint64_t position() const { return position_; }
 
+  [[noreturn]] void damaged(const std::string& attribute) {
+    fail(path_, fmt::format("incomplete or damaged header (attribute {})", attribute));
+  }
+
  private:
   [[noreturn]] void cut() { fail(path_, "incomplete: the file ends inside its header"); }
 
@@ -69,26 +76,59 @@ class HeaderWalk {
   std::uint64_t bytes_, position_ = 0;
 };
 
-std::uint64_t ceil_divide(std::uint64_t a, std::uint64_t b) { return (a + b - 1) / b; }
+/// Bytes of the types whose size is fixed, 0 for others. OpenEXR reads these whatever the size field says: where the
+/// two differ, it would go on to read from another place than this walk.
+std::uint32_t fixed_size(std::string_view type) {
+  static const std::map<std::string_view, std::uint32_t> sizes{{"box2f", 16},
+                                                               {"box2i", 16},
+                                                               {"chromaticities", 32},
+                                                               {"compression", 1},
+                                                               {"deepImageState", 1},
+                                                               {"double", 8},
+                                                               {"envmap", 1},
+                                                               {"float", 4},
+                                                               {"int", 4},
+                                                               {"keycode", 28},
+                                                               {"lineOrder", 1},
+                                                               {"m33d", 72},
+                                                               {"m33f", 36},
+                                                               {"m44d", 128},
+                                                               {"m44f", 64},
+                                                               {"rational", 8},
+                                                               {"tiledesc", 9},
+                                                               {"timecode", 8},
+                                                               {"v2d", 16},
+                                                               {"v2f", 8},
+                                                               {"v2i", 8},
+                                                               {"v3d", 24},
+                                                               {"v3f", 12},
+                                                               {"v3i", 12}};
+  const auto found = sizes.find(type);
+  return found == sizes.end() ? 0 : found->second;
+}
+
+/// Walks over an attribute's value; the counts inside must agree with its size too.
+void walk_value(HeaderWalk& walk, const std::string& attribute, const std::string& type, std::uint32_t size) {
+  constexpr std::uint32_t channel_bytes = 16;  // after its name: type, linearity, samplings
+  const std::uint64_t end = walk.position() + size;
+  if (const std::uint32_t fixed = fixed_size(type); fixed != 0 && fixed != size) walk.damaged(attribute);
+  if (type == "chlist") {  // ends with an empty name
+    std::string last_name = "?";
+    while (walk.position() < end && !(last_name = walk.name()).empty()) walk.skip(channel_bytes, attribute);
+    if (!last_name.empty()) walk.damaged(attribute);
+  } else if (type == "stringvector") {
+    while (walk.position() < end) walk.skip(walk.number(), attribute);
+  } else if (type == "preview") {
+    const std::uint64_t width = walk.number(), height = walk.number();
+    if (width > size || height > size || width * height * 4 + 8 != size) walk.damaged(attribute);
+    walk.skip(size - 8, attribute);
+  } else {
+    walk.skip(size, attribute);
+  }
+  if (walk.position() != end) walk.damaged(attribute);
+}
 
 std::uint64_t side(int low, int high) { return static_cast<std::uint64_t>(std::int64_t{high} - low + 1); }
-
-std::uint64_t lines_per_chunk(Imf::Compression compression) {
-  switch (compression) {
-    case Imf::ZIP_COMPRESSION:
-    case Imf::PXR24_COMPRESSION:
-      return 16;
-    case Imf::PIZ_COMPRESSION:
-    case Imf::B44_COMPRESSION:
-    case Imf::B44A_COMPRESSION:
-    case Imf::DWAA_COMPRESSION:
-      return 32;
-    case Imf::DWAB_COMPRESSION:
-      return 256;
-    default:
-      return 1;
-  }
-}
 
 /// No encoder packs pixels more than this to one: deflate reaches 1032, and PXR24 takes a quarter off before; RLE makes
 /// 2 bytes of 128; PIZ's Huffman code 10 bits of 261 words; B44A 3 bytes of 32; DWA 1 zero-run symbol of a block of 64,
@@ -113,33 +153,6 @@ std::uint64_t packing_limit(Imf::Compression compression) {
   }
 }
 
-/// Sizes of all levels of one side of a mip- or rip-map.
-std::vector<std::uint64_t> level_sizes(std::uint64_t size, std::uint64_t levels_for, Imf::LevelRoundingMode rounding) {
-  std::vector<std::uint64_t> sizes;
-  for (std::uint64_t l = levels_for;; l = rounding == Imf::ROUND_UP ? ceil_divide(l, 2) : l / 2) {
-    sizes.push_back(std::max<std::uint64_t>(size, 1));
-    size = rounding == Imf::ROUND_UP ? ceil_divide(size, 2) : size / 2;
-    if (l <= 1) return sizes;
-  }
-}
-
-std::uint64_t tile_count(const Imf::TileDescription& tiles, std::uint64_t width, std::uint64_t height) {
-  const auto across = [&](std::uint64_t w) { return ceil_divide(w, tiles.xSize); };
-  const auto down = [&](std::uint64_t h) { return ceil_divide(h, tiles.ySize); };
-  if (tiles.mode == Imf::ONE_LEVEL) return across(width) * down(height);
-  std::uint64_t count = 0;
-  if (tiles.mode == Imf::MIPMAP_LEVELS) {
-    const std::uint64_t longest = std::max(width, height);
-    const auto widths = level_sizes(width, longest, tiles.roundingMode);
-    const auto heights = level_sizes(height, longest, tiles.roundingMode);
-    for (std::size_t l = 0; l < widths.size(); ++l) count += across(widths[l]) * down(heights[l]);
-    return count;
-  }
-  for (std::uint64_t w : level_sizes(width, width, tiles.roundingMode))
-    for (std::uint64_t h : level_sizes(height, height, tiles.roundingMode)) count += across(w) * down(h);
-  return count;
-}
-
 bool is_tiled_part(const Imf::Header& header) {
   return header.hasType() ? Imf::isTiled(header.type()) : header.hasTileDescription();
 }
@@ -157,14 +170,6 @@ std::uint64_t bytes_per_pixel(const Imf::Header& header) {
 
 }  // namespace
 
-std::uint64_t chunk_count(const Imf::Header& header) {
-  const auto& window = header.dataWindow();
-  const std::uint64_t width = side(window.min.x, window.max.x), height = side(window.min.y, window.max.y);
-  if (is_tiled_part(header)) return tile_count(header.tileDescription(), width, height);
-  const bool deep = header.hasType() && Imf::isDeepData(header.type());
-  return ceil_divide(height, deep ? 1 : lines_per_chunk(header.compression()));
-}
-
 std::uint64_t check_attribute_sizes(const std::string& path, std::uint64_t file_bytes) {
   HeaderWalk walk(path, file_bytes);
   walk.number();  // the magic number, known to be right
@@ -178,8 +183,8 @@ std::uint64_t check_attribute_sizes(const std::string& path, std::uint64_t file_
       continue;
     }
     first_in_header = false;
-    walk.name();  // its type
-    walk.skip(walk.number(), attribute);
+    const std::string type = walk.name();
+    walk_value(walk, attribute, type, walk.number());
   }
 }
 
@@ -193,7 +198,7 @@ void check_claims(const std::string& path, std::uint64_t file_bytes, const std::
     const auto& window = header.dataWindow();
     const std::uint64_t width = side(window.min.x, window.max.x), height = side(window.min.y, window.max.y);
     if (width > limits.max_pixels || height > limits.max_pixels || width * height > limits.max_pixels)
-      fail(path, fmt::format("{}: {} x {} pixels, more than the limit of {}", part_title(header, p), width, height,
+      fail(path, fmt::format("{}: {} x {} pixels, more than --max-pixels {}", part_title(header, p), width, height,
                              limits.max_pixels));
     if (is_tiled_part(header)) {
       const auto& tiles = header.tileDescription();
@@ -211,32 +216,10 @@ void check_claims(const std::string& path, std::uint64_t file_bytes, const std::
     least += width * height * bytes_per_pixel(header) / packing_limit(header.compression());
   }
   if (channels > limits.max_channels)
-    fail(path, fmt::format("{} channels, more than {}", channels, limits.max_channels));
+    fail(path, fmt::format("{} channels, more than --max-channels {}", channels, limits.max_channels));
   if (chunks > file_bytes / kMinimumChunkBytes || (claimed > kSmallClaim && least > file_bytes))
     fail(path, fmt::format("incomplete: the header claims {} chunks and {} MB of pixels, the file has {} bytes", chunks,
                            claimed >> 20, file_bytes));
-}
-
-void check_chunk_tables(const std::string& path, std::uint64_t table_begin, const std::vector<Imf::Header>& headers) {
-  std::ifstream stream(path, std::ios::binary);
-  stream.seekg(static_cast<std::streamoff>(table_begin));
-  std::uint64_t written = 0, absent = 0;
-  std::string first_absent;
-  for (std::size_t p = 0; p < headers.size(); ++p)
-    for (std::uint64_t i = 0, chunks = chunk_count(headers[p]); i < chunks; ++i) {
-      std::array<char, 8> offset{};
-      if (!stream.read(offset.data(), offset.size()))
-        fail(path, "incomplete: the file ends inside its table of chunks");
-      if (std::any_of(offset.begin(), offset.end(), [](char c) { return c != 0; })) {
-        ++written;
-      } else {
-        if (absent++ == 0) first_absent = part_title(headers[p], p);
-      }
-    }
-  if (absent == 0) return;
-  if (written == 0) fail(path, "not yet rendered: no pixel is written");
-  fail(path, fmt::format("incomplete: {} of {} chunks are not written, the first in {}", absent, absent + written,
-                         first_absent));
 }
 
 }  // namespace polyrecon

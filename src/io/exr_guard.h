@@ -15,17 +15,10 @@ namespace polyrecon {
 /// refused first. Throws Error{BadInput}.
 std::uint64_t check_attribute_sizes(const std::string& path, std::uint64_t file_bytes);
 
-/// Chunks of a part: blocks of scanlines, or tiles of all levels.
-std::uint64_t chunk_count(const Imf::Header& header);
-
 /// Compares windows, tiles, channels and chunk counts of headers that were parsed with limits and with the length of
 /// the file: pixels cannot be packed more tightly than their compression allows, and every chunk has 8 bytes in the
 /// table and 8 of its own. Throws Error{BadInput}: too large, or "incomplete".
 void check_claims(const std::string& path, std::uint64_t file_bytes, const std::vector<Imf::Header>& headers,
                   const ReadLimits& limits);
-
-/// Looks for chunks that were never written: zero offsets in the tables beginning at table_begin.
-/// Throws Error{BadInput}: "not yet rendered" where none is there, else "incomplete" naming the first part concerned.
-void check_chunk_tables(const std::string& path, std::uint64_t table_begin, const std::vector<Imf::Header>& headers);
 
 }  // namespace polyrecon

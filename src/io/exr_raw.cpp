@@ -12,6 +12,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "io/exr_chunks.h"
 #include "io/exr_guard.h"
 
 namespace polyrecon {

@@ -18,11 +18,16 @@ constexpr int gap = 8, text_size = 14, strip_height = 22, legend_height = 12;
 constexpr float ground = 0.09f;
 constexpr std::array<float, 3> text_color{0.9f, 0.9f, 0.9f};
 
+std::array<float, 3> pixel_of(const Image& rgb, int x, int y) {
+  return {static_cast<float>(rgb.at(x, y, 0)), static_cast<float>(rgb.at(x, y, 1)),
+          static_cast<float>(rgb.at(x, y, 2))};
+}
+
 OIIO::ImageBuf buffer_of(const Image& rgb) {
   OIIO::ImageBuf buffer(OIIO::ImageSpec(rgb.width(), rgb.height(), 3, OIIO::TypeDesc::FLOAT));
   for (int y = 0; y < rgb.height(); ++y)
     for (int x = 0; x < rgb.width(); ++x) {
-      const std::array<float, 3> pixel{rgb.at(x, y, 0), rgb.at(x, y, 1), rgb.at(x, y, 2)};
+      const std::array<float, 3> pixel = pixel_of(rgb, x, y);
       buffer.setpixel(x, y, pixel.data(), 3);
     }
   return buffer;
@@ -61,7 +66,7 @@ void draw_legend(OIIO::ImageBuf& image, const LogRange& range, int x, int y, int
         range.low * std::pow(range.high / range.low, i / std::max(1.0, static_cast<double>(width - 1))));
   const Image colors = false_color(scale, range);
   for (int i = 0; i < width; ++i) {
-    const std::array<float, 3> pixel{colors.at(i, 0, 0), colors.at(i, 0, 1), colors.at(i, 0, 2)};
+    const std::array<float, 3> pixel = pixel_of(colors, i, 0);
     for (int row = 0; row < legend_height; ++row) image.setpixel(x + i, y + row, pixel.data(), 3);
   }
   draw_text(image, fmt::format("{:.3g}", range.low), x, y + legend_height, width / 2, Align::Left);

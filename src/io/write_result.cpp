@@ -169,8 +169,15 @@ std::string part_title(const Imf::Header& header, int part) {
 
 /// The input is read again while it is written: it must still be the file that was read before.
 void check_unchanged(const FrameSource& source) {
-  const FileInfo now = describe_file(source.path);
   const FileInfo& then = source.files.front();
+  ReadLimits limits;  // it may have been read with wider ones
+  std::size_t channels = 0;
+  for (const PartInfo& part : then.parts) {
+    limits.max_pixels = std::max(limits.max_pixels, part.data_window.area());
+    channels += part.channels.size();
+  }
+  limits.max_channels = std::max(limits.max_channels, channels);
+  const FileInfo now = describe_file(source.path, limits);
   bool same = now.bytes == then.bytes && now.parts.size() == then.parts.size();
   for (std::size_t p = 0; same && p < now.parts.size(); ++p) {
     const auto &a = now.parts[p].channels, &b = then.parts[p].channels;

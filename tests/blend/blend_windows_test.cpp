@@ -255,7 +255,7 @@ TEST(FitAndBlend, EndlessCoverageMakesEveryPixelACentre) {
 
 /// A flat guide gives all pixels of a window weight 1; the noise the fit is told of is too small to shrink anything by
 /// 1e-6.
-TEST(FitAndBlend, ReturnsAPolynomialOfItsDegree) {
+TEST(Case21, APolynomialOfItsDegreeIsReturned) {
   for (int degree = 0; degree <= 4; ++degree) {
     Pictures p = make_pictures(24, 20, 3);
     p.features = Image(24, 20, 0);

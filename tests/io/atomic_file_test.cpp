@@ -78,7 +78,7 @@ TEST(AtomicFile, VeryLongNames) {
   EXPECT_EQ(contents(target), "new");
 }
 
-TEST(AtomicFile, RemovesWhatAKilledRunLeftButNotWhatIsInUse) {
+TEST(Case12, WhatAKilledRunLeftIsRemovedButNotWhatIsInUse) {
   const TemporaryFolder folder;
   const std::string target = folder / "a.txt", dead = folder / ".a.txt.polyrecon-00000001",
                     used = folder / ".a.txt.polyrecon-00000002", young = folder / ".a.txt.polyrecon-00000003",
@@ -107,7 +107,7 @@ TEST(CheckWritable, TriesTheFolderAndLeavesNothing) {
     EXPECT_EQ(error_of([&] { check_writable(target); }).code(), ExitCode::CannotWrite) << target;
 }
 
-TEST(CheckWritable, AReadOnlyFolder) {
+TEST(Case11, AReadOnlyFolder) {
   if (::geteuid() == 0) GTEST_SKIP() << "root may write everywhere";
   const TemporaryFolder folder;
   fs::create_directory(folder / "locked");
@@ -135,7 +135,7 @@ class FullDisk {
   void (*handler_)(int);
 };
 
-TEST(AtomicFile, AFullDiskAtAnyByteLeavesTheOldFile) {
+TEST(Case11, AFullDiskAtAnyByteLeavesTheOldFile) {
   const TemporaryFolder folder;
   const std::string target = folder / "map.exr";
   const Rect window{0, 0, 40, 40};

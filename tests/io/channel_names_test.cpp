@@ -246,7 +246,7 @@ TEST(ChannelNames, LuxCore) {
   expect_role(layers, "SAMPLECOUNT", Role::SampleCount);
 }
 
-TEST(ChannelNames, StereoInOnePart) {
+TEST(Case09, StereoInOnePart) {
   PartInfo part = part_with(
       {"B", "G", "R", "Z", "albedo.left.B", "albedo.left.G", "albedo.left.R", "right.B", "right.G", "right.R"});
   part.views = {"left", "right"};
@@ -259,14 +259,14 @@ TEST(ChannelNames, StereoInOnePart) {
   EXPECT_EQ(named(layers, "albedo.left").view, "left");
 }
 
-TEST(ChannelNames, StereoInSeveralParts) {
+TEST(Case09, StereoInSeveralParts) {
   const auto layers = find_layers(file_with(
       {part_with(channels({"RGB"}), "beauty.left", "left"), part_with(channels({"RGB"}), "beauty.right", "right")}));
   expect_role(layers, "beauty.left:beauty", Role::Beauty);
   EXPECT_EQ(named(layers, "beauty.right:beauty").view, "right");
 }
 
-TEST(ChannelNames, DotsAndUtf8InViewLayers) {
+TEST(Case09, DotsAndUtf8InViewLayers) {
   const auto layers =
       find_layers(file_with({part_with(channels({"Außen.Tür.Combined.RGB", "Außen.Tür.Denoising Depth.Z"}))}));
   expect_role(layers, "Außen.Tür.Combined", Role::Beauty);

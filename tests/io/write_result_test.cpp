@@ -56,9 +56,9 @@ TestPart render() {
 }
 
 /// (compression, tile side): everything but the beauty stays as it is, bit for bit.
-class AnyFile : public ::testing::TestWithParam<std::tuple<Imf::Compression, int>> {};
+class Case07EveryCompression : public ::testing::TestWithParam<std::tuple<Imf::Compression, int>> {};
 
-TEST_P(AnyFile, KeepsAllThatWasNotReplaced) {
+TEST_P(Case07EveryCompression, KeepsAllThatWasNotReplaced) {
   const TemporaryFolder folder;
   TestPart part = render();
   part.compression = std::get<0>(GetParam());
@@ -93,7 +93,7 @@ TEST_P(AnyFile, KeepsAllThatWasNotReplaced) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Compressions, AnyFile,
+INSTANTIATE_TEST_SUITE_P(Compressions, Case07EveryCompression,
                          ::testing::Combine(::testing::Values(Imf::NO_COMPRESSION, Imf::RLE_COMPRESSION,
                                                               Imf::ZIPS_COMPRESSION, Imf::ZIP_COMPRESSION,
                                                               Imf::PIZ_COMPRESSION, Imf::PXR24_COMPRESSION,
@@ -173,7 +173,7 @@ TEST(WriteResult, TheNoisyChannelsOfALayerWithoutNameFindAName) {
   EXPECT_THAT(stored_floats(out, 0, "G"), Each(7.f));
 }
 
-TEST(WriteResult, HalfSamplesSaturate) {
+TEST(Case28, HalfSamplesSaturate) {
   const TemporaryFolder folder;
   TestPart part;
   part.channels = layer("", "RGB", 0, Imf::HALF);
@@ -230,7 +230,7 @@ struct DeepSamples {
   }
 };
 
-TEST(WriteResult, DeepPartsAreCopied) {
+TEST(Case06, DeepPartsAreCopied) {
   const TemporaryFolder folder;
   const std::string in = folder / "in.exr", out = folder / "out.exr";
   TestPart flat;
@@ -261,7 +261,7 @@ TEST(WriteResult, DeepPartsAreCopied) {
   EXPECT_EQ(samples.values[6 * 47 + 5], -1);
 }
 
-TEST(WriteResult, MipMappedPartsAreCopiedWithAllLevels) {
+TEST(Case06, MipMappedPartsAreCopiedWithAllLevels) {
   const TemporaryFolder folder;
   const std::string in = folder / "in.exr", out = folder / "out.exr";
   TestPart flat;
@@ -308,7 +308,7 @@ TEST(WriteResult, MipMappedPartsAreCopiedWithAllLevels) {
   }
 }
 
-TEST(WriteResult, ADamagedPartIsNotCopiedInSilence) {
+TEST(Case04, ADamagedPartIsNotCopiedInSilence) {
   const TemporaryFolder folder;
   std::vector<TestPart> parts(2);
   parts[0].channels = layer("beauty", "RGB");
@@ -343,7 +343,7 @@ TEST(WriteResult, AnInputThatChangedMeanwhileIsNoticed) {
   EXPECT_THAT(error.what(), HasSubstr("changed"));
 }
 
-TEST(WriteResult, OutputMayBeTheInput) {
+TEST(Case13, OutputMayBeTheInput) {
   const TemporaryFolder folder;
   const TestPart part = render();
   const std::string path = write_exr(folder / "in.exr", {part});
@@ -355,7 +355,7 @@ TEST(WriteResult, OutputMayBeTheInput) {
   EXPECT_EQ(folder.entries(), 2u);
 }
 
-TEST(WriteResult, ALinkToTheInputIsReplacedAndTheInputSurvives) {
+TEST(Case13, ALinkToTheInputIsReplacedAndTheInputSurvives) {
   const TemporaryFolder folder;
   const TestPart part = render();
   const std::string path = write_exr(folder / "in.exr", {part}), link = folder / "link.exr";
@@ -367,7 +367,7 @@ TEST(WriteResult, ALinkToTheInputIsReplacedAndTheInputSurvives) {
   EXPECT_EQ(read_channels(describe_file(link), 0, {"V.Combined.R"}).at(0, 0, 0), 7);
 }
 
-TEST(WriteResult, ThreeHundredChannels) {
+TEST(Case07, ThreeHundredChannels) {
   const TemporaryFolder folder;
   TestPart part;
   part.channels = layer("V.Combined", "RGB");
@@ -391,7 +391,7 @@ TEST(WriteResult, PlainImagesBecomeExr) {
   EXPECT_THAT(stored_floats(folder / "out.exr", 0, "B"), Each(5.f));
 }
 
-TEST(WriteMaps, KeepsWindowsNamesAndAttributes) {
+TEST(Case05, MapsKeepWindowsNamesAndAttributes) {
   const TemporaryFolder folder;
   const Rect window{-2, 1, 30, 50}, display{0, 0, 16, 16};
   Image samples(window.width(), window.height(), 1, 3);

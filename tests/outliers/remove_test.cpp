@@ -105,7 +105,7 @@ TEST(RemoveOutliers, SpikesOnBlackGo) {
   expect_balance(before, pair, outliers);
 }
 
-TEST(RemoveOutliers, SpikesThatAreTheLightStay) {
+TEST(Case26, SpikesThatAreTheLightStay) {
   // An interior lit by hidden lamps: one pixel in 20 of either half holds all the light.
   HalfPair pair = test::pair_of(Image(size, size, 3), 0, 1);
   test::Random random(9);

@@ -14,55 +14,14 @@ namespace {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
+using test::design_with_constant;
+using test::eps;
 using test::normal_matrix;
-using test::padded;
-using test::q_of;
+using test::orthonormality_error;
+using test::Problem;
 using test::Random;
 using test::random_weights;
 using test::stored;
-using test::window_of;
-
-constexpr double eps = std::numeric_limits<Real>::epsilon();
-
-/// A design with its weights and factorisation; every number as stored, so that a reference sees what the code sees.
-struct Problem {
-  MatrixXd x;
-  VectorXd w;
-  Window window;
-  std::vector<Real> weight;
-  NestedFactor factor;
-
-  Problem(const MatrixXd& design, const VectorXd& weights)
-      : x(stored(design)), w(stored(weights)), window(window_of(design)), weight(padded(weights, window)) {
-    factorise(window, static_cast<int>(x.cols()), weight.data(), factor);
-  }
-
-  MatrixXd q() const { return q_of(factor, window); }
-  VectorXd coefficients(const VectorXd& y) const {
-    const auto response = padded(y, window);
-    VectorXd z(factor.columns);
-    project(factor, window, weight.data(), response.data(), z.data());
-    return z;
-  }
-};
-
-MatrixXd design_with_constant(int rows, int columns, Random& random) {
-  MatrixXd x = normal_matrix(rows, columns, random);
-  x.col(0).setOnes();
-  return x;
-}
-
-/// How far S^-1 Q is from orthonormal under the weights, over the kept columns; dropped ones must be zero.
-double orthonormality_error(const Problem& p) {
-  const MatrixXd q = p.q(), gram = q.transpose() * p.w.asDiagonal() * q;
-  double worst = 0;
-  for (int a = 0; a < gram.rows(); ++a)
-    for (int b = 0; b < gram.cols(); ++b) {
-      const double expected = a == b && p.factor.kept[static_cast<std::size_t>(a)] ? 1 : 0;
-      worst = std::max(worst, std::abs(gram(a, b) - expected));
-    }
-  return worst;
-}
 
 TEST(Factorise, ColumnsAreOrthonormalUnderTheWeights) {
   Random random(1);
@@ -98,44 +57,6 @@ TEST(Factorise, ProjectionMatrixIsThatOfEquations5And6) {
   EXPECT_LT((h - expected).cwiseAbs().maxCoeff(), 100 * eps * expected.cwiseAbs().maxCoeff());
   EXPECT_NEAR(h.trace(), p.factor.rank, 49 * eps * 9);
   EXPECT_LT((h * h - h).cwiseAbs().maxCoeff(), 100 * eps * expected.cwiseAbs().maxCoeff());
-}
-
-TEST(Factorise, LeverageLiesBetweenZeroAndOneAndSumsToTheRank) {
-  Random random(4);
-  for (int round = 0; round < 50; ++round) {
-    // Down to fewer pixels of weight than columns, where every leverage is 0 or 1.
-    const int rows = 3 + random.below(60), columns = 1 + random.below(20);
-    const Problem p(design_with_constant(rows, columns, random), random_weights(rows, 0.4, random));
-    const MatrixXd q = p.q();
-    double sum = 0;
-    for (int j = 0; j < rows; ++j) {
-      const double leverage = p.w(j) * q.row(j).squaredNorm();
-      EXPECT_GE(leverage, 0);
-      EXPECT_LE(leverage, 1 + 1000 * eps) << rows << " x " << columns;
-      sum += leverage;
-    }
-    EXPECT_NEAR(sum, p.factor.rank, 1000 * eps * std::max(p.factor.rank, 1));
-    EXPECT_LE(p.factor.rank, (p.w.array() > 0).count());
-  }
-}
-
-TEST(Factorise, LeaveOneOutResidualIsTheResidualOverOneMinusLeverage) {
-  Random random(5);
-  const Problem p(design_with_constant(30, 6, random), random_weights(30, 0, random));
-  const VectorXd y = stored(normal_matrix(30, 1, random)), z = p.coefficients(y), s = p.w.cwiseSqrt();
-  const MatrixXd q = p.q();
-  const VectorXd fit = q * z;
-  for (int j = 0; j < 30; ++j) {
-    VectorXd without = s;
-    without(j) = 0;
-    const MatrixXd sx = without.asDiagonal() * p.x;
-    const VectorXd beta = sx.colPivHouseholderQr().solve(without.asDiagonal() * y);
-    const double expected = y(j) - p.x.row(j).dot(beta);
-    const double leverage = p.w(j) * q.row(j).squaredNorm();
-    EXPECT_NEAR((y(j) - fit(j)) / (1 - leverage), expected,
-                200 * eps * std::max(1.0, std::abs(expected)) / (1 - leverage))
-        << j;
-  }
 }
 
 TEST(Factorise, PixelsOfWeightZeroHaveNoSay) {
@@ -245,55 +166,6 @@ TEST(Factorise, NearlyDependentColumnsStayOrthogonal) {
     EXPECT_TRUE(p.factor.kept[4]) << part;
     EXPECT_LT(orthonormality_error(p), 1000 * eps) << part;
   }
-}
-
-/// rows x columns of the given rank with singular values in (0.1, 1), as LAPACK's xQRT15 makes them.
-MatrixXd matrix_of_rank(int rows, int columns, int rank, Random& random) {
-  const auto orthonormal = [&](int n) -> MatrixXd {
-    return normal_matrix(n, rank, random).householderQr().householderQ() * MatrixXd::Identity(n, rank);
-  };
-  const MatrixXd u = orthonormal(rows), v = orthonormal(columns);
-  VectorXd singular(rank);
-  for (int k = 0; k < rank; ++k) singular(k) = random.uniform(0.1, 1);
-  return u * singular.asDiagonal() * v.transpose();
-}
-
-/// The six kinds of matrices of LAPACK's least squares tests (xDRVLS): full rank and rank deficient, each unscaled,
-/// scaled near underflow and near overflow of the storage type. The ratios are LAPACK's (xQRT17 and xQRT01), to stay
-/// below 30.
-TEST(Factorise, LapackSixKindsOfMatricesHaveResidualRatiosBelow30) {
-  const std::uint64_t seed = 20160701;
-  RecordProperty("seed", std::to_string(seed));
-  Random random(seed);
-  int clear_ranks = 0;
-  const double small = static_cast<double>(std::numeric_limits<Real>::min()) / eps, scales[] = {1, small, 1 / small};
-  for (int instance = 0; instance < 500; ++instance) {
-    const double scale = scales[instance % 3];
-    const bool deficient = instance / 3 % 2 == 1;
-    const int rows = 20 + random.below(100), columns = 2 + random.below(18);
-    const int rank = deficient ? std::max(columns * 3 / 4, 1) : columns;
-    MatrixXd x = matrix_of_rank(rows, columns, rank, random);
-    x *= scale / x.cwiseAbs().maxCoeff();
-    const Problem p(x, random_weights(rows, 0.1, random));
-    SCOPED_TRACE("seed " + std::to_string(seed) + ", instance " + std::to_string(instance));
-    const VectorXd s = p.w.cwiseSqrt(), y = stored(normal_matrix(rows, 1, random)), z = p.coefficients(y);
-    const MatrixXd q = p.q(), sx = s.asDiagonal() * p.x, sq = s.asDiagonal() * q;
-    ASSERT_TRUE(q.allFinite());
-    const double n = rows;
-    // Rounding of the stored samples, amplified by the condition of the leading columns, has to stay clear of the 1e-4
-    // at which a column is dropped; else a dependent column may rightly be taken for one of its own.
-    const Eigen::JacobiSVD<MatrixXd> svd(sx.leftCols(rank) / scale);
-    if (svd.singularValues()(0) * eps < 0.1 * 1e-4 * svd.singularValues()(rank - 1)) {
-      ++clear_ranks;
-      EXPECT_EQ(p.factor.rank, rank);
-    }
-    EXPECT_LT(orthonormality_error(p) / (n * eps), 30);
-    EXPECT_LT((sx / scale - sq * (sq.transpose() * sx / scale)).norm() / (sx.norm() / scale * n * eps), 30);
-    const VectorXd residual = s.asDiagonal() * (y - q * z);
-    EXPECT_LT((residual.transpose() * sx / scale).norm() / (sx.norm() / scale * (s.asDiagonal() * y).norm() * n * eps),
-              30);
-  }
-  EXPECT_GT(clear_ranks, 400);
 }
 
 TEST(ProjectBeauty, IsProjectOfEachChannelAndTheVarianceOfItsCoefficients) {

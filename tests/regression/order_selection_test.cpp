@@ -280,7 +280,7 @@ TEST(SelectOrder, TakesTheLowestOrderWithinTheTolerance) {
 /// Mean over 1000 draws of the estimated error of each nested model against the true risk from an explicit H. The
 /// mean of the estimates is normal to good approximation; 4 standard errors are exceeded by chance once in 16000, 12
 /// comparisons.
-TEST(ErrorEstimate, IsUnbiasedOver1000Draws) {
+TEST(Case25, EstimatedErrorIsUnbiasedOver1000Draws) {
   Setting s(70);
   Random random(71);
   const int draws = 1000, models = s.layout.models();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <limits>
 
 #include "regression/least_squares.h"
 #include "regression/window.h"
@@ -62,6 +63,48 @@ inline Eigen::MatrixXd projection_matrix(const Eigen::MatrixXd& x, const Eigen::
   const Eigen::VectorXd s = w.cwiseSqrt();
   const Eigen::MatrixXd sx = s.asDiagonal() * x;
   return x * sx.completeOrthogonalDecomposition().pseudoInverse() * s.asDiagonal();
+}
+
+inline constexpr double eps = std::numeric_limits<Real>::epsilon();
+
+/// A design with its weights and factorisation; every number as stored, so that a reference sees what the code sees.
+struct Problem {
+  Eigen::MatrixXd x;
+  Eigen::VectorXd w;
+  Window window;
+  std::vector<Real> weight;
+  NestedFactor factor;
+
+  Problem(const Eigen::MatrixXd& design, const Eigen::VectorXd& weights)
+      : x(stored(design)), w(stored(weights)), window(window_of(design)), weight(padded(weights, window)) {
+    factorise(window, static_cast<int>(x.cols()), weight.data(), factor);
+  }
+
+  Eigen::MatrixXd q() const { return q_of(factor, window); }
+  Eigen::VectorXd coefficients(const Eigen::VectorXd& y) const {
+    const auto response = padded(y, window);
+    Eigen::VectorXd z(factor.columns);
+    project(factor, window, weight.data(), response.data(), z.data());
+    return z;
+  }
+};
+
+inline Eigen::MatrixXd design_with_constant(int rows, int columns, Random& random) {
+  Eigen::MatrixXd x = normal_matrix(rows, columns, random);
+  x.col(0).setOnes();
+  return x;
+}
+
+/// How far S^-1 Q is from orthonormal under the weights, over the kept columns; dropped ones must be zero.
+inline double orthonormality_error(const Problem& p) {
+  const Eigen::MatrixXd q = p.q(), gram = q.transpose() * p.w.asDiagonal() * q;
+  double worst = 0;
+  for (int a = 0; a < gram.rows(); ++a)
+    for (int b = 0; b < gram.cols(); ++b) {
+      const double expected = a == b && p.factor.kept[static_cast<std::size_t>(a)] ? 1 : 0;
+      worst = std::max(worst, std::abs(gram(a, b) - expected));
+    }
+  return worst;
 }
 
 }  // namespace polyrecon::test

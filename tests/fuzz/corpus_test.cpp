@@ -1,0 +1,24 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <vector>
+
+#include "fuzz/read_stranger.h"
+#include "io/exr_fixture.h"
+
+namespace polyrecon::fuzz {
+namespace {
+
+/// What the fuzzer began with and what it once stumbled over stays harmless.
+TEST(FuzzCorpus, EveryFileIsReadOrRefused) {
+  const testing::TemporaryFolder folder;
+  std::vector<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::directory_iterator(POLYRECON_FUZZ_CORPUS)) files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  ASSERT_GT(files.size(), 30u);
+  for (const auto& file : files) EXPECT_NO_THROW(read_stranger(file.string(), folder / "")) << file;
+}
+
+}  // namespace
+}  // namespace polyrecon::fuzz

@@ -1,0 +1,31 @@
+#!/usr/bin/env bash
+# Fuzzes the EXR reader under AddressSanitizer and UndefinedBehaviorSanitizer until both SECONDS (7200) and FILES (100000)
+# are reached; a hang of 10 s and memory over 2 GB count as failures. Findings lie in build/fuzz/findings, the corpus grows
+# in build/fuzz/corpus. Needs clang-16 (Debian: clang-16 has libFuzzer with it).
+#   tests/fuzz/run.sh [SECONDS [FILES]]
+# A build of OpenEXR with the same flags, given by CMAKE_PREFIX_PATH (and LD_LIBRARY_PATH), lets the fuzzer see into the
+# library too; docs/reliability.md says how it was made.
+set -euo pipefail
+cd "$(dirname "$0")/../.."
+seconds=${1:-7200} files=${2:-100000}
+
+cmake --preset fuzz
+cmake --build --preset fuzz
+build=build/fuzz/tests/fuzz
+mkdir -p build/fuzz/corpus build/fuzz/findings
+"$build/make_seeds" samples build/fuzz/seeds
+
+# allocator_may_return_null: an allocation beyond all reason is std::bad_alloc, as it is for a user.
+export ASAN_OPTIONS=allocator_may_return_null=1:detect_leaks=1 UBSAN_OPTIONS=print_stacktrace=1
+fuzz() {
+  "$build/exr_fuzzer" -dict=tests/fuzz/exr.dict -timeout=10 -rss_limit_mb=2048 -max_len=16384 -print_final_stats=1 \
+    -artifact_prefix=build/fuzz/findings/ "$@" build/fuzz/corpus build/fuzz/seeds tests/fuzz/corpus 2>&1 |
+    tee -a build/fuzz/log
+}
+: >build/fuzz/log
+fuzz -max_total_time="$seconds"
+done_files=$(awk '/stat::number_of_executed_units/ { n += $2 } END { print n + 0 }' build/fuzz/log)
+[ "$done_files" -ge "$files" ] || fuzz -runs=$((files - done_files))
+awk '/stat::number_of_executed_units/ { n += $2 } END { print n " files, findings:" }' build/fuzz/log
+ls build/fuzz/findings
+[ -z "$(ls build/fuzz/findings)" ]

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cmath>
+
+#include "pipeline/reconstruct.h"
+#include "support/images.h"
+
+namespace polyrecon::test {
+
+/// Two stages and two levels with small windows: every part of the pipeline runs, in little time.
+inline Params quick() {
+  Params params;
+  params.stages = 2;
+  params.levels = 2;
+  params.radius = 5;
+  params.stride = 2;
+  return params;
+}
+
+inline Result run(const Frame& frame, const Params& params = quick()) {
+  Progress silent;
+  Frame taken = frame;
+  return reconstruct(taken, params, silent);
+}
+
+inline bool finite(const Result& result) {
+  bool all = all_finite(result.beauty) && all_finite(result.order) && all_finite(result.error.mse) &&
+             all_finite(result.error.relative_mse) && all_finite(result.error.relative_variance) &&
+             std::isfinite(result.error.cross_validated);
+  for (const Image& aov : result.aovs) all &= all_finite(aov);
+  return all;
+}
+
+}  // namespace polyrecon::test
