@@ -13,9 +13,12 @@
 namespace polyrecon {
 namespace {
 
-constexpr int tile_size = 2 * block_size;
+constexpr int tile_size = block_size;    // worked by one thread: blocks are
 constexpr double pilot_share = 1.0 / 8;  // of the frame's pixels
-constexpr int tiles_per_thread = 2;      // more say little more
+constexpr std::size_t least_tiles = 4;   // of a small frame; fewer say nothing of the rest
+constexpr int tiles_per_thread = 8;      // more say little more
+// "draft, stages 2": the error that a single stage expects of itself is three times too high.
+constexpr std::size_t pilot_step = 2;
 constexpr double relative_floor = 0.01;  // of relMSE, radiance squared
 constexpr int phases = 4;                // of the blocks that are worked at once (blend/blend_windows.h)
 
@@ -60,10 +63,11 @@ double noise_of(const Frame& frame, const Rect& r) {
 /// count of the tiles, at even ranks of their noise.
 std::vector<Rect> choose_tiles(const Frame& frame, std::size_t count) {
   std::vector<Rect> tiles = aligned_blocks({0, 0, frame.width(), frame.height()}, tile_size);
+  std::size_t largest = 0;
+  for (const Rect& tile : tiles) largest = std::max(largest, tile.area());
   std::vector<std::pair<double, std::size_t>> ranked;
   for (std::size_t i = 0; i < tiles.size(); ++i)
-    if (static_cast<int>(tiles[i].area()) * 2 >= tile_size * tile_size || tiles.size() <= 2)  // no slivers
-      ranked.emplace_back(noise_of(frame, tiles[i]), i);
+    if (2 * tiles[i].area() >= largest) ranked.emplace_back(noise_of(frame, tiles[i]), i);  // no slivers
   std::sort(ranked.begin(), ranked.end());
   count = std::min(count, ranked.size());
   std::vector<Rect> chosen;
@@ -72,16 +76,9 @@ std::vector<Rect> choose_tiles(const Frame& frame, std::size_t count) {
   return chosen;
 }
 
-PlannedStep predict(const Pilot& pilot, std::size_t step, const std::array<StepFigures, step_count>& figures,
-                    std::size_t draft) {
-  return {ladder()[step].name, pilot.seconds * figures[step].seconds / figures[draft].seconds,
-          pilot.relative_mse * figures[step].error / figures[draft].error};
-}
-
-std::size_t draft_index() {
-  const auto steps = ladder();
-  return static_cast<std::size_t>(
-      std::find_if(steps.begin(), steps.end(), [](const Step& s) { return s.name == "draft"; }) - steps.begin());
+PlannedStep predict(const Pilot& pilot, std::size_t step, const std::array<StepFigures, step_count>& figures) {
+  return {ladder()[step].name, pilot.seconds * figures[step].seconds / figures[pilot_step].seconds,
+          pilot.relative_mse * figures[step].error / figures[pilot_step].error};
 }
 
 }  // namespace
@@ -90,8 +87,8 @@ Pilot run_pilot(const Frame& frame, Progress& progress) {
   const auto pixels = static_cast<double>(frame.width()) * frame.height();
   const int threads = processors();
   const auto wanted = static_cast<std::size_t>(pilot_share * pixels / (tile_size * tile_size));
-  const std::vector<Rect> tiles =
-      choose_tiles(frame, std::clamp<std::size_t>(wanted, 1, static_cast<std::size_t>(tiles_per_thread * threads)));
+  const std::vector<Rect> tiles = choose_tiles(
+      frame, std::clamp<std::size_t>(wanted, least_tiles, static_cast<std::size_t>(tiles_per_thread * threads)));
   std::vector<double> error(tiles.size()), area(tiles.size());
   const auto start = std::chrono::steady_clock::now();
   progress.begin("pilot", tiles.size());
@@ -99,7 +96,7 @@ Pilot run_pilot(const Frame& frame, Progress& progress) {
     Progress silent;
     Frame part = crop(frame, tiles[i]);
     area[i] = static_cast<double>(tiles[i].area());
-    error[i] = area[i] * reconstruct(part, params_for(Quality::Draft), silent).report.estimated_relative_mse;
+    error[i] = area[i] * reconstruct(part, ladder()[pilot_step].params, silent).report.estimated_relative_mse;
   });
   progress.end();
   Pilot pilot;
@@ -115,7 +112,7 @@ Pilot run_pilot(const Frame& frame, Progress& progress) {
 }
 
 double standard_seconds(const Pilot& pilot, const std::array<StepFigures, step_count>& figures) {
-  return pilot.seconds / figures[draft_index()].seconds;  // the figures are over those of standard
+  return pilot.seconds / figures[pilot_step].seconds;  // the figures are over those of standard
 }
 
 Plan make_plan(const Pilot& pilot, const PlanRequest& request, const std::array<StepFigures, step_count>& figures) {
@@ -124,7 +121,7 @@ Plan make_plan(const Pilot& pilot, const PlanRequest& request, const std::array<
   std::vector<PlannedStep> steps;
   std::vector<std::size_t> index = pareto_front(points);
   assert(!index.empty());
-  for (const std::size_t i : index) steps.push_back(predict(pilot, i, figures, draft_index()));
+  for (const std::size_t i : index) steps.push_back(predict(pilot, i, figures));
   const auto in_time = [&](const PlannedStep& s) { return !(request.seconds > 0) || s.seconds <= request.seconds; };
   const auto good = [&](const PlannedStep& s) {
     return request.relative_mse > 0 && s.relative_mse <= request.relative_mse;

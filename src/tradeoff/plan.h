@@ -19,16 +19,17 @@ struct StepFigures {
 /// As measured on the samples; made by tests/bench/accuracy.py.
 const std::array<StepFigures, step_count>& measured_steps();
 
-/// What draft did on some tiles of a frame: the machine's speed and the frame's noise.
+/// What draft in two stages did on some tiles of a frame: the machine's speed and the frame's noise.
 struct Pilot {
-  double seconds = 0;       ///< That draft is predicted to take on the whole frame.
-  double relative_mse = 0;  ///< That draft's error map expects.
+  double seconds = 0;       ///< That it is predicted to take on the whole frame.
+  double relative_mse = 0;  ///< That its error map expects.
   double share = 0;         ///< Of the frame's pixels that were tried.
   double spent = 0;         ///< Seconds that the pilot itself took.
 };
 
-/// Reconstructs about an eighth of the frame by draft: tiles of 128 x 128 pixels at even ranks of their noise, so that
-/// quiet and noisy ones are there in their proportion. All threads work, on different tiles. Throws as reconstruct.
+/// Reconstructs about an eighth of the frame (at least four tiles) by draft in two stages: tiles of 64 x 64 pixels at
+/// even ranks of their noise, so that quiet and noisy ones are there in their proportion. All threads work, on
+/// different tiles. Throws as reconstruct.
 Pilot run_pilot(const Frame& frame, Progress& progress);
 
 /// Seconds that Quality::Standard is predicted to take on the whole frame.
