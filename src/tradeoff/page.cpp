@@ -177,7 +177,7 @@ std::string stages_section(const SweptInput& input) {
 
 /// The fastest and the most accurate point of the front, and some between.
 std::vector<std::size_t> pictured(const SweptInput& input) {
-  const std::vector<std::size_t> front = front_of(input);
+  std::vector<std::size_t> front = front_of(input);
   if (front.size() <= pictured_points) return front;
   std::vector<std::size_t> some;
   for (std::size_t k = 0; k < pictured_points; ++k)

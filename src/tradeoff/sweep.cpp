@@ -69,7 +69,7 @@ std::string csv_of(const Sweep& sweep) {
   const std::string no_stages(stages.size(), ',');
   for (const SweptInput& input : sweep.inputs) {
     const std::string head = quoted(input.name) + "," + (input.samples > 0 ? number(input.samples) : "") + ",";
-    csv += head + "input,noisy,,," + score_fields(input.noisy) + "," + no_stages + "\n";
+    csv += fmt::format("{}input,noisy,,,{},{}\n", head, score_fields(input.noisy), no_stages);
     for (const Trial& trial : input.trials) {
       csv += head + fmt::format("{},{},{},{},{},{}", trial.group, quoted(trial.name), trial.runs, number(trial.seconds),
                                 score_fields(trial.score), number(trial.estimated_relative_mse));

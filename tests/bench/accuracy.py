@@ -134,7 +134,9 @@ def write_figures(path, found):
         lines.append(f"      {{{figures[0]:.3g}, {figures[1]:.4g}}},  // {step}")
     source = path.read_text(encoding="utf-8")
     before, rest = source.split("figures{{\n")
+    # clang-format aligns the comments.
     path.write_text(before + "figures{{\n" + "\n".join(lines) + "\n  }};" + rest.split("  }};")[1], encoding="utf-8")
+    subprocess.run(["clang-format", "-i", str(path)], check=True)
 
 
 def main():
