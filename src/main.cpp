@@ -47,6 +47,7 @@ Command parse(int argc, char** argv) {
   polyrecon::setup_samplemap(app, chosen);
   polyrecon::setup_preview(app, chosen);
   polyrecon::setup_compare(app, chosen);
+  polyrecon::setup_sweep(app, chosen);
   const auto known = app.get_subcommands([&](const CLI::App* sub) { return argc > 1 && sub->get_name() == argv[1]; });
   if (argc > 1 && argv[1][0] != '-' && known.empty())
     throw polyrecon::Error(ExitCode::Usage, fmt::format("no command '{}' (polyrecon --help lists them)", argv[1]));

@@ -35,6 +35,7 @@ def arguments():
     parser.add_argument("--codec", default="ZIP")
     parser.add_argument("--denoise", action="store_true", help="also store Blender's own denoised picture (Blender 5)")
     parser.add_argument("--single-part", action="store_true", help="one part for all passes (Blender 5)")
+    parser.add_argument("--middle", action="store_true", help="only the middle half of the width and of the height")
     parser.add_argument("--save-blend", help="write the scene here as a .blend file too")
     return parser.parse_args(words)
 
@@ -83,6 +84,10 @@ def main():
     scene = importlib.import_module(options.scene).build()
     scene.render.resolution_x, scene.render.resolution_y = (int(n) for n in options.size.split("x"))
     scene.render.resolution_percentage = 100
+    if options.middle:
+        scene.render.use_border = scene.render.use_crop_to_border = True
+        scene.render.border_min_x = scene.render.border_min_y = 0.25
+        scene.render.border_max_x = scene.render.border_max_y = 0.75
     scene.render.use_freestyle = False
     scene.render.use_persistent_data = True
     scene.render.film_transparent = False

@@ -170,7 +170,8 @@ void fit_window(Blending& b, Scratch& s, Real bandwidth, BlendSums& sums) {
   const double weight_sum = kernel_weights(s.window, bandwidth, s.weight.data());
   factorise(s.window, layout.columns(), s.weight.data(), s.factor);
   const auto statistics = column_statistics(s, first_stage);
-  OrderChoice choice = select_order(statistics, layout, weight_sum, first_stage, b.params.order_tolerance);
+  OrderChoice choice =
+      select_order(statistics, layout, weight_sum, first_stage, b.params.order_tolerance, b.params.shrinkage);
   evaluate(s, choice, layout.columns(choice.model), b.responses(), statistics);
   ++b.counters.windows;
   if (s.factor.rank < layout.columns()) ++b.counters.rank_deficient;
@@ -228,8 +229,8 @@ void sweep(Blending& b, Progress& progress, const IsCenter& is_center) {
   }
 }
 
-BlendedFit normalise(BlendPlane& plane, const Image& response, const std::vector<unsigned char>& active,
-                     FitCounters& counters) {
+BlendedFit normalise(BlendPlane& plane, const Image& response, const Image& noise_variance,
+                     const std::vector<unsigned char>& active, FitCounters& counters) {
   const int width = response.width(), height = response.height(), channels = response.channels();
   BlendedFit out{Image(width, height, channels), Image(width, height, 3), Image(width, height, 3),
                  Image(width, height, 1)};
@@ -242,7 +243,9 @@ BlendedFit normalise(BlendPlane& plane, const Image& response, const std::vector
       const Real weight = sums[plane.channels - 1];
       const bool covered = weight > std::numeric_limits<Real>::min();
       for (int c = 0; c < channels; ++c) out.value.at(x, y, c) = covered ? sums[c] / weight : response.at(x, y, c);
-      if (!covered) {
+      if (!covered) {  // the response itself, in which each of the two halves' mean has half the noise of one
+        for (int c = 0; c < 3; ++c)
+          out.error.at(x, y, c) = out.variance.at(x, y, c) = Real(0.5) * noise_variance.at(x, y, c);
         uncovered += active[response.index(x, y)];
         continue;
       }
@@ -319,7 +322,8 @@ std::vector<BlendedFit> fit_and_blend(const FitSource& source, const std::vector
     sweep(b, progress, [&](int x, int y) { return is_center[source.response->index(x, y)] != 0; });
   }
   std::vector<BlendedFit> out;
-  for (BlendPlane& plane : b.planes) out.push_back(normalise(plane, *source.response, active, counters));
+  for (BlendPlane& plane : b.planes)
+    out.push_back(normalise(plane, *source.response, *source.noise_variance, active, counters));
   return out;
 }
 

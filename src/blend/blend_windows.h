@@ -19,6 +19,7 @@ struct FitParams {
   int max_order = 2;             ///< Highest Taylor order offered, 0..4.
   double order_tolerance = 0;    ///< See select_order.
   double coverage = 1;           ///< Where the kernel weights sum to less, centres of finer lattices are added.
+  bool shrinkage = true;         ///< See select_order.
 };
 
 /// Everything one blended image is made from; all images of one size.

@@ -15,5 +15,6 @@ void setup_merge(CLI::App& app, Command& chosen);
 void setup_samplemap(CLI::App& app, Command& chosen);
 void setup_preview(CLI::App& app, Command& chosen);
 void setup_compare(CLI::App& app, Command& chosen);
+void setup_sweep(CLI::App& app, Command& chosen);
 
 }  // namespace polyrecon

@@ -25,7 +25,9 @@ namespace {
 void check(const DenoiseOptions& o, const std::vector<FrameFiles>& frames) {
   validate(params_of(o));
   if (o.sample_map.empty() && o.sampling_given)
-    throw Error(ExitCode::Usage, "--budget, --target, --export and the like need --sample-map");
+    throw Error(ExitCode::Usage, "--budget, --export and the like need --sample-map");
+  if (wants_plan(o) && o.time_budget <= 0 && o.settings_given)
+    throw Error(ExitCode::Usage, "--target chooses the settings: leave --quality, --stages and --order away");
   if (!o.sample_map.empty()) check_sample_map_options(o.sampling);
   std::vector<std::string> outputs;
   for (const FrameFiles& files : frames) {
@@ -82,11 +84,14 @@ void setup_denoise(CLI::App& app, Command& chosen) {
       "  polyrecon denoise -i render.exr -o clean.exr\n"
       "  polyrecon denoise -i render.exr -o clean.exr --error-map error.exr --report report.json\n"
       "  polyrecon denoise -i render.exr -o clean.exr --sample-map samples.exr --budget 32\n"
+      "  polyrecon denoise -i render.exr -o clean.exr --time-budget 10\n"
+      "  polyrecon denoise -i render.exr -o clean.exr --target 0.002\n"
       "  polyrecon denoise -i render.exr -o clean.exr --aov 'Diffuse Direct' --aov 'Glossy Direct' --quality best\n"
       "  polyrecon denoise -i shot.####.exr -o clean/shot.####.exr --frames 1-10,20-40x2 --skip-existing\n"
       "  polyrecon denoise -i render.exr -o clean.exr --map albedo=ViewLayer.MyAlbedo --progress json");
   sub->callback([sub, o, &chosen] {
     o->sampling_given = any_sample_map_option(*sub);
+    o->settings_given = sub->count("--quality") + sub->count("--stages") + sub->count("--order") > 0;
     chosen = [o] { run(*o); };
   });
 }

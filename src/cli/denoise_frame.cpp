@@ -4,8 +4,6 @@
 
 #include <chrono>
 #include <cstdio>
-#include <fstream>
-#include <iterator>
 #include <vector>
 
 #include "cli/finished.h"
@@ -80,16 +78,6 @@ std::vector<std::string> write_all(const FrameFiles& files, const DenoiseOptions
   return notes;
 }
 
-void write_text(const std::string& target, const std::string& text) {
-  const auto write = [&](const std::string& path) { std::ofstream(path, std::ios::binary) << text; };
-  const auto verify = [&](const std::string& path) {
-    std::ifstream file(path, std::ios::binary);
-    if (std::string(std::istreambuf_iterator<char>(file), {}) != text)
-      throw Error(ExitCode::CannotWrite, target + ": cannot be read back, is the disk full?");
-  };
-  write_atomically(target, write, verify);
-}
-
 void print(bool quiet, const std::string& text) {
   if (quiet) return;
   std::fputs(text.c_str(), stdout);
@@ -115,9 +103,11 @@ void denoise_frame(const FrameFiles& files, LoadedFrame loaded, const DenoiseOpt
   const auto start = Clock::now();
   ReadResult& in = loaded.in;
   print(o.quiet, input_text(in));
-  const Result result = reconstruct(in.frame, params_of(o), progress);
-
   RunReport report;
+  if (wants_plan(o)) report.plan = plan_frame(o, in.frame, loaded.read_seconds, progress);
+  const Params params = report.plan ? report.plan->params : params_of(o);
+  const Result result = reconstruct(in.frame, params, progress);
+
   report.notes = in.notes;
   const auto written = Clock::now();
   const std::vector<std::string> notes = write_all(files, o, in, result, progress);
@@ -132,7 +122,7 @@ void denoise_frame(const FrameFiles& files, LoadedFrame loaded, const DenoiseOpt
   report.peak_memory = peak_memory();
   report.reconstruction = result.report;
   report.calibration = result.error.calibration;
-  if (!files.report.empty()) write_text(files.report, report_json(report, in.source).dump(2) + "\n");
+  if (!files.report.empty()) write_text_file(files.report, report_json(report, in.source).dump(2) + "\n");
   print(o.quiet, report_text(report));
 }
 

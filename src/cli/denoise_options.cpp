@@ -5,6 +5,7 @@
 #include <map>
 
 #include "cli/choice.h"
+#include "cli/effects_option.h"
 #include "cli/read_limits.h"
 
 namespace polyrecon {
@@ -68,11 +69,22 @@ void add_input_options(CLI::App& app, DenoiseOptions& o) {
 
 void add_method_options(CLI::App& app, DenoiseOptions& o) {
   const std::string group = "Reconstruction";
-  add_choice(app, "--quality", o.quality, qualities, "draft, standard or best")->group(group);
-  app.add_option("--stages", o.stages, "Rounds of error estimation, 1 to 4, in place of what the quality takes")
+  CLI::Option* quality = add_choice(app, "--quality", o.quality, qualities, "draft, standard or best")->group(group);
+  CLI::Option* stages =
+      app.add_option("--stages", o.stages, "Rounds of error estimation, 1 to 4, in place of what the quality takes")
+          ->group(group);
+  CLI::Option* order =
+      app.add_option("--order", o.order, "Highest polynomial order, 0 to 4, in place of what the quality takes")
+          ->group(group);
+  app.add_option("--time-budget", o.time_budget,
+                 "Seconds that a frame may take with its files: the most accurate settings that are predicted to fit")
+      ->check(CLI::PositiveNumber)
+      ->type_name("SECONDS")
+      ->excludes(quality)
+      ->excludes(stages)
+      ->excludes(order)
       ->group(group);
-  app.add_option("--order", o.order, "Highest polynomial order, 0 to 4, in place of what the quality takes")
-      ->group(group);
+  add_effects_option(app, o.effects)->group(group);
   app.add_flag("--alpha", o.alpha, "Denoise alpha too, in place of keeping it")->group(group);
   app.add_flag("--keep-noisy", o.keep_noisy, "Keep what is replaced, under '<layer> Noisy'")->group(group);
 }
@@ -117,8 +129,17 @@ Params params_of(const DenoiseOptions& o) {
   Params params = params_for(o.quality);
   if (o.stages) params.stages = *o.stages;
   if (o.order) params.max_order = *o.order;
+  return with_options(params, o);
+}
+
+bool wants_plan(const DenoiseOptions& o) {
+  return o.time_budget > 0 || (o.sampling.params.target > 0 && o.sample_map.empty());
+}
+
+Params with_options(Params params, const DenoiseOptions& o) {
   if (o.max_memory) params.max_memory = *o.max_memory;
   params.reconstruct_alpha = o.alpha;
+  apply_effects(o.effects, params);
   return params;
 }
 
@@ -127,6 +148,9 @@ std::string settings_text(const DenoiseOptions& o) {
   std::string text = fmt::format("--quality {} --stages {} --order {} --variance-kind {}", key_of(qualities, o.quality),
                                  params.stages, params.max_order, key_of(variance_kinds, o.read.variance_kind));
   if (params.reconstruct_alpha) text += " --alpha";
+  if (!o.effects.empty()) text += " --effects " + o.effects;
+  if (o.time_budget > 0) text += fmt::format(" --time-budget {:g}", o.time_budget);
+  if (wants_plan(o) && o.sampling.params.target > 0) text += fmt::format(" --target {:g}", o.sampling.params.target);
   if (!o.read.view_layer.empty()) text += " --view-layer '" + o.read.view_layer + "'";
   for (const std::string& aov : o.read.aovs) text += " --aov '" + aov + "'";
   for (const std::string& role : o.roles) text += " --map '" + role + "'";

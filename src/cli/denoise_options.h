@@ -24,8 +24,10 @@ struct DenoiseOptions {
   std::optional<int> stages, order;  ///< In place of what the quality says.
   std::optional<std::size_t> max_memory;
   bool alpha = false;
+  std::string effects;     ///< "auto", "all" or a list.
+  double time_budget = 0;  ///< Seconds for a whole frame; 0: no limit.
   SampleMapOptions sampling;
-  bool sampling_given = false;
+  bool sampling_given = false, settings_given = false;
   bool keep_noisy = false, quiet = false;
   bool strict = false, skip_existing = false, dry_run = false;
   double wait = 0;  ///< Seconds that an input may stay unreadable without change.
@@ -38,6 +40,12 @@ void add_denoise_options(CLI::App& app, DenoiseOptions& options);
 
 /// The reconstruction's parameters that the options ask for.
 Params params_of(const DenoiseOptions& options);
+
+/// Whether the settings are to be chosen for the frame: by --time-budget, or by --target without a sample map.
+bool wants_plan(const DenoiseOptions& options);
+
+/// params with everything that the options ask for beside the choice of quality, stages and order.
+Params with_options(Params params, const DenoiseOptions& options);
 
 /// What the result depends on, in the words of the command line; goes into the file and the report.
 std::string settings_text(const DenoiseOptions& options);

@@ -13,6 +13,8 @@
 #include "cli/read_limits.h"
 #include "cli/report_output.h"
 #include "features/prepare.h"
+#include "pipeline/savings.h"
+#include "tradeoff/plan.h"
 
 namespace polyrecon {
 namespace {
@@ -70,16 +72,21 @@ const LayerStatistics* statistics_of(const Inspection& found, const std::string&
   return at == found.statistics.end() ? nullptr : &*at;
 }
 
-/// Which effects denoise would run; none to tell of a file without a beauty. Outliers show only in the work itself.
+/// Which effects denoise would run, and what the others would take at standard quality, by a pilot on some tiles; none
+/// to tell of a file without a beauty. Outliers show only in the work itself.
 std::vector<Decision> effects_of(const InspectOptions& o, const Inspection& found) {
   const auto& chosen = found.source.chosen;
   if (std::none_of(chosen.begin(), chosen.end(), [](const RoleChoice& c) { return c.role == Role::Beauty; })) return {};
-  return look_at(read_frame(o.input, o.read).frame).decisions;
+  const Frame frame = read_frame(o.input, o.read).frame;
+  std::vector<Decision> decisions = look_at(frame).decisions;
+  Progress silent;
+  const double seconds = standard_seconds(run_pilot(frame, silent), measured_steps());
+  estimate_savings(frame, params_for(Quality::Standard).cleaning, 0, seconds, decisions);
+  return decisions;
 }
 
 Json json_of(const Inspection& found, const std::vector<Decision>& decisions) {
-  Json files = Json::array(), layers = Json::array(), effects = Json::array();
-  for (const Decision& d : decisions) effects.push_back({{"effect", d.effect}, {"run", d.run}, {"reason", d.reason}});
+  Json files = Json::array(), layers = Json::array();
   for (const FileInfo& file : found.source.files) {
     Json parts = Json::array();
     for (const PartInfo& part : file.parts) parts.push_back(json_of(part));
@@ -93,7 +100,7 @@ Json json_of(const Inspection& found, const std::vector<Decision>& decisions) {
           {"missing", found.missing},
           {"samples", found.samples > 0 ? Json(found.samples) : Json()},
           {"noise_level", found.noise_level >= 0 ? Json(found.noise_level) : Json()},
-          {"effects", effects},
+          {"effects", decisions_json(decisions)},
           {"notes", found.notes}};
 }
 
@@ -131,8 +138,7 @@ std::string text_of(const Inspection& found, const std::vector<Decision>& decisi
   if (found.samples > 0) text += fmt::format("samples per pixel: {:g}\n", found.samples);
   if (found.noise_level >= 0)
     text += fmt::format("noise level (variance / (mean^2 + 0.01)): {:.4g}\n", found.noise_level);
-  for (const Decision& d : decisions)
-    text += fmt::format("effect: {}: {}, {}\n", d.effect, d.run ? "yes" : "no", d.reason);
+  for (const Decision& d : decisions) text += fmt::format("effect: {}: {}\n", d.effect, decision_text(d));
   for (const std::string& note : found.notes) text += fmt::format("note: {}\n", note);
   return text;
 }

@@ -88,6 +88,19 @@ Json roles_json(const FrameSource& source) {
   return roles;
 }
 
+std::string decision_text(const Decision& decision) {
+  std::string text = fmt::format("{}: {}", decision.run ? "yes" : "no", decision.reason);
+  if (decision.saved_seconds > 0) text += fmt::format(", saves about {:.2g} s", decision.saved_seconds);
+  return text;
+}
+
+Json decisions_json(const std::vector<Decision>& decisions) {
+  Json list = Json::array();
+  for (const Decision& d : decisions)
+    list.push_back({{"effect", d.effect}, {"run", d.run}, {"reason", d.reason}, {"saved_seconds", d.saved_seconds}});
+  return list;
+}
+
 std::string report_text(const RunReport& run) {
   const Report& r = run.reconstruction;
   std::string text = fmt::format("{} -> {}, {} x {}\n", run.input, run.output, r.width, r.height);
@@ -98,7 +111,8 @@ std::string report_text(const RunReport& run) {
       line("all", fmt::format("{:.2f} s, {:.0f} pixels/s in the reconstruction", run.seconds, pixels_per_second(r)));
   text += line("peak memory", fmt::format("{:.0f} MB", static_cast<double>(run.peak_memory) / 1e6));
   text += line("variance", r.variance_source);
-  for (const Decision& d : r.decisions) text += line(d.effect, fmt::format("{}: {}", d.run ? "yes" : "no", d.reason));
+  for (const Decision& d : r.decisions) text += line(d.effect, decision_text(d));
+  if (run.plan) text += line("settings chosen", plan_text(*run.plan, reconstruction_seconds(r)));
   text += line("windows", windows_text(r));
   text +=
       line("fallbacks",
@@ -118,10 +132,8 @@ std::string report_text(const RunReport& run) {
 
 Json report_json(const RunReport& run, const FrameSource& source) {
   const Report& r = run.reconstruction;
-  Json stages = Json::array(), decisions = Json::array();
+  Json stages = Json::array();
   for (const StageTime& stage : r.stages) stages.push_back({{"stage", stage.stage}, {"seconds", stage.seconds}});
-  for (const Decision& d : r.decisions)
-    decisions.push_back({{"effect", d.effect}, {"run", d.run}, {"reason", d.reason}});
   return {{"polyrecon", run.version},
           {"input", run.input},
           {"output", run.output},
@@ -129,8 +141,9 @@ Json report_json(const RunReport& run, const FrameSource& source) {
           {"width", r.width},
           {"height", r.height},
           {"roles", roles_json(source)},
+          {"plan", run.plan ? plan_json(*run.plan, reconstruction_seconds(r)) : Json()},
           {"variance_source", r.variance_source},
-          {"decisions", decisions},
+          {"decisions", decisions_json(r.decisions)},
           {"stages", stages},
           {"seconds",
            {{"read", run.read_seconds},

@@ -2,9 +2,11 @@
 
 #include <cstddef>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "cli/planning.h"
 #include "io/read_frame.h"
 #include "pipeline/report.h"
 
@@ -19,6 +21,7 @@ struct RunReport {
   std::size_t peak_memory = 0;  ///< Bytes, of the process.
   double calibration = 1;       ///< Of the error map: the factor that brought it to the cross-validated error.
   Report reconstruction;
+  std::optional<FramePlan> plan;  ///< Where the settings were chosen for the frame.
 };
 
 /// Peak resident memory of this process in bytes.
@@ -30,6 +33,10 @@ nlohmann::ordered_json roles_json(const FrameSource& source);
 
 /// The table at the end of a run.
 std::string report_text(const RunReport& run);
+
+/// "yes: REASON" or "no: REASON", with the seconds that it saved.
+std::string decision_text(const Decision& decision);
+nlohmann::ordered_json decisions_json(const std::vector<Decision>& decisions);
 
 /// The same with stable keys; docs/formats.md lists them.
 nlohmann::ordered_json report_json(const RunReport& run, const FrameSource& source);

@@ -55,7 +55,9 @@ void add_sample_map_options(CLI::App& app, SampleMapOptions& o) {
   const std::string group = "Sample map";
   CLI::Option* budget =
       app.add_option("--budget", o.params.budget, "Extra samples per pixel on average")->check(CLI::PositiveNumber);
-  CLI::Option* target = app.add_option("--target", o.params.target, "Mean relative MSE to reach instead of a budget")
+  CLI::Option* target = app.add_option("--target", o.params.target,
+                                       "Mean relative MSE to reach instead of a budget; in denoise without a sample "
+                                       "map: by the cheapest settings")
                             ->check(CLI::PositiveNumber);
   target->excludes(budget)->group(group);
   budget->group(group);
@@ -76,8 +78,7 @@ void add_sample_map_options(CLI::App& app, SampleMapOptions& o) {
 }
 
 bool any_sample_map_option(const CLI::App& app) {
-  constexpr std::array<const char*, 7> names{"--budget", "--target", "--max-samples", "--cost",
-                                             "--frame",  "--seed",   "--export"};
+  constexpr std::array<const char*, 6> names{"--budget", "--max-samples", "--cost", "--frame", "--seed", "--export"};
   return std::any_of(names.begin(), names.end(), [&](const char* name) { return app.count(name) > 0; });
 }
 

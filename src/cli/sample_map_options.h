@@ -21,7 +21,7 @@ struct SampleMapOptions {
 /// Adds --budget, --target, --max-samples, --cost, --frame, --seed and --export.
 void add_sample_map_options(CLI::App& app, SampleMapOptions& options);
 
-/// Whether any option that only makes sense with a sample map was given.
+/// Whether any option that only makes sense with a sample map was given (--target makes sense without).
 bool any_sample_map_option(const CLI::App& app);
 
 /// The options that the map depends on, in the words of the command line, each after a blank.

@@ -177,15 +177,25 @@ class TileFilter {
   std::vector<double> sum_, total_;
 };
 
+bool has_noise(const Image& noise, const Rect& tile) {
+  for (int c = 0; c < noise.channels(); ++c)
+    for (int y = tile.y0; y < tile.y1; ++y) {
+      const Real* row = noise.row(c, y);
+      if (std::any_of(row + tile.x0, row + tile.x1, [](Real v) { return v > 0; })) return true;
+    }
+  return false;
+}
+
 }  // namespace
 
 std::array<Image, 2> prefilter(const std::array<Image, 2>& halves, const Image& variance, const PrefilterParams& params,
                                Progress& progress) {
   constexpr int tile_side = 64;  // its sums and distances stay in the second cache
   const Image noise = widened_variance(variance);
-  const int width = variance.width(), height = variance.height();
-  std::array<Image, 2> out{Image(width, height, variance.channels()), Image(width, height, variance.channels())};
-  const auto tiles = aligned_blocks(variance.bounds(), tile_side);
+  std::array<Image, 2> out = halves;
+  auto tiles = aligned_blocks(variance.bounds(), tile_side);
+  const auto clean = [&](const Rect& tile) { return !has_noise(noise, tile); };
+  tiles.erase(std::remove_if(tiles.begin(), tiles.end(), clean), tiles.end());
   parallel_for(2 * tiles.size(), progress, [&](std::size_t i) {
     const std::size_t h = i % 2;
     TileFilter(halves[h], halves[1 - h], noise, tiles[i / 2], params).run(out[h]);

@@ -1,5 +1,7 @@
 #include "features/prepare.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -36,8 +38,17 @@ struct FeatureLook {
   double low = std::numeric_limits<double>::max(), high = std::numeric_limits<double>::lowest();
   double variance = 0;  ///< Of its values over the frame, mean over the channels.
   double noise = 0;     ///< Mean of its own noise variance.
-  std::size_t usable_pixels = 0;
+  std::size_t usable_pixels = 0, noisy_pixels = 0;
 };
+
+/// Noise variance of a pass at a pixel as far as the pass tells, else 0.
+double noise_at(const Pass& pass, int c, std::size_t i) {
+  if (!pass.variance.empty() && usable(pass.variance.plane(c)[i]))
+    return static_cast<double>(pass.variance.plane(c)[i]);
+  if (!pass.has_halves()) return 0;
+  const double d = static_cast<double>(pass.half_a.plane(c)[i]) - static_cast<double>(pass.half_b.plane(c)[i]);
+  return std::isfinite(d) ? d * d / 4 : 0;
+}
 
 FeatureLook look_at_feature(const Feature& feature) {
   FeatureLook look;
@@ -45,7 +56,7 @@ FeatureLook look_at_feature(const Feature& feature) {
   for (int c = 0; c < mean.channels(); ++c) {
     const Real* values = mean.plane(c);
     double sum = 0, square = 0, noise = 0;
-    std::size_t count = 0;
+    std::size_t count = 0, noisy = 0;
     for (std::size_t i = 0; i < mean.pixels(); ++i) {
       const auto v = static_cast<double>(values[i]);
       if (!usable(values[i]) || (feature.kind == FeatureKind::Depth && v >= sky_depth)) continue;
@@ -54,19 +65,16 @@ FeatureLook look_at_feature(const Feature& feature) {
       square += v * v;
       look.low = std::min(look.low, v);
       look.high = std::max(look.high, v);
-      if (!feature.pass.variance.empty() && usable(feature.pass.variance.plane(c)[i]))
-        noise += static_cast<double>(feature.pass.variance.plane(c)[i]);
-      else if (feature.pass.has_halves()) {
-        const double d =
-            static_cast<double>(feature.pass.half_a.plane(c)[i]) - static_cast<double>(feature.pass.half_b.plane(c)[i]);
-        if (std::isfinite(d)) noise += d * d / 4;
-      }
+      const double own_noise = noise_at(feature.pass, c, i);
+      noise += own_noise;
+      noisy += own_noise > 0;
     }
     if (count == 0) continue;
     const double n = static_cast<double>(count), m = sum / n;
     look.variance += std::max(0.0, square / n - m * m) / mean.channels();
     look.noise += noise / n / mean.channels();
     look.usable_pixels = std::max(look.usable_pixels, count);
+    look.noisy_pixels = std::max(look.noisy_pixels, noisy);
   }
   return look;
 }
@@ -83,13 +91,18 @@ double median_depth(const Image& depth) {
   return static_cast<double>(*middle);
 }
 
-/// Why a feature is left out, or an empty string.
-std::string reason_to_drop(const FeatureLook& look, const Feature& feature) {
-  if (look.usable_pixels == 0) return "no finite value";
-  const bool has_sky = feature.kind == FeatureKind::Depth && look.usable_pixels < feature.pass.mean.pixels();
-  if (look.high - look.low <= 1e-6 * std::max(std::abs(look.high), std::abs(look.low)) && !has_sky) return "constant";
-  if (look.noise > 0.9 * look.variance) return "nothing but noise";
-  return {};
+bool allowed(FeatureKind kind, const Effects& effects) {
+  switch (kind) {
+    case FeatureKind::Normal:
+      return effects.normal;
+    case FeatureKind::Albedo:
+      return effects.albedo;
+    case FeatureKind::Depth:
+      return effects.depth;
+    case FeatureKind::Visibility:
+      return effects.visibility;
+  }
+  return true;
 }
 
 const char* kind_name(FeatureKind kind) {
@@ -104,6 +117,20 @@ const char* kind_name(FeatureKind kind) {
       return "visibility";
   }
   return "";
+}
+
+/// Whether a feature takes part, and why (or why not).
+Decision decide_on_feature(const FeatureLook& look, const Feature& feature, const Effects& effects) {
+  const std::string effect = std::string("feature ") + kind_name(feature.kind);
+  const Image& mean = feature.pass.mean;
+  if (!allowed(feature.kind, effects)) return {effect, false, "not asked for"};
+  if (look.usable_pixels == 0) return {effect, false, "no finite value"};
+  if (!effects.decide) return {effect, true, "asked for"};
+  const bool has_sky = feature.kind == FeatureKind::Depth && look.usable_pixels < mean.pixels();
+  if (look.high - look.low <= 1e-6 * std::max(std::abs(look.high), std::abs(look.low)) && !has_sky)
+    return {effect, false, "constant", Spared::Columns, mean.channels()};
+  if (look.noise > 0.9 * look.variance) return {effect, false, "nothing but noise", Spared::Columns, mean.channels()};
+  return {effect, true, "varies over the frame"};
 }
 
 void transform(const FeatureUse& use, Image& image) {
@@ -210,9 +237,22 @@ std::array<Image, 2> prepared_feature(Feature feature, const FeatureUse& use, st
   return halves;
 }
 
+/// Whether a feature is cleaned, and why (or why not).
+Decision decide_on_cleaning(const std::string& feature, const Pass& pass, const FeatureLook& look,
+                            const Effects& effects) {
+  const std::string effect = feature + " cleaning";
+  if (!effects.cleaning) return {effect, false, "not asked for"};
+  if (pass.variance.empty() && !pass.has_halves()) return {effect, false, "nothing is known of its noise"};
+  if (!effects.decide) return {effect, true, "asked for"};
+  const bool noisy = look.noise > noise_floor * look.variance;
+  if (!noisy) return {effect, false, "the pass is clean", Spared::Cleaning, pass.mean.channels()};
+  const double share = static_cast<double>(look.noisy_pixels) / static_cast<double>(pass.mean.pixels());
+  return {effect, true, fmt::format("the pass is noisy in {:.0f} % of its pixels", 100 * share)};
+}
+
 }  // namespace
 
-Preparation look_at(const Frame& frame) {
+Preparation look_at(const Frame& frame, const Effects& effects) {
   Preparation out;
   if (count_unusable(frame.beauty.mean) == frame.beauty.mean.pixels())
     throw Error(ExitCode::CheckFailed, "layer '" + frame.beauty.name + "': no finite pixel; render the frame again");
@@ -221,24 +261,24 @@ Preparation look_at(const Frame& frame) {
   int channels = 0;
   for (std::size_t i = 0; i < frame.features.size(); ++i) {
     const Feature& feature = frame.features[i];
-    const std::string effect = std::string("feature ") + kind_name(feature.kind);
     const FeatureLook look = look_at_feature(feature);
-    std::string reason = reason_to_drop(look, feature);
-    if (reason.empty() && channels + feature.pass.mean.channels() > max_feature_channels)
-      reason = "the model is full: " + std::to_string(max_feature_channels) + " channels";
-    if (!reason.empty()) {
-      out.decisions.push_back({effect, false, reason});
-      continue;
+    Decision decision = decide_on_feature(look, feature, effects);
+    if (decision.run && channels + feature.pass.mean.channels() > max_feature_channels) {
+      decision.run = false;
+      decision.reason = "the model is full: " + std::to_string(max_feature_channels) + " channels";
     }
+    out.decisions.push_back(decision);
+    if (!decision.run) continue;
     channels += feature.pass.mean.channels();
     FeatureUse use;
     use.index = i;
-    use.clean = look.noise > noise_floor * look.variance;
-    use.scale = std::exp2(-std::ilogb(std::max(std::abs(look.low), std::abs(look.high))));
+    const Decision cleaning = decide_on_cleaning(decision.effect, feature.pass, look, effects);
+    use.clean = cleaning.run;
+    if (const double largest = std::max(std::abs(look.low), std::abs(look.high)); largest > 0)
+      use.scale = std::exp2(-std::ilogb(largest));
     if (feature.kind == FeatureKind::Depth) use.half_depth = median_depth(feature.pass.mean);
     out.features.push_back(use);
-    out.decisions.push_back({effect, true, "varies over the frame"});
-    out.decisions.push_back({effect + " cleaning", use.clean, use.clean ? "the pass is noisy" : "the pass is clean"});
+    out.decisions.push_back(cleaning);
   }
   return out;
 }

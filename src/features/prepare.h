@@ -28,7 +28,8 @@ struct Preparation {
 
 /// Drops features that are absent, not finite, constant, nothing but noise, or more than a model holds, and says which
 /// of the others need cleaning. Throws Error{CheckFailed} where the beauty holds no usable pixel.
-Preparation look_at(const Frame& frame);
+/// effects: what may run. Without effects.decide every pass that has a finite value takes part and is cleaned.
+Preparation look_at(const Frame& frame, const Effects& effects = {});
 
 struct Prepared {
   HalfPair pair;

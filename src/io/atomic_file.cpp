@@ -12,6 +12,8 @@
 #include <cstring>
 #include <exception>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <random>
 #include <system_error>
 
@@ -128,6 +130,16 @@ void check_target(const std::string& target) {
 }
 
 }  // namespace
+
+void write_text_file(const std::string& target, const std::string& text) {
+  const auto write = [&](const std::string& path) { std::ofstream(path, std::ios::binary) << text; };
+  const auto verify = [&](const std::string& path) {
+    std::ifstream file(path, std::ios::binary);
+    if (std::string(std::istreambuf_iterator<char>(file), {}) != text)
+      throw Error(ExitCode::CannotWrite, target + ": cannot be read back, is the disk full?");
+  };
+  write_atomically(target, write, verify);
+}
 
 void check_writable(const std::string& target) {
   check_target(target);

@@ -13,6 +13,9 @@ namespace polyrecon {
 void write_atomically(const std::string& target, const std::function<void(const std::string& path)>& write,
                       const std::function<void(const std::string& path)>& verify);
 
+/// Writes text as it is by write_atomically.
+void write_text_file(const std::string& target, const std::string& text);
+
 /// Throws Error{CannotWrite} unless a file can be made beside target and take its name; leaves nothing behind.
 void check_writable(const std::string& target);
 

@@ -1,6 +1,8 @@
 #include "io/preview.h"
 
+#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imagebufalgo.h>
+#include <OpenImageIO/strutil.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -132,6 +134,18 @@ void write_png(const std::string& target, const Image& rgb) {
       throw Error(ExitCode::CannotWrite, target + ": cannot be read back");
   };
   write_atomically(target, write, verify);
+}
+
+std::string png_data_uri(const Image& rgb) {
+  OIIO::Filesystem::IOVecOutput memory;
+  OIIO::ImageBuf buffer = buffer_of(rgb);
+  buffer.set_write_ioproxy(&memory);
+  buffer.set_write_format(OIIO::TypeDesc::UINT8);
+  if (!buffer.write("memory.png", OIIO::TypeDesc::UNKNOWN, "png"))
+    throw Error(ExitCode::Internal, "a picture cannot be made into PNG: " + buffer.geterror());
+  const std::vector<unsigned char>& bytes = memory.buffer();
+  return "data:image/png;base64," +
+         OIIO::Strutil::base64_encode({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
 }  // namespace polyrecon

@@ -5,11 +5,21 @@
 
 #include "blend/blend_windows.h"
 #include "blend/select.h"
+#include "core/decision.h"
 #include "features/prefilter.h"
 
 namespace polyrecon {
 
 enum class Quality { Draft, Standard, Best };
+
+/// Parts of the method that can be taken out, to measure what each is worth (docs/accuracy.md).
+struct Parts {
+  bool cross_filter = true;      ///< A half is fitted with weights and features of the other one.
+  bool shrinkage = true;         ///< Columns enter with the factor of least error, not whole (order_selection.h).
+  bool variance_floor = true;    ///< features/variance_floor.h
+  bool raise_undershoot = true;  ///< blend/undershoot.h
+  bool restore_totals = true;    ///< The result's channels are brought to the sums of the input's.
+};
 
 /// Everything that steers a reconstruction; the only home of its defaults.
 struct Params {
@@ -26,11 +36,14 @@ struct Params {
   double coverage = 2;            ///< Sum of weights below which finer centres are added; 0: none.
   PrefilterParams cleaning;       ///< Of noisy feature passes.
   SelectParams selection;
+  double enough = 0;  ///< Pixels whose noise variance over (value^2 + 0.01) is below this stay as they are.
+  Effects effects;
+  Parts parts;
   bool reconstruct_alpha = false;  ///< Reconstruct alpha with the beauty's windows instead of keeping it.
   std::size_t max_memory = std::size_t{4} << 30;  ///< Bytes; larger frames are worked in tiles.
 
   FitParams fit(const std::vector<Real>& bandwidths) const {
-    return {radius, stride, patch_radius, bandwidths, max_order, order_tolerance, coverage};
+    return {radius, stride, patch_radius, bandwidths, max_order, order_tolerance, coverage, parts.shrinkage};
   }
 };
 

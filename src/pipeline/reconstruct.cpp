@@ -13,6 +13,7 @@
 #include "outliers/remove.h"
 #include "outliers/restore.h"
 #include "pipeline/memory.h"
+#include "pipeline/savings.h"
 #include "pipeline/stage.h"
 
 namespace polyrecon {
@@ -100,7 +101,11 @@ void note_fits(const FitCounters& counters, Report& report) {
   report.pixels_fallen_back_to_input = counters.uncovered_pixels;
 }
 
-void note_outliers(const std::vector<Outlier>& outliers, Report& report) {
+void note_outliers(const std::vector<Outlier>& outliers, const Effects& effects, Report& report) {
+  if (!effects.outliers) {
+    report.decisions.push_back({"outlier removal", false, "not asked for"});
+    return;
+  }
   report.outliers = outliers.size();
   for (const Outlier& outlier : outliers)
     for (std::size_t c = 0; c < 3; ++c) report.outlier_energy[c] += outlier.energy[c];
@@ -129,7 +134,7 @@ Result reconstruct(Frame& frame, const Params& params, Progress& progress) {
   report.height = frame.height();
   report.energy_before = energy_of(frame.beauty.mean);
 
-  const Preparation preparation = look_at(frame);
+  const Preparation preparation = look_at(frame, params.effects);
   report.decisions = preparation.decisions;
   const auto rows = static_cast<std::size_t>(frame.height());
   const NoiseVariance noise =
@@ -142,25 +147,30 @@ Result reconstruct(Frame& frame, const Params& params, Progress& progress) {
   report.mended_pixels = prepared.mended_pixels;
   report.negative_pixels = prepared.negative_pixels;
   const std::vector<double> totals = color_totals(frame);
-  const auto outliers = timed(report, progress, "outliers", rows * 2, [&] {
+  const auto outliers = timed(report, progress, "outliers", rows * 2, [&]() -> std::vector<Outlier> {
+    if (!params.effects.outliers) return {};
     OutlierParams outlier_params;
     outlier_params.variance_is_measured = noise.measured;
     return remove_outliers(pair, prepared.independent_halves, outlier_params, progress);
   });
-  pair.variance = floor_variance(pair.variance);  // now: an outlier's variance must not spread to its neighbours
-  note_outliers(outliers, report);
+  if (params.parts.variance_floor)
+    pair.variance = floor_variance(pair.variance);  // now: an outlier's variance must not spread to its neighbours
+  note_outliers(outliers, params.effects, report);
 
   const std::size_t memory = tile_memory(shape, params);
   FitCounters counters;
   const Candidate solved = timed(report, progress, "polynomials", fit_steps(frame, params),
                                  [&] { return solve_level(pair, 0, params, memory, counters, progress); });
   note_fits(counters, report);
+  const double left_alone = share_left_alone(pair, params);
+  report.decisions.push_back(decide_on_pixels(left_alone, params));
+  estimate_savings(frame, params.cleaning, left_alone, report.stages.back().seconds, report.decisions);
 
   Image image = timed(report, progress, "energy", 1, [&] {
     Image out = average(pair, solved);
-    report.raised_pixels = raise_undershoot(noisy_mean(pair), out);
+    if (params.parts.raise_undershoot) report.raised_pixels = raise_undershoot(noisy_mean(pair), out);
     restore_energy(outliers, max_restored_gain, out);
-    report.restored_gain = restore_totals(totals, max_total_gain, out);
+    if (params.parts.restore_totals) report.restored_gain = restore_totals(totals, max_total_gain, out);
     return out;
   });
   result.error = timed(report, progress, "error map", 1, [&] { return make_error_map(pair, noise.variance, solved); });

@@ -12,14 +12,28 @@ namespace {
 
 constexpr double residual_sigma = 1;  // pixels over which the squared difference of a stage's halves is averaged
 
+constexpr Real relative_floor = Real(0.01);  // of relMSE, radiance squared
+
+/// Whether some channel of the beauty carries more noise than is left alone (Params::enough).
+bool noise_matters(const HalfPair& pair, std::size_t i, Real enough) {
+  for (int c = 0; c < 3; ++c) {
+    const Real mean = Real(0.5) * (pair.color[0].plane(c)[i] + pair.color[1].plane(c)[i]);
+    if (Real(0.5) * pair.variance.plane(c)[i] > enough * (mean * mean + relative_floor)) return true;
+  }
+  return false;
+}
+
 /// Pixels that carry noise: where the halves are equal and no variance is known there is nothing to do.
-std::vector<unsigned char> noisy_pixels(const HalfPair& pair) {
-  std::vector<unsigned char> noisy(pair.variance.pixels(), 0);
+std::vector<unsigned char> noisy_pixels(const HalfPair& pair, const Params& params) {
+  std::vector<unsigned char> noisy(pair.variance.pixels(), params.effects.decide ? 0 : 1);
   for (int c = 0; c < pair.color[0].channels(); ++c) {
     const Real *a = pair.color[0].plane(c), *b = pair.color[1].plane(c), *v = c < 3 ? pair.variance.plane(c) : nullptr;
     for (std::size_t i = 0; i < noisy.size(); ++i)
       if (a[i] != b[i] || (v && v[i] > 0)) noisy[i] = 1;
   }
+  if (params.enough > 0)
+    for (std::size_t i = 0; i < noisy.size(); ++i)
+      noisy[i] = noisy[i] && noise_matters(pair, i, static_cast<Real>(params.enough));
   return noisy;
 }
 
@@ -37,7 +51,7 @@ void add_candidates(const HalfPair& pair, const Guide& guide, const Candidate* b
   if (guide.bandwidths->empty()) return;
   std::array<std::vector<BlendedFit>, 2> fits;
   for (std::size_t h = 0; h < 2; ++h) {
-    const std::size_t other = 1 - h;
+    const std::size_t other = params.parts.cross_filter ? 1 - h : h;
     const FitSource source{&pair.color[h], &pair.variance, &pair.features[other],
                            guide.color[h], guide.variance, before ? &before->half[other] : nullptr};
     fits[h] = fit_and_blend(source, noisy, params.fit(*guide.bandwidths), counters, progress);
@@ -86,10 +100,12 @@ Image residual_variance(const Candidate& candidate) {
 
 Candidate stage_of_tile(const HalfPair& pair, const Candidate* before, const Params& params, FitCounters& counters,
                         Progress& progress) {
-  const auto noisy = noisy_pixels(pair);
+  const auto noisy = noisy_pixels(pair, params);
   std::vector<Candidate> candidates;
-  const Guide raw{
-      {&pair.color[1], &pair.color[0]}, &pair.variance, before ? &params.later_bandwidths : &params.first_bandwidths};
+  const std::size_t guides_a = params.parts.cross_filter ? 1 : 0;
+  const Guide raw{{&pair.color[guides_a], &pair.color[1 - guides_a]},
+                  &pair.variance,
+                  before ? &params.later_bandwidths : &params.first_bandwidths};
   add_candidates(pair, raw, before, noisy, params, counters, progress, candidates);
   Image brightness;
   if (before) {
@@ -122,6 +138,12 @@ void paste_candidate(const Candidate& part, const Tile& tile, Candidate& whole) 
 }
 
 }  // namespace
+
+double share_left_alone(const HalfPair& pair, const Params& params) {
+  const auto noisy = noisy_pixels(pair, params);
+  const auto left = std::count(noisy.begin(), noisy.end(), 0);
+  return static_cast<double>(left) / static_cast<double>(noisy.size());
+}
 
 int stage_halo(const Params& params) {
   // The guide's noise is final its blur inside a tile, every candidate fit_halo further in, the choice select_halo

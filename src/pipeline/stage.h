@@ -15,6 +15,9 @@ namespace polyrecon {
 Candidate run_stage(const HalfPair& pair, const Candidate* before, const Params& params, std::size_t max_bytes,
                     FitCounters& counters, Progress& progress);
 
+/// Share of the pixels that run_stage fits no window for: they carry no noise, or too little to matter; 0..1.
+double share_left_alone(const HalfPair& pair, const Params& params);
+
 /// Pixels around a tile that run_stage looks at.
 int stage_halo(const Params& params);
 

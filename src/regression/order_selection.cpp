@@ -50,18 +50,32 @@ double shrinkage_factor(const Channels& channels, int begin, int end, bool first
   return first_stage ? std::max(0.0, 1 - noise / energy) : energy / (energy + noise);
 }
 
-OrderChoice select_order(const Channels& channels, const BasisLayout& layout, double weight_sum, bool first_stage,
-                         double tolerance) {
-  assert(weight_sum > 0);
-  OrderChoice choice;
+namespace {
+
+/// Features have a factor each, the Taylor terms of one order share theirs.
+std::array<double, BasisLayout::max_columns> shrinkage_factors(const Channels& channels, const BasisLayout& layout,
+                                                               bool first_stage) {
+  std::array<double, BasisLayout::max_columns> factors{};
   const int features_end = 1 + layout.features();
   for (int a = 0; a < features_end; ++a)
-    choice.factor[static_cast<std::size_t>(a)] = shrinkage_factor(channels, a, a + 1, first_stage);
+    factors[static_cast<std::size_t>(a)] = shrinkage_factor(channels, a, a + 1, first_stage);
   for (int order = 1; order <= layout.order(); ++order) {
     const int begin = layout.columns(order), end = layout.columns(order + 1);
-    std::fill(choice.factor.begin() + begin, choice.factor.begin() + end,
-              shrinkage_factor(channels, begin, end, first_stage));
+    std::fill(factors.begin() + begin, factors.begin() + end, shrinkage_factor(channels, begin, end, first_stage));
   }
+  return factors;
+}
+
+}  // namespace
+
+OrderChoice select_order(const Channels& channels, const BasisLayout& layout, double weight_sum, bool first_stage,
+                         double tolerance, bool shrinkage) {
+  assert(weight_sum > 0);
+  OrderChoice choice;
+  if (shrinkage)
+    choice.factor = shrinkage_factors(channels, layout, first_stage);
+  else
+    choice.factor.fill(1);
   const auto errors = nested_errors(channels, layout, choice.factor.data(), first_stage);
   const double least = *std::min_element(errors.begin(), errors.begin() + layout.models());
   while (errors[static_cast<std::size_t>(choice.model)] > least + tolerance * std::max(least, 0.0)) ++choice.model;

@@ -40,8 +40,8 @@ double shrinkage_factor(const std::array<ColumnStatistics, 3>& channels, int beg
 ///
 /// Equation (7), k_opt = argmin_k of bias^2 + variance, over the nested models of layout, the error summed over
 /// channels. Of models whose error differs by less than tolerance (relative) the one of lowest order is taken.
-/// weight_sum is sum_i w_i > 0.
+/// weight_sum is sum_i w_i > 0. shrinkage: false lets every column in whole, as the paper does.
 OrderChoice select_order(const std::array<ColumnStatistics, 3>& channels, const BasisLayout& layout, double weight_sum,
-                         bool first_stage, double tolerance);
+                         bool first_stage, double tolerance, bool shrinkage = true);
 
 }  // namespace polyrecon

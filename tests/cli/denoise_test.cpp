@@ -32,7 +32,10 @@ TEST_F(Denoise, RefusesContradictionsBeforeAnyWork) {
   write_render(path("in.exr"));
   const std::vector<std::vector<std::string>> wrong{
       {"--budget", "4"},
-      {"--target", "0.1"},
+      {"--target", "0.1", "--quality", "draft"},
+      {"--time-budget", "2", "--stages", "1"},
+      {"--time-budget", "0"},
+      {"--effects", "normal,magic"},
       {"--export", "vray"},
       {"--max-samples", "4"},
       {"--sample-map", "s.exr"},

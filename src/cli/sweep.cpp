@@ -1,0 +1,170 @@
+#include "tradeoff/sweep.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cli/checks.h"
+#include "cli/commands.h"
+#include "cli/layers.h"
+#include "cli/progress_output.h"
+#include "core/error.h"
+#include "core/parallel.h"
+#include "io/atomic_file.h"
+#include "io/read_frame.h"
+#include "tradeoff/page.h"
+
+namespace polyrecon {
+namespace {
+
+/// All groups but "parts", which nobody chooses between.
+std::vector<std::string> trade_groups() {
+  std::vector<std::string> groups = setting_groups();
+  groups.erase(std::remove(groups.begin(), groups.end(), "parts"), groups.end());
+  return groups;
+}
+
+struct SweepOptions {
+  std::vector<std::string> inputs, also;
+  std::string reference, output, csv;
+  std::vector<std::string> groups = trade_groups();
+  int threads = 0;
+  bool quiet = false;
+};
+
+/// "NAME=FILE:SECONDS": FILE may hold colons, NAME no equals sign.
+struct PeerFile {
+  std::string name, file;
+  double seconds = 0;
+};
+
+PeerFile parse_peer(const std::string& text) {
+  const std::size_t equals = text.find('='), colon = text.rfind(':');
+  const auto wrong = [&](const char* why) {
+    return Error(ExitCode::Usage, fmt::format("--also {}: {}; it must be NAME=FILE:SECONDS", text, why));
+  };
+  if (equals == std::string::npos || equals == 0) throw wrong("no name");
+  if (colon == std::string::npos || colon < equals + 2) throw wrong("no seconds");
+  PeerFile peer{text.substr(0, equals), text.substr(equals + 1, colon - equals - 1), 0};
+  try {
+    std::size_t used = 0;
+    peer.seconds = std::stod(text.substr(colon + 1), &used);
+    if (used != text.size() - colon - 1) throw wrong("the seconds are not a number");
+  } catch (const std::logic_error&) {  // of stod
+    throw wrong("the seconds are not a number");
+  }
+  if (!(peer.seconds > 0) || !std::isfinite(peer.seconds)) throw wrong("the seconds are not above 0");
+  return peer;
+}
+
+std::string file_name(const std::string& path) { return std::filesystem::path(path).filename().string(); }
+
+/// The main colour layer of a file: width x height must be the reference's.
+Image read_color(const LayeredFile& file, const Image& reference) {
+  const Layer* layer = color_layer(file);
+  if (!layer)
+    throw Error(ExitCode::Missing,
+                file.info.path + ": no R, G, B layer named Combined, Color, Beauty, RGB, Denoised or nothing");
+  Image image = read_layer(file, *layer);
+  if (!reference.empty() && !image.same_shape(reference))
+    throw Error(ExitCode::BadInput,
+                fmt::format("{}: layer '{}' is {} x {} pixels, the reference has {} x {}", file.info.path, layer->name,
+                            image.width(), image.height(), reference.width(), reference.height()));
+  return image;
+}
+
+Reference read_reference(const std::string& path) {
+  const LayeredFile file = open_layers(path);
+  Reference reference{read_color(file, {}), {}};
+  const Layer* variance = find_layer(file, color_layer(file)->name + " Variance");
+  if (variance && variance->channels.size() == 3) reference.variance = read_layer(file, *variance);
+  return reference;
+}
+
+SweepInput read_input(const std::string& path, const Image& reference) {
+  ReadResult read = read_frame(path);
+  if (read.frame.width() != reference.width() || read.frame.height() != reference.height())
+    throw Error(ExitCode::BadInput,
+                fmt::format("{}: is {} x {} pixels, the reference has {} x {}", path, read.frame.width(),
+                            read.frame.height(), reference.width(), reference.height()));
+  const double samples = samples_in_metadata(read.source.files.front(), read.source.view_layer).value_or(0);
+  return {file_name(path), samples, std::move(read.frame)};
+}
+
+void check(const SweepOptions& o, const std::vector<PeerFile>& peers) {
+  std::vector<std::string> files = o.inputs;
+  files.push_back(o.reference);
+  for (const PeerFile& peer : peers) files.push_back(peer.file);
+  for (const std::string& file : files) require_readable(file);
+  require_outputs(files, {{"-o", o.output}, {"--csv", o.csv}});
+}
+
+void run(const SweepOptions& o) {
+  std::vector<PeerFile> peer_files;
+  for (const std::string& text : o.also) peer_files.push_back(parse_peer(text));
+  check(o, peer_files);
+  set_thread_limit(o.threads);
+  const Reference reference = read_reference(o.reference);
+  std::vector<SweepInput> inputs;
+  for (const std::string& path : o.inputs) inputs.push_back(read_input(path, reference.mean));
+  std::vector<Peer> peers;
+  for (const PeerFile& peer : peer_files)
+    peers.push_back({peer.name, peer.seconds, read_color(open_layers(peer.file), reference.mean), {}});
+  const auto progress = make_progress(o.quiet ? ProgressStyle::None : ProgressStyle::Auto);
+  Sweep sweep = run_sweep(inputs, o.groups, reference, std::move(peers), *progress);
+  sweep.reference_name = file_name(o.reference);
+  if (o.threads > 0) sweep.threads = o.threads;
+  write_text_file(o.output, page_of(sweep, POLYRECON_VERSION));
+  if (!o.csv.empty()) write_text_file(o.csv, csv_of(sweep));
+  if (o.quiet) return;
+  for (const Trial& trial : sweep.inputs.front().trials)
+    std::fputs(
+        fmt::format("{:<32} {:8.2f} s  relMSE {:.5f}\n", trial.name, trial.seconds, trial.score.relative_mse).c_str(),
+        stdout);
+}
+
+}  // namespace
+
+void setup_sweep(CLI::App& app, Command& chosen) {
+  const auto o = std::make_shared<SweepOptions>();
+  CLI::App* sub = app.add_subcommand("sweep", "Shows what accuracy costs in time, on a render with a reference");
+  sub->add_option("-i,--input", o->inputs,
+                  "Noisy render; repeated: the same frame at other samples, tried by the qualities only")
+      ->required()
+      ->expected(1)
+      ->take_all()
+      ->type_name("FILE");
+  sub->add_option("--reference", o->reference, "Converged render of the frame")->required()->type_name("FILE");
+  sub->add_option("-o,--output", o->output, "Report to write: one HTML page")->required()->type_name("FILE");
+  sub->add_option("--csv", o->csv, "Write all figures as CSV too")->type_name("FILE");
+  sub->add_option("--also", o->also, "Draw another program's result beside ours (repeatable)")
+      ->expected(1)
+      ->take_all()
+      ->type_name("NAME=FILE:SECONDS");
+  sub->add_option("--vary", o->groups,
+                  "What to vary, all but parts unless given: " + fmt::format("{}", fmt::join(setting_groups(), ", ")))
+      ->delimiter(',')
+      ->check(CLI::IsMember(setting_groups()).description(""))
+      ->type_name("GROUP,...");
+  sub->add_option("-t,--threads", o->threads, "Threads to use; 0: all processors")
+      ->check(CLI::Range(0, 4096))
+      ->capture_default_str();
+  sub->add_flag("-q,--quiet", o->quiet, "Print nothing but errors");
+  sub->footer(
+      "Short runs are repeated, up to three times and two seconds; the median counts. \"parts\" takes each part of the "
+      "method "
+      "out alone.\n"
+      "Examples:\n"
+      "  polyrecon sweep -i render.exr --reference ref.exr -o report.html --csv figures.csv\n"
+      "  polyrecon sweep -i 16.exr -i 64.exr -i 256.exr --reference ref.exr -o report.html --vary quality\n"
+      "  polyrecon sweep -i render.exr --reference ref.exr -o report.html --also OIDN=oidn.exr:0.9");
+  sub->callback([o, &chosen] { chosen = [o] { run(*o); }; });
+}
+
+}  // namespace polyrecon

@@ -1,0 +1,76 @@
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/program.h"
+
+namespace polyrecon::testing {
+namespace {
+
+using nlohmann::json;
+
+class Planning : public ProgramTest {
+ protected:
+  json report_of(const std::vector<std::string>& options) {
+    write_render(path("in.exr"));
+    std::vector<std::string> arguments{"denoise", "-i", "in.exr", "-o", "out.exr", "--report", "r.json"};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    const Outcome done = run(arguments);
+    EXPECT_EQ(done.code, 0) << done.err;
+    out_ = done.out;
+    return json::parse(read_text(path("r.json")));
+  }
+  std::string out_;
+};
+
+TEST_F(Planning, WithoutARequestNothingIsPlanned) { EXPECT_TRUE(report_of({})["plan"].is_null()); }
+
+TEST_F(Planning, AGenerousBudgetTakesTheMostAccurateSettings) {
+  const json plan = report_of({"--time-budget", "1000"})["plan"];
+  EXPECT_TRUE(plan["met"]);
+  EXPECT_TRUE(plan["next"].is_null());
+  EXPECT_GT(plan["seconds_taken"], 0);
+}
+
+TEST_F(Planning, ABudgetThatCannotBeKeptTakesTheFastestAndSaysSo) {
+  const json plan = report_of({"--time-budget", "0.000001"})["plan"];
+  EXPECT_FALSE(plan["met"]);
+  EXPECT_NE(out_.find("cannot be met"), std::string::npos) << out_;
+  EXPECT_FALSE(plan["next"].is_null());
+  EXPECT_GT(plan["next"]["seconds"], plan["chosen"]["seconds"]);
+  EXPECT_LT(plan["next"]["relmse"], plan["chosen"]["relmse"]);
+  EXPECT_NE(out_.find("the next step"), std::string::npos) << out_;
+}
+
+TEST_F(Planning, AnErrorThatIsEasyToReachTakesTheFastest) {
+  const json easy = report_of({"--target", "10"})["plan"];
+  EXPECT_TRUE(easy["met"]);
+  const json hard = report_of({"--target", "1e-9"})["plan"];
+  EXPECT_FALSE(hard["met"]);
+  EXPECT_TRUE(hard["next"].is_null());
+  EXPECT_GT(hard["chosen"]["seconds"], easy["chosen"]["seconds"]);
+}
+
+TEST_F(Planning, WithASampleMapATargetIsTheMapsAlone) {
+  EXPECT_TRUE(report_of({"--sample-map", "s.exr", "--target", "0.1"})["plan"].is_null());
+}
+
+TEST_F(Planning, EffectsAreDoneAsAskedFor) {
+  const auto decision = [](const json& report, const std::string& effect) {
+    for (const json& d : report["decisions"])
+      if (d["effect"] == effect) return d;
+    return json();
+  };
+  const json only = report_of({"--effects", "albedo,outliers"});
+  EXPECT_TRUE(decision(only, "feature albedo")["run"]);
+  EXPECT_FALSE(decision(only, "feature depth")["run"]);
+  EXPECT_EQ(decision(only, "feature depth")["reason"], "not asked for");
+  EXPECT_NE(only["settings"].get<std::string>().find("--stages 1"), std::string::npos) << only["settings"];
+  const json all = report_of({"--effects", "all"});
+  EXPECT_TRUE(decision(all, "feature depth")["run"]);
+  EXPECT_FALSE(decision(all, "quiet pixels left")["run"]);
+  EXPECT_EQ(decision(report_of({"--effects", "depth"}), "outlier removal")["reason"], "not asked for");
+}
+
+}  // namespace
+}  // namespace polyrecon::testing
