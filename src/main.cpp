@@ -13,7 +13,7 @@
 #endif
 
 #include "cli/app.h"
-#include "cli/progress_output.h"
+#include "cli/signals.h"
 #include "core/error.h"
 
 namespace {
@@ -67,6 +67,7 @@ int main(int argc, char** argv) {
     const Command command = parse(argc, argv);
     polyrecon::catch_signals();
     if (command) command();
+    polyrecon::require_output_written();
     return static_cast<int>(ExitCode::Done);
   } catch (const polyrecon::Error& e) {
     return fail(code_of(e), e.what());

@@ -4,8 +4,6 @@
 
 #include <chrono>
 #include <cstdio>
-#include <fstream>
-#include <iterator>
 #include <vector>
 
 #include "cli/finished.h"
@@ -80,16 +78,6 @@ std::vector<std::string> write_all(const FrameFiles& files, const DenoiseOptions
   return notes;
 }
 
-void write_text(const std::string& target, const std::string& text) {
-  const auto write = [&](const std::string& path) { std::ofstream(path, std::ios::binary) << text; };
-  const auto verify = [&](const std::string& path) {
-    std::ifstream file(path, std::ios::binary);
-    if (std::string(std::istreambuf_iterator<char>(file), {}) != text)
-      throw Error(ExitCode::CannotWrite, target + ": cannot be read back, is the disk full?");
-  };
-  write_atomically(target, write, verify);
-}
-
 void print(bool quiet, const std::string& text) {
   if (quiet) return;
   std::fputs(text.c_str(), stdout);
@@ -132,7 +120,7 @@ void denoise_frame(const FrameFiles& files, LoadedFrame loaded, const DenoiseOpt
   report.peak_memory = peak_memory();
   report.reconstruction = result.report;
   report.calibration = result.error.calibration;
-  if (!files.report.empty()) write_text(files.report, report_json(report, in.source).dump(2) + "\n");
+  if (!files.report.empty()) write_text_file(files.report, report_json(report, in.source).dump(2) + "\n");
   print(o.quiet, report_text(report));
 }
 
