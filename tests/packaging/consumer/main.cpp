@@ -11,7 +11,7 @@
 int main(int argc, char** argv) {
   if (argc != 3) return 2;
   try {
-    const polyrecon::ReadResult in = polyrecon::read_frame(argv[1]);
+    polyrecon::ReadResult in = polyrecon::read_frame(argv[1]);
     polyrecon::Progress silent;
     const polyrecon::Result result =
         polyrecon::reconstruct(in.frame, polyrecon::params_for(polyrecon::Quality::Standard), silent);
