@@ -31,6 +31,6 @@ set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_DEPENDS "libeigen3-dev, libtbb-dev, libopenexr-dev, libopenimageio-dev, \
 openimageio-tools, libopencolorio-dev, libfmt-dev, nlohmann-json3-dev, pkg-config")
 set(CPACK_COMPONENT_LIBRARY_DESCRIPTION "rebuilds clean images from noisy Monte Carlo renders (library)
-The static library behind polyrecon, its headers, and the files by which CMake's
-find_package(polyrecon) finds them.")
+The static library behind polyrecon, its headers, and the files by which
+CMake's find_package(polyrecon) finds them.")
 include(CPack)

@@ -13,7 +13,11 @@ cmake --preset release
 cmake --build --preset release
 rm -rf build/packages
 cpack --config build/release/CPackConfig.cmake -G DEB -B build/packages
-if command -v lintian >/dev/null; then lintian --fail-on error build/packages/*.deb; fi
+# Who distributes the packages names a real maintainer by -DCPACK_PACKAGE_CONTACT; the default is a local one.
+if command -v lintian >/dev/null; then
+  lintian --fail-on error --suppress-tags bogus-mail-host,bogus-mail-host-in-debian-changelog,root-in-contact \
+    build/packages/*.deb
+fi
 
 echo "== a fresh Debian in $root"
 [ -e "$root/etc/debian_version" ] || debootstrap --variant=minbase bookworm "$root" "$mirror"
