@@ -12,8 +12,8 @@
 #include <malloc.h>
 #endif
 
-#include "cli/commands.h"
-#include "cli/progress_output.h"
+#include "cli/app.h"
+#include "cli/signals.h"
 #include "core/error.h"
 
 namespace {
@@ -30,24 +30,9 @@ int fail(ExitCode code, std::string message) {
 
 /// Parses the command line into the work to do. Returns nothing to do after --help or --version, with exit code 0.
 Command parse(int argc, char** argv) {
-  CLI::App app("Rebuilds clean images from noisy Monte Carlo renders by adaptive polynomials.", "polyrecon");
+  CLI::App app;
   Command chosen;
-  app.set_version_flag("--version", "polyrecon " POLYRECON_VERSION);
-  app.require_subcommand(1);
-  app.fallthrough(false);
-  app.footer(
-      "Examples:\n"
-      "  polyrecon denoise -i render.exr -o clean.exr\n"
-      "  polyrecon inspect render.exr\n"
-      "  polyrecon merge part*.exr -o merged.exr\n"
-      "Each command has a --help of its own.");
-  polyrecon::setup_denoise(app, chosen);
-  polyrecon::setup_inspect(app, chosen);
-  polyrecon::setup_merge(app, chosen);
-  polyrecon::setup_samplemap(app, chosen);
-  polyrecon::setup_preview(app, chosen);
-  polyrecon::setup_compare(app, chosen);
-  polyrecon::setup_sweep(app, chosen);
+  polyrecon::setup_app(app, chosen);
   const auto known = app.get_subcommands([&](const CLI::App* sub) { return argc > 1 && sub->get_name() == argv[1]; });
   if (argc > 1 && argv[1][0] != '-' && known.empty())
     throw polyrecon::Error(ExitCode::Usage, fmt::format("no command '{}' (polyrecon --help lists them)", argv[1]));
@@ -82,6 +67,7 @@ int main(int argc, char** argv) {
     const Command command = parse(argc, argv);
     polyrecon::catch_signals();
     if (command) command();
+    polyrecon::require_output_written();
     return static_cast<int>(ExitCode::Done);
   } catch (const polyrecon::Error& e) {
     return fail(code_of(e), e.what());

@@ -12,6 +12,7 @@
 
 #include "cli/checks.h"
 #include "cli/commands.h"
+#include "cli/display_options.h"
 #include "cli/layers.h"
 #include "core/error.h"
 #include "io/color.h"
@@ -77,6 +78,9 @@ void run(const PreviewOptions& o) {
   panels.reserve(o.inputs.size());
   for (const std::string& input : o.inputs) panels.push_back(make_panel(input, o));
   write_png(o.output, compose(panels));
+  if (!has_font())
+    std::fputs("polyrecon: no font was found, captions are left out: install DejaVu Sans (fonts-dejavu-core)\n",
+               stderr);
 }
 
 }  // namespace
@@ -87,11 +91,7 @@ void setup_preview(CLI::App& app, Command& chosen) {
   sub->add_option("inputs", o->inputs, "Images or maps")->required()->type_name("FILE...");
   sub->add_option("-o,--output", o->output, "PNG to write")->required()->type_name("FILE");
   sub->add_option("--layer", o->layer, "Layer to show in place of the beauty")->type_name("NAME");
-  sub->add_option("--view", o->display.view, "View of the display: Standard, Filmic, or one of $OCIO's")
-      ->type_name("NAME");
-  sub->add_option("--exposure", o->display.exposure, "Brighter (or darker) by so many stops")
-      ->check(CLI::Range(-64.0, 64.0))
-      ->type_name("STOPS");
+  add_display_options(*sub, o->display);
   sub->add_flag("--false-colour,--false-color", o->false_color,
                 "Logarithmic false colours with a legend (maps have them anyway)");
   sub->footer(

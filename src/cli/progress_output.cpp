@@ -6,23 +6,20 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
-#include <csignal>
 #include <cstdio>
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "cli/signals.h"
+
 namespace polyrecon {
 namespace {
-
-volatile std::sig_atomic_t arrived = 0;
-
-extern "C" void remember_signal(int signal) { arrived = signal; }
 
 /// Cancels on a signal, says nothing.
 class SignalProgress : public RunProgress {
  public:
-  bool cancelled() const override { return arrived != 0; }
+  bool cancelled() const override { return caught_signal() != 0; }
 };
 
 /// Counts steps over all threads and shows them from time to time.
@@ -155,17 +152,8 @@ void RunProgress::frame(const std::string& /*label*/, std::size_t /*done*/, std:
 
 void RunProgress::failed(const std::string& /*message*/) {}
 
-void catch_signals() {
-  struct sigaction action = {};
-  action.sa_handler = remember_signal;
-  action.sa_flags = static_cast<int>(SA_RESETHAND);
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
-}
-
-int caught_signal() { return arrived; }
-
 std::unique_ptr<RunProgress> make_progress(ProgressStyle style) {
+  poll_signals();
   if (style == ProgressStyle::Auto) style = ::isatty(STDERR_FILENO) != 0 ? ProgressStyle::Bar : ProgressStyle::None;
   switch (style) {
     case ProgressStyle::Bar:

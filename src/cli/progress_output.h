@@ -26,13 +26,8 @@ class RunProgress : public Progress {
   virtual void failed(const std::string& message);
 };
 
-/// From here on SIGINT and SIGTERM ask the running stage to stop; a second one ends the process at once.
-void catch_signals();
-
-/// The signal that arrived, 0 before.
-int caught_signal();
-
-/// Progress on standard error, at most ten times a second; cancelled() is true once a signal arrived.
+/// Progress on standard error, at most ten times a second; cancelled() is true once a signal arrived
+/// (cli/signals.h).
 std::unique_ptr<RunProgress> make_progress(ProgressStyle style);
 
 }  // namespace polyrecon

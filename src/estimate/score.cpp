@@ -39,4 +39,14 @@ Score score(const Image& image, const Image& reference, const Image& reference_v
   return result;
 }
 
+Image relative_error(const Image& image, const Image& reference) {
+  Image out(image.width(), image.height(), 1);
+  for (int c = 0; c < image.channels(); ++c)
+    for (std::size_t i = 0; i < out.pixels(); ++i) {
+      const double x = image.plane(c)[i], r = reference.plane(c)[i];
+      out.plane(0)[i] += static_cast<Real>((x - r) * (x - r) / (r * r + 1e-2) / image.channels());
+    }
+  return out;
+}
+
 }  // namespace polyrecon

@@ -18,4 +18,8 @@ struct Score {
 /// figure; empty: 0. All images have one shape. Throws Error{BadInput} where they do not.
 Score score(const Image& image, const Image& reference, const Image& reference_variance);
 
+/// Where the error is: per pixel the mean over channels of (x - r)^2 / (r^2 + 0.01), 1 channel. Not finite where a
+/// sample of the image is not.
+Image relative_error(const Image& image, const Image& reference);
+
 }  // namespace polyrecon

@@ -6,6 +6,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <array>
+#include <atomic>
 #include <cerrno>
 #include <chrono>
 #include <cstdio>
@@ -44,24 +46,44 @@ std::string temporary_prefix(const std::string& target) {
   return "." + fs::path(target).filename().string().substr(0, kLongestStem) + std::string(kTemporaryMark);
 }
 
+/// Paths of the temporaries in use, for a signal handler: it may neither lock nor allocate.
+std::array<std::atomic<const char*>, 64> in_use{};
+
+/// The slot that now holds path; nullptr where all are taken (such a file would outlive a signal, no worse than a
+/// crash).
+std::atomic<const char*>* remember(const char* path) {
+  for (auto& slot : in_use) {
+    const char* free = nullptr;
+    if (slot.compare_exchange_strong(free, path)) return &slot;
+  }
+  return nullptr;
+}
+
 /// A new file beside the target that is locked as long as it is in use, and removed unless it took the target's name.
 class Temporary {
  public:
   explicit Temporary(const std::string& target) : target_(target) {
     std::random_device random;
     for (int attempt = 0; attempt < 100 && descriptor_ < 0; ++attempt) {
+      forget();
       path_ =
           (folder_of(target) / fmt::format("{}{:08x}{:08x}", temporary_prefix(target), random(), random())).string();
+      slot_ = remember(path_.c_str());
       descriptor_ = ::open(path_.c_str(), O_CREAT | O_EXCL | O_RDWR | O_CLOEXEC, 0666);
       if (descriptor_ < 0 && errno != EEXIST) break;
     }
-    if (descriptor_ < 0) fail(target, "making a file in its folder", errno);
+    if (descriptor_ < 0) {
+      const int error = errno;
+      forget();
+      fail(target, "making a file in its folder", error);
+    }
     ::flock(descriptor_, LOCK_EX | LOCK_NB);
   }
   Temporary(const Temporary&) = delete;
   Temporary& operator=(const Temporary&) = delete;
   ~Temporary() {
     if (!renamed_) ::unlink(path_.c_str());
+    forget();
     ::close(descriptor_);
   }
 
@@ -82,9 +104,15 @@ class Temporary {
   }
 
  private:
+  void forget() {
+    if (slot_) slot_->store(nullptr);
+    slot_ = nullptr;
+  }
+
   std::string target_, path_;
   int descriptor_ = -1;
   bool renamed_ = false;
+  std::atomic<const char*>* slot_ = nullptr;
 };
 
 /// The rename lasts only once the folder is on disk; file systems that cannot flush a folder say EINVAL.
@@ -130,6 +158,11 @@ void check_target(const std::string& target) {
 }
 
 }  // namespace
+
+void remove_temporaries() {
+  for (const auto& slot : in_use)
+    if (const char* path = slot.load()) ::unlink(path);
+}
 
 void write_text_file(const std::string& target, const std::string& text) {
   const auto write = [&](const std::string& path) { std::ofstream(path, std::ios::binary) << text; };

@@ -13,6 +13,10 @@ namespace polyrecon {
 void write_atomically(const std::string& target, const std::function<void(const std::string& path)>& write,
                       const std::function<void(const std::string& path)>& verify);
 
+/// Removes the new files of all writes that are under way: what a signal handler calls before it ends the process
+/// (async-signal-safe).
+void remove_temporaries();
+
 /// Writes text as it is by write_atomically.
 void write_text_file(const std::string& target, const std::string& text);
 

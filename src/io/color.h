@@ -32,4 +32,7 @@ LogRange log_range(const Image& values);
 /// cyan.
 Image false_color(const Image& values, const LogRange& range);
 
+/// Values 0 to 1 (1 channel) -> display-encoded RGB on the colour map "magma", linear: how FLIP is shown.
+Image flip_color(const Image& values);
+
 }  // namespace polyrecon

@@ -60,7 +60,14 @@ void draw_text(OIIO::ImageBuf& image, std::string text, int x, int y, int width,
                                   font(), text_color);
 }
 
-/// The scale of a false-colour picture: the colours from low to high, and these two numbers below.
+/// Where text stands that is centred at x, kept within from..to.
+int centred(const std::string& text, int x, int from, int to) {
+  const int length = font().empty() ? 0 : OIIO::ImageBufAlgo::text_size(text, text_size, font()).width();
+  return std::max(from, std::min(x - length / 2, to - length));
+}
+
+/// The scale of a false-colour picture: the colours from low to high, below them these two numbers and the powers of
+/// ten between, where there is room.
 void draw_legend(OIIO::ImageBuf& image, const LogRange& range, int x, int y, int width) {
   Image scale(width, 1, 1);
   for (int i = 0; i < width; ++i)
@@ -71,8 +78,29 @@ void draw_legend(OIIO::ImageBuf& image, const LogRange& range, int x, int y, int
     const std::array<float, 3> pixel = pixel_of(colors, i, 0);
     for (int row = 0; row < legend_height; ++row) image.setpixel(x + i, y + row, pixel.data(), 3);
   }
-  draw_text(image, fmt::format("{:.3g}", range.low), x, y + legend_height, width / 2, Align::Left);
-  draw_text(image, fmt::format("{:.3g}", range.high), x + width, y + legend_height, width / 2, Align::Right);
+  const int below = y + legend_height;
+  draw_text(image, fmt::format("{:.3g}", range.low), x, below, width / 2, Align::Left);
+  draw_text(image, fmt::format("{:.3g}", range.high), x + width, below, width / 2, Align::Right);
+  if (range.high <= range.low) return;
+  constexpr int room = 48;  // of one number
+  int taken = x + room;
+  for (double power = std::ceil(std::log10(range.low)); std::pow(10, power) < range.high; ++power) {
+    const double value = std::pow(10, power), at = std::log(value / range.low) / std::log(range.high / range.low);
+    const int tick = x + static_cast<int>(at * (width - 1));
+    const std::string text = fmt::format("{:g}", value);
+    const int left = centred(text, tick, x, x + width);
+    if (left < taken || tick + room > x + width - room / 2) continue;
+    const std::array<float, 3> dark{ground, ground, ground};
+    for (int row = legend_height / 2; row < legend_height; ++row) image.setpixel(tick, y + row, dark.data(), 3);
+    draw_text(image, text, left, below, room, Align::Left);
+    taken = left + room;
+  }
+}
+
+void check_size(std::size_t width, std::size_t height) {
+  if (width * height > std::size_t{1} << 28)
+    throw Error(ExitCode::OutOfMemory,
+                fmt::format("the preview would be {} x {} pixels: give fewer files", width, height));
 }
 
 struct Layout {
@@ -93,9 +121,7 @@ Layout lay_out(const std::vector<Panel>& panels) {
   for (const Panel& p : panels) width += static_cast<std::size_t>(p.rgb.width());
   const int below = l.captions + (legends ? legend_height + strip_height + gap : 0);
   const auto height = static_cast<std::size_t>(l.pictures) + static_cast<std::size_t>(below + 2 * l.margin);
-  if (width * height > std::size_t{1} << 28)
-    throw Error(ExitCode::OutOfMemory,
-                fmt::format("the preview would be {} x {} pixels: give fewer files", width, height));
+  check_size(width, height);
   l.width = static_cast<int>(width);
   l.height = static_cast<int>(height);
   return l;
@@ -121,6 +147,24 @@ Image compose(const std::vector<Panel>& panels) {
       for (int c = 0; c < 3; ++c) out.at(column, y, c) = sheet.getchannel(column, y, 0, c);
   return out;
 }
+
+Image stack(const std::vector<Image>& rows) {
+  std::size_t width = 0, height = 0;
+  for (const Image& row : rows) {
+    width = std::max(width, static_cast<std::size_t>(row.width()));
+    height += static_cast<std::size_t>(row.height());
+  }
+  check_size(width, height);
+  Image out(static_cast<int>(width), static_cast<int>(height), 3, ground);
+  int y = 0;
+  for (const Image& row : rows) {
+    paste(row, row.bounds(), out, 0, y);
+    y += row.height();
+  }
+  return out;
+}
+
+bool has_font() { return !font().empty(); }
 
 void write_png(const std::string& target, const Image& rgb) {
   const auto write = [&](const std::string& path) {

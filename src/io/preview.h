@@ -20,6 +20,12 @@ struct Panel {
 /// Error{OutOfMemory} where the picture would have more than 2^28 pixels.
 Image compose(const std::vector<Panel>& panels);
 
+/// The rows one below the other, from the left, on the same dark ground. Throws like compose.
+Image stack(const std::vector<Image>& rows);
+
+/// Whether this machine has a font to write captions with.
+bool has_font();
+
 /// Writes rgb (3 channels, 0..1) as 8-bit PNG; the file takes its name only once it is whole.
 /// Throws Error{CannotWrite}; an older file is then untouched.
 void write_png(const std::string& target, const Image& rgb);

@@ -99,9 +99,11 @@ TEST_F(Compare, PrintsTheFiguresWorkedOutByHand) {
   EXPECT_NEAR(row["trimmed"], 0.0098812, 1e-6);
   EXPECT_NEAR(row["energy"], 0.1, 1e-6);
   EXPECT_EQ(row["bad"], 0);
+  EXPECT_GT(row["FLIP"], 0.01);
+  EXPECT_LT(row["FLIP"], 0.5);
   const Outcome text = run({"compare", "a.exr", "a.exr", "ref.exr"});
   ASSERT_EQ(text.code, 0);
-  EXPECT_NE(text.out.find("relMSE 0.00990  trimmed 0.00988  energy +0.10000  bad 0"), std::string::npos) << text.out;
+  EXPECT_NE(text.out.find("relMSE 0.00990  trimmed 0.00988  energy +0.10000  FLIP 0."), std::string::npos) << text.out;
 }
 
 TEST_F(Compare, CountsBadPixels) {
@@ -133,6 +135,11 @@ TEST_F(Compare, RefusesWhatCannotBeCompared) {
   EXPECT_EQ(run({"compare", "a.exr"}).code, 2);
   EXPECT_EQ(run({"compare", "a.exr", "b.exr"}).code, 3);
   EXPECT_EQ(run({"compare", "depth.exr", "a.exr"}).code, 4);
+  EXPECT_EQ(run({"compare", "a.exr", "a.exr", "--html", "a.exr"}).code, 2);
+  EXPECT_EQ(run({"compare", "a.exr", "a.exr", "--html", "page", "--picture", "page"}).code, 2);
+  EXPECT_EQ(run({"compare", "a.exr", "a.exr", "--html", "no/such/page.html"}).code, 5);
+  EXPECT_EQ(run({"compare", "a.exr", "a.exr", "--html", "page.html", "--view", "Nothing"}).code, 2);
+  EXPECT_FALSE(exists("page.html"));
 }
 
 class Inspect : public ProgramTest {};

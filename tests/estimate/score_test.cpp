@@ -50,6 +50,15 @@ TEST(Score, OnePixelHasNoTrimmedMean) {
   EXPECT_TRUE(std::isnan(s.trimmed));
 }
 
+TEST(RelativeError, IsTheMeanOverChannelsOfEachPixel) {
+  Image image(2, 1, 3, 2), reference(2, 1, 3, 2);
+  image.at(1, 0, 0) = 3;  // (3 - 2)^2 / (4 + 0.01) in one of three channels
+  const Image error = relative_error(image, reference);
+  EXPECT_EQ(error.channels(), 1);
+  EXPECT_EQ(error.at(0, 0, 0), 0);
+  EXPECT_NEAR(error.at(1, 0, 0), 1 / 4.01 / 3, 1e-7);
+}
+
 TEST(Score, OtherSizesAreRefused) { EXPECT_THROW(score(Image(2, 1, 3), Image(1, 2, 3), {}), Error); }
 
 }  // namespace

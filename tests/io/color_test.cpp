@@ -9,6 +9,7 @@
 #include <fstream>
 #include <limits>
 #include <string>
+#include <vector>
 
 #include "core/error.h"
 #include "io/preview.h"
@@ -178,6 +179,38 @@ TEST(Compose, PanelsStandApartAndKeepTheirPixels) {
   EXPECT_EQ(out.at(17, 13, 1), 0);
   EXPECT_LT(out.at(18, 8, 0), Real{0.2f});  // ground between the panels
   EXPECT_EQ(out.at(26, 8, 2), 1);
+}
+
+TEST(Compose, TheLegendMarksThePowersOfTen) {
+  // A panel 320 wide from 0.01 to 10: 0.1 and 1 lie at one and two thirds. Their ticks cut the lower half of the bar.
+  const Image out = compose({{Image(320, 4, 3, 1), "", {0.01, 10}}});
+  const int bar = 8 + 4 + 8;  // below the margin, the picture and a gap
+  const auto is_tick = [&](int x) {
+    return out.at(x, bar + 11, 0) < Real{0.1f} && out.at(x, bar + 11, 0) == out.at(x, bar + 11, 2);
+  };
+  std::vector<int> ticks;
+  for (int x = 8 + 1; x < 8 + 319; ++x)
+    if (is_tick(x)) ticks.push_back(x - 8);
+  EXPECT_EQ(ticks, (std::vector<int>{106, 212}));
+}
+
+TEST(Stack, RowsStandBelowEachOtherFromTheLeft) {
+  const Image out = stack({Image(3, 2, 3, 1), Image(5, 1, 3, Real{0.5})});
+  EXPECT_EQ(out.width(), 5);
+  EXPECT_EQ(out.height(), 3);
+  EXPECT_EQ(out.at(2, 1, 0), 1);
+  EXPECT_LT(out.at(3, 1, 0), Real{0.2f});  // ground beside the narrower row
+  EXPECT_EQ(out.at(4, 2, 2), Real{0.5});
+}
+
+TEST(FlipColor, IsMagmaOnALinearScale) {
+  Image values(2, 1, 1);
+  values.at(1, 0, 0) = 1;
+  const Image out = flip_color(values);
+  // magma: (0.0015, 0.0005, 0.0139) to (0.9871, 0.9914, 0.7495)
+  EXPECT_NEAR(out.at(0, 0, 2), 0.0139, 2e-3);
+  EXPECT_NEAR(out.at(1, 0, 0), 0.9871, 2e-3);
+  EXPECT_NEAR(out.at(1, 0, 2), 0.7495, 2e-3);
 }
 
 TEST(Compose, RefusesAPictureBeyondReason) {

@@ -1,0 +1,37 @@
+#include "cli/app.h"
+
+namespace polyrecon {
+
+void setup_app(CLI::App& app, Command& chosen) {
+  app.name("polyrecon");
+  app.description("Rebuilds clean images from noisy Monte Carlo renders by adaptive polynomials.");
+  app.set_version_flag("--version", "polyrecon " POLYRECON_VERSION);
+  app.require_subcommand(1);
+  app.fallthrough(false);
+  app.footer(
+      "Exit codes:\n"
+      "  0         done\n"
+      "  1         internal error\n"
+      "  2         wrong use: unknown option, contradiction, value out of range\n"
+      "  3         bad input: damaged, incomplete or unsupported file\n"
+      "  4         a file, frame or pass is missing\n"
+      "  5         the output could not be written\n"
+      "  6         the result failed its own check\n"
+      "  7         the renderer failed\n"
+      "  33        not enough memory\n"
+      "  130, 143  interrupted, terminated\n"
+      "Examples:\n"
+      "  polyrecon denoise -i render.exr -o clean.exr\n"
+      "  polyrecon inspect render.exr\n"
+      "  polyrecon merge part*.exr -o merged.exr\n"
+      "Each command has a --help of its own.");
+  setup_denoise(app, chosen);
+  setup_inspect(app, chosen);
+  setup_merge(app, chosen);
+  setup_samplemap(app, chosen);
+  setup_preview(app, chosen);
+  setup_compare(app, chosen);
+  setup_sweep(app, chosen);
+}
+
+}  // namespace polyrecon

@@ -1,0 +1,24 @@
+// Denoises one frame by the library's three calls: consumer IN.exr OUT.exr
+
+#include <cstdio>
+#include <exception>
+
+#include "core/progress.h"
+#include "io/read_frame.h"
+#include "io/write_result.h"
+#include "pipeline/reconstruct.h"
+
+int main(int argc, char** argv) {
+  if (argc != 3) return 2;
+  try {
+    polyrecon::ReadResult in = polyrecon::read_frame(argv[1]);
+    polyrecon::Progress silent;
+    const polyrecon::Result result =
+        polyrecon::reconstruct(in.frame, polyrecon::params_for(polyrecon::Quality::Standard), silent);
+    polyrecon::write_result(in.source, {{in.frame.beauty.name, result.beauty, false}}, argv[2], {});
+    return 0;
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "consumer: %s\n", e.what());
+    return 1;
+  }
+}

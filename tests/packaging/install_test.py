@@ -1,0 +1,106 @@
+#!/usr/bin/env python3
+"""What `cmake --install` and `cpack` make, as their users meet it: install_test.py PROGRAM BUILD_FOLDER SAMPLES
+
+run.sh beside it goes on where this ends: it installs the Debian packages in a fresh Debian.
+"""
+
+import gzip
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+PROGRAM, BUILD, SAMPLES = (pathlib.Path(word).resolve() for word in sys.argv[1:4])
+CONSUMER = pathlib.Path(__file__).resolve().parent / "consumer"
+
+
+def run(*words):
+    done = subprocess.run([str(word) for word in words], capture_output=True, text=True)
+    if done.returncode != 0:
+        raise AssertionError(f"{' '.join(map(str, words))}: exit code {done.returncode}\n{done.stdout}\n{done.stderr}")
+    return done.stdout
+
+
+class Folder(unittest.TestCase):
+    def setUp(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp())
+        self.addCleanup(shutil.rmtree, self.folder)
+
+
+class Install(Folder):
+    def test_a_program_of_somebody_else_builds_against_the_installed_library(self):
+        prefix, build = self.folder / "prefix", self.folder / "build"
+        run("cmake", "--install", BUILD, "--prefix", prefix)
+        for name in ("bin/polyrecon", "share/man/man1/polyrecon.1", "share/zsh/site-functions/_polyrecon"):
+            self.assertTrue((prefix / name).is_file(), name)
+        run("cmake", "-S", CONSUMER, "-B", build, "-G", "Ninja", f"-DCMAKE_PREFIX_PATH={prefix}")
+        run("cmake", "--build", build)
+        noisy, ours, theirs = SAMPLES / "study_small_0.exr", self.folder / "ours.exr", self.folder / "theirs.exr"
+        run(prefix / "bin/polyrecon", "denoise", "-i", noisy, "-o", ours, "--quiet")
+        run(build / "consumer", noisy, theirs)
+        run("/usr/bin/oiiotool", "-a", "--fail", "0", "--hardfail", "0", ours, theirs, "--diff")
+        self.assertGreater(
+            float(re.search(r"relMSE (\S+)", run(PROGRAM, "compare", noisy, theirs)).group(1)), 1e-4, "nothing changed"
+        )
+
+
+class DebianPackages(Folder):
+    def setUp(self):
+        super().setUp()
+        run("cpack", "--config", BUILD / "CPackConfig.cmake", "-G", "DEB", "-B", self.folder)
+        self.packages = {path.name.split("_")[0]: path for path in self.folder.glob("*.deb")}
+
+    def test_they_hold_what_debian_expects(self):
+        self.assertEqual(sorted(self.packages), ["libpolyrecon-dev", "polyrecon"])
+        names = {}
+        for package, path in self.packages.items():
+            lines = [line.split(None, 5) for line in run("dpkg-deb", "--contents", path).splitlines()]
+            names[package] = [line[5].lstrip(".") for line in lines]
+            for line in lines:
+                self.assertEqual(line[1], "root/root", line)
+                self.assertNotEqual(line[0][8], "w", line)
+            for document in ("copyright", "changelog.gz"):
+                self.assertIn(f"/usr/share/doc/{package}/{document}", names[package])
+            self.assertIn("md5sums", run("dpkg-deb", "--ctrl-tarfile", path))
+        self.assertLessEqual(
+            {
+                "/usr/bin/polyrecon",
+                "/usr/share/man/man1/polyrecon.1.gz",
+                "/usr/share/man/man1/polyrecon-denoise.1.gz",
+                "/usr/share/bash-completion/completions/polyrecon",
+                "/usr/share/zsh/vendor-completions/_polyrecon",
+                "/usr/share/fish/vendor_completions.d/polyrecon.fish",
+            },
+            set(names["polyrecon"]),
+        )
+        library = names["libpolyrecon-dev"]
+        self.assertIn("/usr/include/polyrecon/pipeline/reconstruct.h", library)
+        self.assertTrue(any(name.endswith("/libpolyrecon_core.a") for name in library), library)
+        self.assertTrue(any(name.endswith("/polyreconConfig.cmake") for name in library), library)
+        self.assertFalse(set(names["polyrecon"]) & {name for name in library if not name.endswith("/")})
+
+    def test_their_dependencies_are_packages_of_debian_and_enough_to_run(self):
+        depends = run("dpkg-deb", "--field", self.packages["polyrecon"], "Depends")
+        for word in ("libc6", "libopenimageio", "libopenexr", "libopencolorio", "libtbb", "libfmt", "fonts-dejavu-core"):
+            self.assertIn(word, depends)
+        # Every library that the program loads belongs to one of them.
+        needed = re.findall(r"NEEDED\)\s+Shared library: \[(\S+)\]", run("readelf", "--dynamic", PROGRAM))
+        self.assertTrue(needed)
+        for library in needed:
+            owners = re.findall(r"^([\w.+-]+)(?::\w+)?: ", run("dpkg-query", "--search", f"*/{library}"), re.M)
+            self.assertTrue(any(owner in depends for owner in owners), (library, owners, depends))
+
+    def test_the_packed_program_and_pages_are_whole(self):
+        run("dpkg-deb", "--extract", self.packages["polyrecon"], self.folder / "root")
+        program = self.folder / "root" / "usr" / "bin" / "polyrecon"
+        self.assertEqual(run(program, "--version"), run(PROGRAM, "--version"))
+        self.assertNotIn(".symtab", run("readelf", "--sections", program))
+        page = gzip.decompress((self.folder / "root/usr/share/man/man1/polyrecon.1.gz").read_bytes())
+        self.assertIn(b"Exit codes", page)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1], verbosity=2)

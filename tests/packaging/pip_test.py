@@ -1,0 +1,78 @@
+#!/usr/bin/env python3
+"""`pip install .` into a fresh environment, and the commands that it gives: pip_test.py SOURCE_FOLDER PROGRAM"""
+
+import ast
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import tomllib
+import unittest
+import venv
+
+SOURCE, PROGRAM = (pathlib.Path(word).resolve() for word in sys.argv[1:3])
+PIPELINES = SOURCE / "pipelines"
+PROJECT = tomllib.loads((SOURCE / "pyproject.toml").read_text())["project"]
+GIVEN_BY_THE_RENDERER = {"bpy", "mathutils", "oslquery", "cycles"}
+MODULES = {"yaml": "PyYAML"}
+
+
+def run(*words):
+    done = subprocess.run([str(word) for word in words], capture_output=True, text=True)
+    if done.returncode != 0:
+        raise AssertionError(f"{' '.join(map(str, words))}: exit code {done.returncode}\n{done.stdout}\n{done.stderr}")
+    return done.stdout
+
+
+def files_below(folder):
+    return {path.relative_to(folder) for path in folder.rglob("*") if path.is_file() and path.suffix != ".pyc"}
+
+
+class Installed(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = pathlib.Path(tempfile.mkdtemp())
+        cls.addClassCleanup(shutil.rmtree, cls.folder)
+        # A copy: setuptools leaves its traces beside what it builds from.
+        source = cls.folder / "source"
+        source.mkdir()
+        for name in ("pyproject.toml", "README.md", "LICENSE"):
+            shutil.copy(SOURCE / name, source)
+        shutil.copytree(PIPELINES, source / "pipelines", ignore=shutil.ignore_patterns("__pycache__"))
+        environment = cls.folder / "environment"
+        venv.create(environment, with_pip=True, system_site_packages=True)
+        cls.bin = environment / "bin"
+        # The dependencies are Debian's packages here; that they are declared is checked below.
+        run(cls.bin / "python3", "-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-deps", source)
+
+    def test_everything_is_there(self):
+        code = "import pathlib, polyrecon_pipelines; print(pathlib.Path(polyrecon_pipelines.__file__).parent)"
+        installed = pathlib.Path(run(self.bin / "python3", "-c", code).strip())
+        self.assertTrue(installed.is_relative_to(self.folder), installed)
+        self.assertEqual(files_below(installed), files_below(PIPELINES))
+
+    def test_every_command_has_help(self):
+        self.assertTrue(PROJECT["scripts"])
+        for command in PROJECT["scripts"]:
+            self.assertIn("usage:", run(self.bin / command, "--help"))
+
+    def test_the_version_is_the_program_s(self):
+        self.assertEqual(run(PROGRAM, "--version").split(), ["polyrecon", PROJECT["version"]])
+
+    def test_what_is_imported_is_declared(self):
+        imported = set()
+        for path in PIPELINES.rglob("*.py"):
+            for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"), path)):
+                if isinstance(node, ast.Import):
+                    imported |= {alias.name.split(".")[0] for alias in node.names}
+                elif isinstance(node, ast.ImportFrom) and node.level == 0:
+                    imported.add(node.module.split(".")[0])
+        siblings = {path.stem for path in PIPELINES.rglob("*.py")}  # of the scripts that a renderer runs
+        foreign = imported - set(sys.stdlib_module_names) - GIVEN_BY_THE_RENDERER - siblings
+        declared = {*PROJECT["dependencies"], *PROJECT["optional-dependencies"]["bench"]}
+        self.assertLessEqual({MODULES.get(name, name) for name in foreign}, declared)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1], verbosity=2)
