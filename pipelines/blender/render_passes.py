@@ -17,11 +17,9 @@ if not __package__:  # run as a script from a checkout
     sys.path[0] = str(pathlib.Path(__file__).resolve().parents[2])
     __package__ = "pipelines.blender"
 
+from ..loop.command import each_frame
 from ..loop.errors import DriverError, ExitCode, run_main
-from ..loop.frames import frame_path
-from ..loop.polyrecon_cli import Polyrecon
-from ..loop.progress import Progress
-from .options import add_common, frames_of, passes_of, renderer_of
+from .options import add_common, renderer_of
 
 
 def arguments(words):
@@ -38,20 +36,11 @@ def arguments(words):
 
 def work(words):
     options = arguments(words)
-    frames = frames_of(options)
-    polyrecon = Polyrecon(options.polyrecon)
     renderer = renderer_of(options)
-    try:
-        with Progress("none" if options.quiet else options.progress) as progress:
-            for frame in frames:
-                one_frame(options, renderer, polyrecon, frame, progress)
-    finally:
-        renderer.close()
+    each_frame(options, renderer, lambda *frame: one_frame(options, renderer, *frame))
 
 
-def one_frame(options, renderer, polyrecon, frame, progress):
-    output = frame_path(options.output, frame, bool(options.frames))
-    passes = passes_of(options, output, frame)
+def one_frame(options, renderer, frame, output, passes, polyrecon, progress):
     try:
         passes.mkdir(parents=True, exist_ok=True)
     except OSError as error:

@@ -48,7 +48,8 @@ def _arguments(words):
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("scene", type=pathlib.Path, metavar="SCENE.pov")
-    command.add_arguments(parser, 16, "subpixels of the first pass: 4, 16, 36, 64 (16)")
+    command.add_frame_arguments(parser)
+    command.add_loop_arguments(parser, 16, "subpixels of the first pass: 4, 16, 36, 64 (16)")
     add_povray_arguments(parser)
     options = parser.parse_args(words)
     command.check_budget(parser, options)
