@@ -65,10 +65,11 @@ void add_patch(int patch, const Real* in, std::ptrdiff_t step, Real factor, Real
   }
 }
 
+/// Weights in place of distances; one that is not a number, of values near the largest there are, counts as far.
 POLYRECON_SIMD void weights_of(Real* distance, Real inverse_square, int n) {
   for (int i = 0; i < n; ++i) {
-    const Real e = std::clamp(distance[i] * inverse_square, Real(0), cut_exponent);
-    distance[i] = static_cast<Real>(exp_minus(static_cast<float>(e)));
+    const Real e = std::max(distance[i] * inverse_square, Real(0));
+    distance[i] = static_cast<Real>(exp_minus(static_cast<float>(e < cut_exponent ? e : cut_exponent)));
   }
 }
 
