@@ -2,8 +2,8 @@
 """Renders the animation of scenes/parade.py, 10 frames of 160 x 90, into out/sequence/: noisy frames `parade.####.exr` of 8
 samples (8 subsets of one sequence, merged), with Blender's motion vectors, and references `ref.####.exr` of 256 samples.
 
-Needs a Python that has the Blender 5 module (pip install bpy==5.0.1) and polyrecon built. What is there already is not
-rendered again.
+Needs a Python that has the Blender 5 module (pip install bpy==5.0.1) and polyrecon built; five minutes on two cores. What is
+there already is not rendered again. tests/bench/sequence.py measures on them.
 """
 
 import argparse

@@ -28,6 +28,8 @@ void check(const DenoiseOptions& o, const std::vector<FrameFiles>& frames) {
     throw Error(ExitCode::Usage, "--budget, --export and the like need --sample-map");
   if (wants_plan(o) && o.time_budget <= 0 && o.settings_given)
     throw Error(ExitCode::Usage, "--target chooses the settings: leave --quality, --stages and --order away");
+  if (o.frame_radius > 0 && !is_sequence(o))
+    throw Error(ExitCode::Usage, "--frame-radius needs a sequence: -i with #### or %04d in its name, or several files");
   if (!o.sample_map.empty()) check_sample_map_options(o.sampling);
   std::vector<std::string> outputs;
   for (const FrameFiles& files : frames) {
@@ -46,7 +48,7 @@ void work(const std::vector<FrameFiles>& frames, const DenoiseOptions& o, RunPro
   if (o.dry_run) return show_plan(frames, o);
   if (is_sequence(o)) return run_sequence(frames, o, progress);
   progress.frame(frames.front().label(), 0, 1);
-  auto loaded = fetch_frame(frames.front(), o, [&] { return progress.cancelled(); });
+  auto loaded = FrameFetcher(o, [&] { return progress.cancelled(); }).fetch(frames.front());
   if (loaded)
     denoise_frame(frames.front(), std::move(*loaded), o, progress);
   else if (!o.quiet)
@@ -56,8 +58,10 @@ void work(const std::vector<FrameFiles>& frames, const DenoiseOptions& o, RunPro
 
 void run(DenoiseOptions o) {
   for (const std::string& role : o.roles) o.read.map.push_back(parse_mapping(role));
-  o.read.accept = [params = params_of(o), ahead = is_sequence(o)](const std::string& path, FrameShape shape) {
-    if (ahead) shape.channels *= 2;  // the next frame is read while one is worked
+  o.read.motion = o.frame_radius > 0;
+  o.read.accept = [o](const std::string& path, FrameShape shape) {
+    const Params params = params_of(o);
+    if (is_sequence(o)) shape.beside = channels_ahead(shape, params) + neighbour_channels(shape, 2 * o.frame_radius);
     require_memory(path, shape, params);
   };
   const auto progress = make_progress(o.quiet ? ProgressStyle::None : o.progress);

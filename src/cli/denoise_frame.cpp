@@ -92,9 +92,15 @@ std::string input_text(const ReadResult& in) {
 
 }  // namespace
 
+DenoiseOptions options_for(const FrameFiles& files, const DenoiseOptions& options) {
+  DenoiseOptions out = options;
+  if (files.frame) out.sampling.frame = *files.frame;
+  return out;
+}
+
 LoadedFrame load_frame(const std::string& path, const DenoiseOptions& options) {
   const auto start = Clock::now();
-  LoadedFrame loaded{read_frame(path, options.read), 0};
+  LoadedFrame loaded{read_frame(path, options.read), 0, {}};
   loaded.read_seconds = seconds_since(start);
   return loaded;
 }
@@ -103,10 +109,13 @@ void denoise_frame(const FrameFiles& files, LoadedFrame loaded, const DenoiseOpt
   const auto start = Clock::now();
   ReadResult& in = loaded.in;
   print(o.quiet, input_text(in));
+  std::vector<TimedNeighbour> neighbours;
+  for (const LoadedNeighbour& neighbour : loaded.neighbours)
+    neighbours.push_back({neighbour.offset, neighbour.frame.get()});
   RunReport report;
   if (wants_plan(o)) report.plan = plan_frame(o, in.frame, loaded.read_seconds, progress);
   const Params params = report.plan ? report.plan->params : params_of(o);
-  const Result result = reconstruct(in.frame, params, progress);
+  const Result result = reconstruct(in.frame, neighbours, params, progress);
 
   report.notes = in.notes;
   const auto written = Clock::now();

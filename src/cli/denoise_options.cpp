@@ -112,6 +112,12 @@ void add_sequence_options(CLI::App& app, DenoiseOptions& o) {
       ->check([](const std::string& text) { return std::string(text.empty() ? "is empty" : ""); }, "", "")
       ->type_name("RANGES")
       ->group(group);
+  app.add_option("--frame-radius", o.frame_radius,
+                 "Frames before and after that help each frame, along its motion vectors where there are any")
+      ->check(CLI::Range(0, 8))
+      ->capture_default_str()
+      ->type_name("R")
+      ->group(group);
   app.add_flag("--skip-existing", o.skip_existing,
                "Leave frames alone whose result was made from the same input, settings and version")
       ->group(group);
@@ -140,6 +146,7 @@ Params with_options(Params params, const DenoiseOptions& o) {
   if (o.max_memory) params.max_memory = *o.max_memory;
   params.reconstruct_alpha = o.alpha;
   apply_effects(o.effects, params);
+  params.temporal.radius = o.frame_radius;
   return params;
 }
 
@@ -155,6 +162,7 @@ std::string settings_text(const DenoiseOptions& o) {
   for (const std::string& aov : o.read.aovs) text += " --aov '" + aov + "'";
   for (const std::string& role : o.roles) text += " --map '" + role + "'";
   if (o.read.samples > 0) text += fmt::format(" --samples {:g}", o.read.samples);
+  if (o.frame_radius > 0) text += fmt::format(" --frame-radius {}", o.frame_radius);
   if (o.keep_noisy) text += " --keep-noisy";
   if (!o.sample_map.empty()) text += sample_map_settings(o.sampling);
   return text;

@@ -17,6 +17,7 @@ namespace polyrecon {
 struct DenoiseOptions {
   std::vector<std::string> inputs;
   std::string output, error_map, order_map, sample_map, report;
+  int frame_radius = 0;            ///< Frames before and after that join.
   std::string frames;              ///< "1-10,20-40x2"; empty: every frame that is there.
   std::vector<std::string> roles;  ///< "role=LAYER"
   ReadOptions read;

@@ -1,5 +1,7 @@
 #include "cli/finished.h"
 
+#include <fmt/format.h>
+
 #include <filesystem>
 #include <system_error>
 
@@ -23,9 +25,11 @@ bool says(const FileInfo& file, const std::string& attribute, const std::string&
 
 }  // namespace
 
-std::string input_identity(const FrameFiles& /*files*/, const FrameSource& source) {
+std::string input_identity(const FrameFiles& files, const FrameSource& source) {
   std::string text;
   for (const FileInfo& file : source.files) text += (text.empty() ? "" : "; ") + file_identity(file.path);
+  for (const NeighbourFile& neighbour : files.neighbours)
+    if (exists(neighbour.path)) text += fmt::format("; {:+d}: {}", neighbour.offset, file_identity(neighbour.path));
   return text;
 }
 

@@ -8,8 +8,8 @@
 
 namespace polyrecon {
 
-/// What the result of a frame was made from: the identity (io/file_identity.h) of every file that takes part; goes into
-/// the result as polyrecon/input.
+/// What the result of a frame was made from: the identity (io/file_identity.h) of every file that takes part, the
+/// neighbours in time that are there among them; goes into the result as polyrecon/input.
 std::string input_identity(const FrameFiles& files, const FrameSource& source);
 
 /// Whether all outputs of a frame are there, decode, and the picture was made from the very input, with the same

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <set>
 #include <system_error>
@@ -41,11 +42,32 @@ std::string in_folder(const OutputName& name, const std::string& input) {
   return (fs::path(*name.given) / file).string();
 }
 
+/// Neighbours by number, whether they are asked for or not.
+void add_neighbours(const FramePattern& inputs, int radius, std::vector<FrameFiles>& frames) {
+  std::set<int> asked;
+  for (const FrameFiles& files : frames) asked.insert(*files.frame);
+  for (FrameFiles& files : frames)
+    for (int k = -radius; k <= radius; ++k)
+      if (k != 0)
+        files.neighbours.push_back(
+            {k, *files.frame + k, inputs.path(*files.frame + k), asked.count(*files.frame + k) > 0});
+}
+
+/// Neighbours by their place in the list.
+void add_neighbours(int radius, std::vector<FrameFiles>& frames) {
+  const int count = static_cast<int>(frames.size());
+  for (int n = 0; n < count; ++n)
+    for (int k = std::max(-radius, -n); k <= std::min(radius, count - 1 - n); ++k)
+      if (k != 0)
+        frames[static_cast<std::size_t>(n)].neighbours.push_back(
+            {k, n + k, frames[static_cast<std::size_t>(n + k)].input, true});
+}
+
 std::vector<FrameFiles> frames_of_pattern(const DenoiseOptions& o, const FramePattern& inputs) {
   std::vector<FrameFiles> frames;
   for (const int n : o.frames.empty() ? inputs.existing_frames() : parse_frames(o.frames)) {
     frames.emplace_back();
-    frames.back().frame = n;
+    frames.back().frame = frames.back().place = n;
     frames.back().input = inputs.path(n);
   }
   for (const OutputName& name : output_names(o)) {
@@ -56,6 +78,7 @@ std::vector<FrameFiles> frames_of_pattern(const DenoiseOptions& o, const FramePa
                   fmt::format("{} {}: a sequence needs #### or %04d in the name", name.option, *name.given));
     for (FrameFiles& files : frames) files.*name.path = pattern->path(*files.frame);
   }
+  add_neighbours(inputs, o.frame_radius, frames);
   return frames;
 }
 
@@ -65,6 +88,7 @@ std::vector<FrameFiles> frames_of_list(const DenoiseOptions& o) {
     frames.emplace_back();
     frames.back().input = input;
     frames.back().frame = frame_in_name(input);
+    frames.back().place = static_cast<int>(frames.size()) - 1;
   }
   for (const OutputName& name : output_names(o)) {
     if (name.given->empty()) continue;
@@ -76,6 +100,7 @@ std::vector<FrameFiles> frames_of_list(const DenoiseOptions& o) {
       files.*name.path = pattern ? pattern->path(*files.frame) : in_folder(name, files.input);
     }
   }
+  add_neighbours(o.frame_radius, frames);
   return frames;
 }
 
@@ -106,7 +131,7 @@ std::vector<FrameFiles> list_frames(const DenoiseOptions& o) {
       throw Error(ExitCode::Usage,
                   fmt::format("--frames {}: -i {} has no #### or %04d in its name", o.frames, o.inputs.front()));
     else
-      frames = {{o.inputs.front(), o.output, o.error_map, o.order_map, o.sample_map, o.report, std::nullopt}};
+      frames = {{o.inputs.front(), o.output, o.error_map, o.order_map, o.sample_map, o.report, std::nullopt, 0, {}}};
   } else {
     if (!o.frames.empty()) throw Error(ExitCode::Usage, "--frames goes with one -i that has #### in its name");
     frames = frames_of_list(o);

@@ -113,6 +113,9 @@ std::string report_text(const RunReport& run) {
   text += line("variance", r.variance_source);
   for (const Decision& d : r.decisions) text += line(d.effect, decision_text(d));
   if (run.plan) text += line("settings chosen", plan_text(*run.plan, reconstruction_seconds(r)));
+  if (r.neighbours > 0)
+    text += line("neighbours in time",
+                 fmt::format("{} frames, {:.2f} of a frame's weight on average", r.neighbours, r.neighbour_weight));
   text += line("windows", windows_text(r));
   text +=
       line("fallbacks",
@@ -152,6 +155,7 @@ Json report_json(const RunReport& run, const FrameSource& source) {
             {"total", run.seconds}}},
           {"pixels_per_second", pixels_per_second(r)},
           {"peak_memory_bytes", run.peak_memory},
+          {"neighbours", {{"frames", r.neighbours}, {"mean_weight", number(r.neighbour_weight)}}},
           {"windows", windows_json(r)},
           {"fallbacks",
            {{"windows_left_out", r.dropped_windows},

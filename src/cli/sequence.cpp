@@ -16,6 +16,7 @@
 #include "cli/finished.h"
 #include "cli/frame_names.h"
 #include "core/error.h"
+#include "pipeline/memory.h"
 
 namespace polyrecon {
 namespace {
@@ -109,29 +110,27 @@ class Consistency {
 /// Reads one frame while another is computed.
 class ReadAhead {
  public:
-  ReadAhead(const DenoiseOptions& options, const Progress& progress) : options_(options), progress_(progress) {}
+  ReadAhead(const DenoiseOptions& options, const Progress& progress)
+      : fetcher_(options, [this, &progress] { return stop_ || progress.cancelled(); }) {}
   ~ReadAhead() { stop_ = true; }
 
   void begin(const FrameFiles& files) {
-    next_ = std::async(std::launch::async, [this, &files] {
-      return fetch_frame(files, options_, [this] { return stop_ || progress_.cancelled(); });
-    });
+    next_ = std::async(std::launch::async, [this, &files] { return fetcher_.fetch(files); });
   }
   /// Waits for the frame begun last; throws what fetch_frame threw.
   std::optional<LoadedFrame> take() { return next_.get(); }
 
  private:
-  const DenoiseOptions& options_;
-  const Progress& progress_;
+  FrameFetcher fetcher_;
   std::atomic<bool> stop_{false};
   std::future<std::optional<LoadedFrame>> next_;  // last: its destructor waits for the thread
 };
 
-/// The options of one frame of several: its number goes into the sample map.
-DenoiseOptions options_of(const DenoiseOptions& options, const FrameFiles& files) {
-  DenoiseOptions out = options;
-  if (files.frame) out.sampling.frame = *files.frame;
-  return out;
+/// What the frame in hand may use while the next one, taken to be of its size, is read beside it.
+std::size_t memory_beside_next(const Frame& frame, const Params& params) {
+  const FrameShape shape = shape_of(frame);
+  const std::size_t next = shape.pixels * static_cast<std::size_t>(channels_ahead(shape, params)) * sizeof(Real);
+  return params.max_memory > next ? params.max_memory - next : 0;
 }
 
 }  // namespace
@@ -160,7 +159,9 @@ void run_sequence(const std::vector<FrameFiles>& frames, const DenoiseOptions& o
     }
     try {
       if (consistency.check(files, *loaded)) outcome.fell_back(files);
-      denoise_frame(files, std::move(*loaded), options_of(options, files), progress);
+      DenoiseOptions mine = options_for(files, options);
+      if (k + 1 < frames.size()) mine.max_memory = memory_beside_next(loaded->in.frame, params_of(mine));
+      denoise_frame(files, std::move(*loaded), mine, progress);
       outcome.written();
     } catch (const Error& error) {
       outcome.failed(files, error);
@@ -175,7 +176,7 @@ void show_plan(const std::vector<FrameFiles>& frames, const DenoiseOptions& opti
   Outcome outcome(options);
   for (const FrameFiles& files : frames) try {
       const ReadResult plan = plan_frame(files.input, options.read);
-      const bool skip = options.skip_existing && is_finished(files, options);
+      const bool skip = options.skip_existing && is_finished(files, options_for(files, options));
       std::fputs(fmt::format("{}: {} -> {}{}\n", files.label(), files.input, files.output,
                              skip ? ", finished already: skipped" : "")
                      .c_str(),

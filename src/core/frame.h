@@ -37,6 +37,8 @@ struct Frame {
   Pass prior;                     ///< An already denoised beauty; prior.mean is empty where there is none.
   Image alpha;                    ///< 1 channel; empty where there is none.
   Image sample_count;             ///< Samples per pixel, 1 channel; empty where unknown.
+  Image motion;                   ///< 4 channels: columns and rows from a pixel to its point's place in the frame
+                                  ///< before (0, 1) and in the one after (2, 3); empty where unknown.
 
   int width() const { return beauty.mean.width(); }
   int height() const { return beauty.mean.height(); }
@@ -48,6 +50,7 @@ struct FrameShape {
   int channels = 0;          ///< Of all passes in use with their variances and halves.
   int color_channels = 3;    ///< Of the beauty and the AOVs.
   int feature_channels = 0;  ///< Of the features' means.
+  int beside = 0;            ///< Held beside it all along: neighbours in time, the next frame of a sequence.
 };
 
 }  // namespace polyrecon

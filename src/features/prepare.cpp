@@ -252,10 +252,14 @@ Decision decide_on_cleaning(const std::string& feature, const Pass& pass, const 
 
 }  // namespace
 
-Preparation look_at(const Frame& frame, const Effects& effects) {
-  Preparation out;
+void require_usable(const Frame& frame) {
   if (count_unusable(frame.beauty.mean) == frame.beauty.mean.pixels())
     throw Error(ExitCode::CheckFailed, "layer '" + frame.beauty.name + "': no finite pixel; render the frame again");
+}
+
+Preparation look_at(const Frame& frame, const Effects& effects) {
+  require_usable(frame);
+  Preparation out;
   const double brightness = mean_brightness(frame.beauty.mean);
   out.epsilon = brightness > 0 ? 0.09 * brightness * brightness : 1;
   int channels = 0;
@@ -310,7 +314,7 @@ Prepared prepare(Frame& frame, const Preparation& preparation, const Image& vari
     }
     begin = end;
   };
-  const auto beauty = halves_of(frame.beauty, pair.variance, 0, out.mended_pixels);
+  const auto beauty = halves_of(frame.beauty, pair.variance, preparation.stream, out.mended_pixels);
   append(beauty);
   frame.beauty.variance = {};
   for (Pass& aov : frame.aovs) {
@@ -327,8 +331,8 @@ Prepared prepare(Frame& frame, const Preparation& preparation, const Image& vari
   for (Image& features : pair.features) features = Image(frame.width(), frame.height(), feature_channels);
   int channel = 0;
   for (const FeatureUse& use : preparation.features) {
-    const auto halves = prepared_feature(std::move(frame.features[use.index]), use, use.index + 1, cleaning,
-                                         out.mended_pixels, progress);
+    const auto halves = prepared_feature(std::move(frame.features[use.index]), use, preparation.stream + use.index + 1,
+                                         cleaning, out.mended_pixels, progress);
     int end = channel;
     for (std::size_t h = 0; h < 2; ++h) {
       end = channel;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "core/decision.h"
@@ -22,7 +23,8 @@ struct FeatureUse {
 /// What a look at the whole frame settles before any work: only the effects that the scene calls for are run.
 struct Preparation {
   std::vector<FeatureUse> features;
-  double epsilon = 1;  ///< HalfPair::epsilon: (0.3 x mean brightness)^2, so that exposure does not matter.
+  double epsilon = 1;        ///< HalfPair::epsilon: (0.3 x mean brightness)^2, so that exposure does not matter.
+  std::uint64_t stream = 0;  ///< Random numbers of the first of up to 64 splits; frames that meet need different ones.
   std::vector<Decision> decisions;
 };
 
@@ -30,6 +32,9 @@ struct Preparation {
 /// of the others need cleaning. Throws Error{CheckFailed} where the beauty holds no usable pixel.
 /// effects: what may run. Without effects.decide every pass that has a finite value takes part and is cleaned.
 Preparation look_at(const Frame& frame, const Effects& effects = {});
+
+/// Throws Error{CheckFailed} where the beauty holds no usable pixel.
+void require_usable(const Frame& frame);
 
 struct Prepared {
   HalfPair pair;

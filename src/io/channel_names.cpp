@@ -80,7 +80,7 @@ constexpr std::array kKnownPasses{
     KnownPass{"position", Role::Other, 1, "several renderers"},
     KnownPass{"p", Role::Other, 1, "Arnold, RenderMan, pbrt"},
     KnownPass{"worldpositions", Role::Other, 1, "V-Ray"},
-    KnownPass{"vector", Role::Other, 1, "Blender"},
+    KnownPass{"vector", Role::Motion, 1, "Blender"},
     KnownPass{"velocity", Role::Other, 1, "V-Ray"},
     KnownPass{"motionvector", Role::Other, 1, "Arnold"},
     KnownPass{"uv", Role::Other, 1, "several renderers"},
@@ -256,6 +256,8 @@ bool fits(Role role, const Layer& layer) {
     case Role::Alpha:
     case Role::SampleCount:
       return n == 1;
+    case Role::Motion:
+      return n == 4;
     default:
       return true;
   }
@@ -406,8 +408,8 @@ std::optional<double> number_in(const FileInfo& file, const std::string& attribu
   return std::nullopt;
 }
 
-constexpr std::array kRoleNames{"beauty", "prior",      "alpha",        "albedo", "normal",
-                                "depth",  "visibility", "sample-count", "color",  "other"};
+constexpr std::array kRoleNames{"beauty",     "prior",        "alpha",  "albedo", "normal", "depth",
+                                "visibility", "sample-count", "motion", "color",  "other"};
 
 }  // namespace
 

@@ -9,8 +9,8 @@
 namespace polyrecon {
 
 /// What a layer is to the method. Color: a further colour pass that could be reconstructed (--aov); Other: data that is
-/// only passed through (identifiers, positions, motion vectors, masks).
-enum class Role { Beauty, Prior, Alpha, Albedo, Normal, Depth, Visibility, SampleCount, Color, Other };
+/// only passed through (identifiers, positions, masks).
+enum class Role { Beauty, Prior, Alpha, Albedo, Normal, Depth, Visibility, SampleCount, Motion, Color, Other };
 
 /// What the samples of a layer tell about the pass: its mean, or something that accompanies the mean.
 enum class Companion { Mean, VarianceOfMean, VarianceOfSample, SecondMoment, HalfA, HalfB };

@@ -251,9 +251,10 @@ RoleMapping parse_mapping(const std::string& text) {
   if (equals == std::string::npos || equals + 1 == text.size() || !role || *role == Role::Color || *role == Role::Other)
     throw Error(
         ExitCode::Usage,
-        fmt::format("--map {}: expected ROLE=LAYER with a role of beauty, prior, alpha, albedo, normal, depth, "
-                    "visibility, sample-count, variance, half-a, half-b or ROLE-variance, ROLE-half-a, ROLE-half-b",
-                    text));
+        fmt::format(
+            "--map {}: expected ROLE=LAYER with a role of beauty, prior, alpha, albedo, normal, depth, "
+            "visibility, sample-count, motion, variance, half-a, half-b or ROLE-variance, ROLE-half-a, ROLE-half-b",
+            text));
   mapping.role = *role;
   mapping.layer = text.substr(equals + 1);
   return mapping;
@@ -269,8 +270,9 @@ LayerChoice choose_layers(const std::string& path, const ReadOptions& options) {
   if (beauty < 0) no_beauty(source);
   choice.passes.push_back(with_companions(source, Role::Beauty, beauty));
   drop_misfits(choice, choice.passes.front());
-  for (const Role role :
-       {Role::Normal, Role::Albedo, Role::Depth, Role::Visibility, Role::Prior, Role::SampleCount, Role::Alpha}) {
+  for (const Role role : {Role::Normal, Role::Albedo, Role::Depth, Role::Visibility, Role::Prior, Role::SampleCount,
+                          Role::Motion, Role::Alpha}) {
+    if (role == Role::Motion && !options.motion) continue;
     const int mean = find_mean(source, role);
     if (mean < 0) continue;
     PassChoice pass = with_companions(source, role, mean);

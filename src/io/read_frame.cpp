@@ -86,6 +86,8 @@ int channels_of(Role role) {
     case Role::Visibility:
     case Role::SampleCount:
       return 1;
+    case Role::Motion:
+      return 4;
     default:
       return 3;
   }
@@ -156,6 +158,14 @@ void to_variance_of_mean(Image& variance, const Image& mean, Companion kind, con
         v = static_cast<Real>(spread < 0 ? 0 : spread / std::max(n - 1, 1.0));
       }
     }
+}
+
+/// Blender's Vector pass holds (X, Y) from here to the place in the frame before and (Z, W) from the place in the frame
+/// after to here, rows counted upwards.
+Image from_blender(Image vectors) {
+  for (const int c : {1, 2})
+    for (std::size_t i = 0; i < vectors.pixels(); ++i) vectors.plane(c)[i] = -vectors.plane(c)[i];
+  return vectors;
 }
 
 struct PlannedPass {
@@ -286,6 +296,9 @@ class FrameBuilder {
         break;
       case Role::Alpha:
         if (!alpha_) frame.alpha = take(planned.mean, planned.choice.mean, 1);
+        break;
+      case Role::Motion:
+        frame.motion = from_blender(take(planned.mean, planned.choice.mean, 4));
         break;
       case Role::SampleCount:
       case Role::Other:

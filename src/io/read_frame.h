@@ -26,8 +26,8 @@ struct RoleMapping {
   std::string layer;
 };
 
-/// Reads "ROLE=LAYER". ROLE is beauty, prior, alpha, albedo, normal, depth, visibility or sample-count, or a companion:
-/// variance, half-a, half-b (of the beauty), albedo-variance, normal-half-a, ... Throws Error{Usage}.
+/// Reads "ROLE=LAYER". ROLE is beauty, prior, alpha, albedo, normal, depth, visibility, sample-count or motion, or a
+/// companion: variance, half-a, half-b (of the beauty), albedo-variance, normal-half-a, ... Throws Error{Usage}.
 RoleMapping parse_mapping(const std::string& text);
 
 struct ReadOptions {
@@ -36,7 +36,8 @@ struct ReadOptions {
   std::string view_layer;         ///< Empty: the first one that has a beauty.
   std::string view;               ///< Stereo view; empty: the first one.
   VarianceKind variance_kind = VarianceKind::Auto;
-  double samples = 0;  ///< Samples per pixel where the file does not tell; 0: unknown.
+  double samples = 0;   ///< Samples per pixel where the file does not tell; 0: unknown.
+  bool motion = false;  ///< Read the motion vectors too.
   ReadLimits limits;
   /// Called once the passes in use are known and before any pixel is read; may throw to refuse the frame.
   std::function<void(const std::string& path, const FrameShape&)> accept;

@@ -28,6 +28,7 @@ FrameShape shape_of(const Frame& frame) {
   };
   add(frame.beauty);
   add(frame.prior);
+  shape.channels += frame.motion.channels();
   for (const Pass& aov : frame.aovs) add(aov);
   for (const Feature& feature : frame.features) {
     add(feature.pass);
@@ -36,15 +37,25 @@ FrameShape shape_of(const Frame& frame) {
   return shape;
 }
 
+int neighbour_channels(const FrameShape& shape, int neighbours) {
+  return neighbours * (2 * shape.color_channels + 3 + 4);
+}
+
+int channels_ahead(const FrameShape& shape, const Params& params) {
+  return shape.channels + (params.temporal.radius > 0 ? neighbour_channels(shape, 2) : 0);
+}
+
 MemoryNeeds memory_needs(const FrameShape& shape, const Params& params) {
   const std::size_t plane = shape.pixels * sizeof(Real), noise = 3;
   // The frame's means of colours, alpha and sample count stay to the end.
   const std::size_t kept = count(shape.color_channels) + 2;
   const std::size_t candidate = 2 * count(shape.color_channels) + 7;  // halves, error, variance, order
   MemoryNeeds needs;
-  needs.prepare = program_bytes + plane * (count(shape.channels) + noise + pair_channels(shape) + in_preparation);
+  needs.prepare =
+      program_bytes + plane * (count(shape.channels + shape.beside) + noise + pair_channels(shape) + in_preparation);
   // The pair and the results of this stage and the one before, with their coarser levels.
-  needs.held = program_bytes + plane * (kept + noise) + plane * (pair_channels(shape) + 2 * candidate) * 4 / 3;
+  needs.held = program_bytes + plane * (kept + noise + count(shape.beside)) +
+               plane * (pair_channels(shape) + 2 * candidate) * 4 / 3;
   needs.tile =
       std::min(smallest_tile_pixels(params), shape.pixels) *
       stage_bytes_per_pixel(shape.color_channels, std::min(shape.feature_channels, max_feature_channels), params);

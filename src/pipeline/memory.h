@@ -10,6 +10,12 @@ namespace polyrecon {
 
 FrameShape shape_of(const Frame& frame);
 
+/// Channels held for so many neighbours in time: halves, variance and motion vectors of each.
+int neighbour_channels(const FrameShape& shape, int neighbours);
+
+/// Channels held for the next frame of a sequence while one is worked: its passes, itself and one more as neighbours.
+int channels_ahead(const FrameShape& shape, const Params& params);
+
 /// Bytes that a reconstruction needs, counted from the images that live at once.
 struct MemoryNeeds {
   std::size_t prepare = 0;  ///< While the passes are read and prepared.

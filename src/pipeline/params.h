@@ -7,6 +7,7 @@
 #include "blend/select.h"
 #include "core/decision.h"
 #include "features/prefilter.h"
+#include "temporal/join.h"
 
 namespace polyrecon {
 
@@ -39,6 +40,7 @@ struct Params {
   double enough = 0;  ///< Pixels whose noise variance over (value^2 + 0.01) is below this stay as they are.
   Effects effects;
   Parts parts;
+  TemporalParams temporal;         ///< How neighbours in time join, where there are any.
   bool reconstruct_alpha = false;  ///< Reconstruct alpha with the beauty's windows instead of keeping it.
   std::size_t max_memory = std::size_t{4} << 30;  ///< Bytes; larger frames are worked in tiles.
 

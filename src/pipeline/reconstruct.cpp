@@ -114,6 +114,22 @@ void note_outliers(const std::vector<Outlier>& outliers, const Effects& effects,
        outliers.empty() ? "no pixel stands out alone" : std::to_string(outliers.size()) + " pixels stand out alone"});
 }
 
+OutlierParams outlier_params(const NoiseVariance& noise) {
+  OutlierParams params;
+  params.variance_is_measured = noise.measured;
+  return params;
+}
+
+void note_neighbours(const JoinCounts& counts, bool with_motion, Report& report) {
+  report.neighbours = counts.neighbours;
+  report.neighbour_weight = counts.weight;
+  report.decisions.push_back(
+      {"neighbours in time", counts.neighbours > 0,
+       counts.neighbours == 0 ? "none of this size"
+                              : std::to_string(counts.neighbours) + (with_motion ? " frames, along the motion vectors"
+                                                                                 : " frames, no motion vectors")});
+}
+
 /// Progress steps of the fits over all levels and stages: blocks x phases, both halves. Close enough for a bar.
 std::size_t fit_steps(const Frame& frame, const Params& params) {
   const std::size_t blocks = aligned_blocks({0, 0, frame.width(), frame.height()}, block_size).size();
@@ -124,9 +140,31 @@ std::size_t fit_steps(const Frame& frame, const Params& params) {
 
 }  // namespace
 
+Neighbour prepare_neighbour(const Frame& frame, int number, const Params& params, Progress& progress) {
+  require_usable(frame);
+  const NoiseVariance noise = noise_variance(frame, progress);
+  Frame colors;  // the frame in hand has features of its own
+  colors.beauty = frame.beauty;
+  colors.aovs = frame.aovs;
+  colors.alpha = frame.alpha;
+  Preparation preparation;
+  preparation.stream = 64 * (std::uint64_t{static_cast<std::uint32_t>(number)} + 1);
+  Prepared prepared = prepare(colors, preparation, noise.variance, params.cleaning, params.reconstruct_alpha, progress);
+  if (params.effects.outliers)
+    remove_outliers(prepared.pair, prepared.independent_halves, outlier_params(noise), progress);
+  if (params.parts.variance_floor) prepared.pair.variance = floor_variance(prepared.pair.variance);
+  return {std::move(prepared.pair), frame.motion};
+}
+
 Result reconstruct(Frame& frame, const Params& params, Progress& progress) {
+  return reconstruct(frame, {}, params, progress);
+}
+
+Result reconstruct(Frame& frame, const std::vector<TimedNeighbour>& neighbours, const Params& params,
+                   Progress& progress) {
   validate(params);
-  const FrameShape shape = shape_of(frame);
+  FrameShape shape = shape_of(frame);
+  shape.beside = neighbour_channels(shape, static_cast<int>(neighbours.size()));
   require_memory("layer '" + frame.beauty.name + "'", shape, params);
   Result result;
   Report& report = result.report;
@@ -149,13 +187,15 @@ Result reconstruct(Frame& frame, const Params& params, Progress& progress) {
   const std::vector<double> totals = color_totals(frame);
   const auto outliers = timed(report, progress, "outliers", rows * 2, [&]() -> std::vector<Outlier> {
     if (!params.effects.outliers) return {};
-    OutlierParams outlier_params;
-    outlier_params.variance_is_measured = noise.measured;
-    return remove_outliers(pair, prepared.independent_halves, outlier_params, progress);
+    return remove_outliers(pair, prepared.independent_halves, outlier_params(noise), progress);
   });
   if (params.parts.variance_floor)
     pair.variance = floor_variance(pair.variance);  // now: an outlier's variance must not spread to its neighbours
   note_outliers(outliers, params.effects, report);
+  if (!neighbours.empty())
+    note_neighbours(timed(report, progress, "neighbours in time", 2,
+                          [&] { return join_neighbours(frame.motion, neighbours, params.temporal, pair, progress); }),
+                    !frame.motion.empty(), report);
 
   const std::size_t memory = tile_memory(shape, params);
   FitCounters counters;

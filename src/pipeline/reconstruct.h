@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "core/frame.h"
@@ -7,6 +8,7 @@
 #include "estimate/error_map.h"
 #include "pipeline/params.h"
 #include "pipeline/report.h"
+#include "temporal/neighbour.h"
 
 namespace polyrecon {
 
@@ -26,5 +28,15 @@ struct Result {
 /// where the frame holds nothing to work on (no finite beauty pixel), Error{OutOfMemory} where not even the smallest
 /// tile fits, Error{Interrupted} when progress asks to stop.
 Result reconstruct(Frame& frame, const Params& params, Progress& progress);
+
+/// The same with the help of frames before and after (temporal/join.h), as prepare_neighbour made them, sorted in any
+/// way, at most params.temporal.radius frames away. They count towards params.max_memory.
+Result reconstruct(Frame& frame, const std::vector<TimedNeighbour>& neighbours, const Params& params,
+                   Progress& progress);
+
+/// A frame as its neighbours in time need it, which is the same for all of them. number: of the frame; two frames that
+/// meet must not have the same one, since noise of a frame without half buffers is split with random numbers of its
+/// own. Throws as reconstruct does.
+Neighbour prepare_neighbour(const Frame& frame, int number, const Params& params, Progress& progress);
 
 }  // namespace polyrecon

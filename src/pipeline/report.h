@@ -31,6 +31,9 @@ struct Report {
   std::size_t mended_pixels = 0;    ///< Non-finite input pixels replaced before the fit, all passes.
   std::size_t negative_pixels = 0;  ///< Beauty pixels with a negative channel (kept as they are).
 
+  std::size_t neighbours = 0;   ///< Frames before and after that joined.
+  double neighbour_weight = 0;  ///< Mean weight of all of them beside the own pixel's 1.
+
   std::size_t outliers = 0;                ///< Pixels replaced by equation (10)'s median.
   std::array<double, 3> outlier_energy{};  ///< Sum of e_o per channel, radiance x pixels.
   std::array<double, 3> restored_gain{};   ///< Factor - 1 by which each channel was brought to the input's mean.

@@ -85,6 +85,8 @@ TEST_F(Sequence, RefusesRangesAndNamesThatMakeNoSense) {
   EXPECT_EQ(run({"denoise", "-i", "shot.####.exr", "-o", "out/####.exr", "--error-map", "out/####.exr"}).code, 2);
   EXPECT_EQ(run({"denoise", "-i", "shot.0001.exr", "-o", "out/a.exr", "--frames", "1"}).code, 2);
   EXPECT_EQ(run({"denoise", "-i", "shot.0001.exr", "shot.0002.exr", "-o", "out/a.exr"}).code, 2);
+  EXPECT_EQ(run({"denoise", "-i", "shot.0001.exr", "-o", "out/a.exr", "--frame-radius", "1"}).code, 2);
+  EXPECT_EQ(denoise({"--frame-radius", "9"}).code, 2);
   EXPECT_EQ(run({"denoise", "-i", "none.####.exr", "-o", "out/####.exr"}).code, 4);
   EXPECT_TRUE(results().empty());
 }
@@ -145,17 +147,9 @@ TEST_F(Case14Sequence, SkipsOnlyWhatIsTheSameAndWhole) {
   std::filesystem::copy_file(path("shot.0001.exr"), path("copy.exr"));
   std::filesystem::rename(path("copy.exr"), path("shot.0001.exr"));
   EXPECT_EQ(skipped({}), 3);
-  // Another render of the same length, a damaged result, a missing map, other settings.
-  std::filesystem::copy_file(path("shot.0003.exr"), path("shot.0002.exr"),
-                             std::filesystem::copy_options::overwrite_existing);
-  {
-    std::fstream file(path("shot.0002.exr"), std::ios::in | std::ios::out | std::ios::binary);
-    file.seekp(-1, std::ios::end);
-    file.put('\x55');
-  }
-  if (run({"inspect", "shot.0002.exr"}).code == 0) {
-    EXPECT_EQ(skipped({}), 2);
-  }
+  // Another render under the same name, a damaged result, a missing map, other settings.
+  write_render(path("shot.0002.exr"), width, height + 1);
+  EXPECT_EQ(skipped({}), 2);
   ASSERT_EQ(denoise({"--skip-existing", "--frames", "1,3"}).code, 0);
   cut_last_byte(path("out/shot.0003.exr"));
   EXPECT_EQ(skipped({"--frames", "1,3"}), 1);
@@ -198,6 +192,40 @@ TEST_F(Case10Sequence, AFrameWithoutAPassIsWorkedAndCounted) {
   const auto report = nlohmann::json::parse(read_text(path("out/0003.json")));
   EXPECT_THAT(report["notes"].dump(), HasSubstr("no albedo, which frame 1 has"));
   EXPECT_THAT(report["notes"].dump(), HasSubstr("26 x 16 pixels, frame 1 has 24 x 16"));
+}
+
+TEST_F(Sequence, NeighboursInTimeJoinWhateverElseIsAskedFor) {
+  render_frames(1, 4);
+  ASSERT_EQ(denoise({}).code, 0);
+  const std::string alone = read_text(path("out/shot.0002.exr"));
+  const Outcome all = denoise({"--frame-radius", "1", "--report", "out/####.json"});
+  ASSERT_EQ(all.code, 0) << all.err;
+  const std::string joined = read_text(path("out/shot.0002.exr"));
+  EXPECT_NE(joined, alone);
+  const auto neighbours = [&](const char* name) {
+    return nlohmann::json::parse(read_text(path(name)))["neighbours"]["frames"].get<int>();
+  };
+  EXPECT_EQ(neighbours("out/0001.json"), 1);
+  EXPECT_EQ(neighbours("out/0002.json"), 2);
+  EXPECT_EQ(neighbours("out/0004.json"), 1);
+  // One frame of them, as a farm would work it, comes to the same file.
+  std::filesystem::remove(path("out/shot.0002.exr"));
+  ASSERT_EQ(denoise({"--frame-radius", "1", "--frames", "2"}).code, 0);
+  EXPECT_EQ(read_text(path("out/shot.0002.exr")), joined);
+}
+
+TEST_F(Sequence, ABrokenNeighbourIsLeftOutAndAChangedOneIsNoticed) {
+  render_frames(1, 3);
+  const std::vector<std::string> temporal{"--frame-radius", "1", "--skip-existing", "--report", "out/####.json"};
+  ASSERT_EQ(denoise(temporal).code, 0);
+  EXPECT_THAT(denoise(temporal).out, HasSubstr("0 written, 3 skipped"));
+  cut_last_byte(path("shot.0003.exr"));
+  const Outcome o = denoise(temporal);
+  EXPECT_EQ(o.code, 4);
+  EXPECT_THAT(o.out, HasSubstr("1 written, 1 skipped, 1 failed"));  // frame 2 anew, without frame 3
+  const auto report = nlohmann::json::parse(read_text(path("out/0002.json")));
+  EXPECT_EQ(report["neighbours"]["frames"], 1);
+  EXPECT_THAT(report["notes"].dump(), HasSubstr("works without its neighbour: shot.0003.exr"));
 }
 
 TEST_F(Sequence, TheFrameNumberGoesIntoTheSampleMap) {

@@ -66,9 +66,10 @@ TEST(ChannelNames, Blender3SinglePart) {
   expect_role(layers, "ViewLayer.Denoising Normal", Role::Normal);
   expect_role(layers, "ViewLayer.Denoising Depth", Role::Depth);
   expect_role(layers, "ViewLayer.Shadow", Role::Visibility);
+  expect_role(layers, "ViewLayer.Vector", Role::Motion);
   expect_role(layers, "ViewLayer.DiffDir", Role::Color);
   expect_role(layers, "ViewLayer.Debug Sample Count", Role::SampleCount);
-  for (const char* data : {"ViewLayer.CryptoObject00", "ViewLayer.IndexOB", "ViewLayer.Vector", "ViewLayer.UV"})
+  for (const char* data : {"ViewLayer.CryptoObject00", "ViewLayer.IndexOB", "ViewLayer.UV"})
     expect_role(layers, data, Role::Other);
   EXPECT_LT(named(layers, "ViewLayer.Denoising Depth").rank, named(layers, "ViewLayer.Depth").rank);
   EXPECT_LT(named(layers, "ViewLayer.Denoising Albedo").rank, named(layers, "ViewLayer.DiffCol").rank);

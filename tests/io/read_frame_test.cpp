@@ -202,6 +202,21 @@ TEST(ReadFrame, AFractionOfTheSampleCountBecomesANumber) {
   EXPECT_THAT(read.notes, SizeIs(1));
 }
 
+/// (X, Y) lead to the place in the frame before, (Z, W) come from the one in the frame after, rows upwards;
+/// Frame::motion leads to both, rows downwards. Checked against renders of Blender 5: the albedo is found again along
+/// them.
+TEST(ReadFrame, MotionVectorsAreReadOnRequest) {
+  const TemporaryFolder folder;
+  write_exr(folder / "in.exr", {part_of(join({layer("V.Combined", "RGB", 0), layer("V.Vector", "XYZW", 10)}))});
+  EXPECT_TRUE(read_frame(folder / "in.exr").frame.motion.empty());
+  ReadOptions options;
+  options.motion = true;
+  const Image motion = read_frame(folder / "in.exr", options).frame.motion;
+  ASSERT_EQ(motion.channels(), 4);
+  const double sign[] = {1, -1, -1, 1};
+  for (int c = 0; c < 4; ++c) EXPECT_EQ(static_cast<double>(motion.at(0, 0, c)), sign[c] * pattern(10 + c)(0, 0)) << c;
+}
+
 TEST(ReadFrame, AVisibilityInColorIsAveraged) {
   // Means 1, 2, 6 -> 3. Standard deviations 1, 2, 3 of one and the same noise -> (6 / 3)^2 = 4.
   const TemporaryFolder folder;

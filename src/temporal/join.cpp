@@ -1,0 +1,259 @@
+#include "temporal/join.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <utility>
+
+#include "core/error.h"
+#include "core/gaussian.h"
+#include "core/parallel.h"
+#include "temporal/follow.h"
+
+namespace polyrecon {
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+constexpr double ratio_sigma = 2;     // pixels over which variances are compared: a pixel's own says too little
+constexpr double shared_sigma = 8;    // pixels over which it is seen whether two frames share their noise
+constexpr double shared_below = 0.7;  // differences this far below what independent noise brings mean that they do
+constexpr double tiny = 1e-30;
+constexpr int band_rows = 256;  // worked at once
+
+void for_rows(int height, const std::function<void(int)>& body) {
+  Progress silent;
+  parallel_for(static_cast<std::size_t>(height), silent, [&](std::size_t y) { body(static_cast<int>(y)); });
+}
+
+/// An estimate of the frame in hand from other frames; zero where it is not valid.
+struct Estimate {
+  std::array<Image, 2> color;
+  Image variance;                    ///< Of one half, 3 channels.
+  std::vector<unsigned char> valid;  ///< One byte a pixel.
+};
+
+Estimate estimate_from(const Places& places, const Rect& area) {
+  const HalfPair& pair = places.frame->pair;
+  Estimate out{{sample_at(pair.color[0], places, area, true), sample_at(pair.color[1], places, area, true)},
+               sample_at(pair.variance, places, area, false),
+               {}};
+  for (int y = area.y0; y < area.y1; ++y) {
+    const auto begin = places.seen.begin() + static_cast<std::ptrdiff_t>(places.position.index(area.x0, y));
+    out.valid.insert(out.valid.end(), begin, begin + area.width());
+  }
+  return out;
+}
+
+/// The mean of two estimates where both are valid, else the one that is.
+Estimate combine(Estimate a, const Estimate& b) {
+  for_rows(a.variance.height(), [&](int y) {
+    for (int x = 0; x < a.variance.width(); ++x) {
+      const std::size_t i = a.variance.index(x, y);
+      if (!b.valid[i]) continue;
+      const Real share = a.valid[i] ? Real(0.5) : Real(1);
+      for (std::size_t h = 0; h < 2; ++h)
+        for (int c = 0; c < a.color[h].channels(); ++c)
+          a.color[h].plane(c)[i] = share * (a.color[h].plane(c)[i] + b.color[h].plane(c)[i]);
+      for (int c = 0; c < 3; ++c)
+        a.variance.plane(c)[i] = share * share * (a.variance.plane(c)[i] + b.variance.plane(c)[i]);
+      a.valid[i] = 1;
+    }
+  });
+  return a;
+}
+
+/// The estimate from the frames k before and k after; empty where there are none.
+Estimate estimate_at(const std::vector<Places>& all, int k, const Rect& area) {
+  Estimate out;
+  for (const Places& places : all)
+    if (std::abs(places.offset) == k)
+      out = out.valid.empty() ? estimate_from(places, area) : combine(std::move(out), estimate_from(places, area));
+  return out;
+}
+
+/// Channels: difference RGB, its noise variance summed over RGB, 1; all zero where the estimate is not valid.
+Image differences(const HalfPair& pair, const Estimate& estimate, std::size_t half) {
+  Image out(pair.width(), pair.height(), 5);
+  for_rows(out.height(), [&](int y) {
+    for (int x = 0; x < out.width(); ++x) {
+      const std::size_t i = out.index(x, y);
+      if (!estimate.valid[i]) continue;
+      Real noise = 0;
+      for (int c = 0; c < 3; ++c) {
+        out.plane(c)[i] = pair.color[half].plane(c)[i] - estimate.color[half].plane(c)[i];
+        noise += pair.variance.plane(c)[i] + estimate.variance.plane(c)[i];
+      }
+      out.plane(3)[i] = noise;
+      out.plane(4)[i] = 1;
+    }
+  });
+  return out;
+}
+
+double squared(const Image& d, std::size_t i) {
+  double sum = 0;
+  for (int c = 0; c < 3; ++c) sum += static_cast<double>(d.plane(c)[i]) * static_cast<double>(d.plane(c)[i]);
+  return sum;
+}
+
+/// exp(-(change - accept) / softness) over all scales, 1 channel.
+Image gate(const Image& difference, const TemporalParams& p) {
+  Image excess(difference.width(), difference.height(), 1);
+  const auto add = [&](const Image& d, const Image& floor, double kept) {
+    for_rows(d.height(), [&](int y) {
+      for (int x = 0; x < d.width(); ++x) {
+        const std::size_t i = d.index(x, y);
+
+        if (!(d.plane(4)[i] > 0)) continue;
+        // Both are sums over the valid pixels only, with the same weights.
+        const double noise = std::max(static_cast<double>(d.plane(3)[i]), static_cast<double>(floor.plane(3)[i]));
+        const double change = squared(d, i) / std::max(kept * noise, tiny);
+        excess.plane(0)[i] += static_cast<Real>(std::max(0.0, change - p.accept) / p.softness);
+      }
+    });
+  };
+  // A single pixel's variance may be far too low: half of what its neighbours say counts at least.
+  Image around = gaussian_blur(difference, 1);
+  for (std::size_t i = 0; i < around.pixels(); ++i) around.plane(3)[i] *= Real(0.5);
+  add(difference, around, 1);
+  for (const double sigma : p.scales) {
+    const Image d = gaussian_blur(difference, sigma);
+    add(d, d, 1 / (4 * pi * sigma * sigma));
+  }
+  for_rows(excess.height(), [&](int y) {
+    for (int x = 0; x < excess.width(); ++x)
+      excess.at(x, y, 0) = difference.at(x, y, 4) > 0 ? std::exp(-excess.at(x, y, 0)) : Real(0);
+  });
+  return excess;
+}
+
+Image sum_of_channels(const Image& image) {
+  Image out(image.width(), image.height(), 1);
+  for (int c = 0; c < image.channels(); ++c)
+    for (std::size_t i = 0; i < out.pixels(); ++i) out.plane(0)[i] += image.plane(c)[i];
+  return out;
+}
+
+/// What part of the noise the estimate shares with the frame in hand, 0 to 1, 1 channel: independent noises bring a
+/// squared difference of the sum of their variances, one and the same brings none.
+Image shared_noise(const Image& difference) {
+  Image moments(difference.width(), difference.height(), 2);
+  for (std::size_t i = 0; i < moments.pixels(); ++i) {
+    moments.plane(0)[i] = static_cast<Real>(squared(difference, i));
+    moments.plane(1)[i] = difference.plane(3)[i];
+  }
+  moments = gaussian_blur(moments, shared_sigma);
+  Image out(moments.width(), moments.height(), 1);
+  for (std::size_t i = 0; i < out.pixels(); ++i) {
+    const double noise = moments.plane(1)[i], ratio = noise > 0 ? static_cast<double>(moments.plane(0)[i]) / noise : 1;
+    out.plane(0)[i] = static_cast<Real>(std::max(0.0, 1 - ratio / shared_below));
+  }
+  return out;
+}
+
+/// Running sums of one half.
+struct Sums {
+  Image color, variance, shared, weight;  ///< sum w y, sum w^2 Var, sum w shared (neighbours only), sum w
+};
+
+void add_estimate(const Estimate& estimate, std::size_t half, const Image& weight, const Image& shared, Sums& sums) {
+  for_rows(weight.height(), [&](int y) {
+    for (int x = 0; x < weight.width(); ++x) {
+      const std::size_t i = weight.index(x, y);
+      const Real w = weight.plane(0)[i];
+      if (w == 0) continue;
+      for (int c = 0; c < sums.color.channels(); ++c) sums.color.plane(c)[i] += w * estimate.color[half].plane(c)[i];
+      for (int c = 0; c < 3; ++c) sums.variance.plane(c)[i] += w * w * estimate.variance.plane(c)[i];
+      sums.shared.plane(0)[i] += w * shared.plane(0)[i];
+      sums.weight.plane(0)[i] += w;
+    }
+  });
+}
+
+/// Weight of an estimate for one half, from what the difference of the other half shows.
+Image weight_of(const HalfPair& pair, const Estimate& estimate, const Image& difference, const TemporalParams& params) {
+  Image weight = gate(difference, params);
+  const Image own = gaussian_blur(sum_of_channels(pair.variance), ratio_sigma);
+  const Image theirs = gaussian_blur(sum_of_channels(estimate.variance), ratio_sigma);
+  for_rows(weight.height(), [&](int y) {
+    for (int x = 0; x < weight.width(); ++x) {
+      const double v = theirs.at(x, y, 0), o = own.at(x, y, 0);
+      weight.at(x, y, 0) *= static_cast<Real>(std::min(v > 0 ? o / v : params.max_weight, params.max_weight));
+    }
+  });
+  return weight;
+}
+
+std::array<Sums, 2> join_area(const HalfPair& pair, const std::vector<Places>& places, const Rect& area,
+                              const TemporalParams& params) {
+  const Image none(pair.width(), pair.height(), 1), one(pair.width(), pair.height(), 1, 1);
+  std::array<Sums, 2> sums{Sums{pair.color[0], pair.variance, none, one},
+                           Sums{pair.color[1], pair.variance, none, one}};
+  for (int k = 1; k <= params.radius; ++k) {
+    const Estimate estimate = estimate_at(places, k, area);
+    if (estimate.valid.empty()) break;
+    for (std::size_t half = 0; half < 2; ++half) {
+      const Image difference = differences(pair, estimate, 1 - half);
+      add_estimate(estimate, half, weight_of(pair, estimate, difference, params), shared_noise(difference), sums[half]);
+    }
+  }
+  return sums;
+}
+
+/// The averages; pixels without noise keep their value, which is exact.
+void average(const std::array<Sums, 2>& sums, HalfPair& pair) {
+  const Image own = pair.variance;
+  for_rows(pair.height(), [&](int y) {
+    for (int x = 0; x < pair.width(); ++x) {
+      const std::size_t i = own.index(x, y);
+      if (!(own.plane(0)[i] > 0 || own.plane(1)[i] > 0 || own.plane(2)[i] > 0)) continue;
+      for (int c = 0; c < 3; ++c) pair.variance.plane(c)[i] = 0;
+      for (std::size_t h = 0; h < 2; ++h) {
+        const Real weight = sums[h].weight.plane(0)[i], others = weight - 1;
+        for (int c = 0; c < pair.color[h].channels(); ++c)
+          pair.color[h].plane(c)[i] = sums[h].color.plane(c)[i] / weight;
+        const Real shared = others > 0 ? sums[h].shared.plane(0)[i] / others : Real(0);
+        for (int c = 0; c < 3; ++c)
+          pair.variance.plane(c)[i] +=
+              Real(0.5) * (shared * own.plane(c)[i] + (1 - shared) * sums[h].variance.plane(c)[i] / (weight * weight));
+      }
+    }
+  });
+}
+
+int reach_of(const TemporalParams& params) {
+  double widest = shared_sigma;
+  for (const double sigma : params.scales) widest = std::max(widest, sigma);
+  return gaussian_reach(widest);
+}
+
+}  // namespace
+
+JoinCounts join_neighbours(const Image& motion, const std::vector<TimedNeighbour>& neighbours,
+                           const TemporalParams& params, HalfPair& pair, Progress& progress) {
+  const std::vector<Places> places = follow(motion, pair, neighbours);
+  JoinCounts counts{places.size(), 0};
+  if (places.empty()) return counts;
+  const HalfPair before{pair.color, pair.variance, {}, pair.epsilon};
+  // In bands, since the estimates and their blurs are several times the size of the frame.
+  for (int y = 0; y < pair.height(); y += band_rows) {
+    if (progress.cancelled()) throw Error(ExitCode::Interrupted, "interrupted");
+    const Rect band{0, y, pair.width(), std::min(y + band_rows, pair.height())};
+    const Rect area = intersect(grow(band, reach_of(params)), pair.variance.bounds());
+    HalfPair part = crop(before, area);
+    const std::array<Sums, 2> sums = join_area(part, places, area, params);
+    average(sums, part);
+    const Rect inner{0, band.y0 - area.y0, band.width(), band.y1 - area.y0};
+    for (std::size_t h = 0; h < 2; ++h) paste(part.color[h], inner, pair.color[h], 0, band.y0);
+    paste(part.variance, inner, pair.variance, 0, band.y0);
+    for (int v = inner.y0; v < inner.y1; ++v)
+      for (int x = 0; x < band.width(); ++x)
+        for (const Sums& s : sums) counts.weight += 0.5 * (static_cast<double>(s.weight.at(x, v, 0)) - 1);
+    progress.advance(1);
+  }
+  counts.weight /= static_cast<double>(pair.variance.pixels());
+  return counts;
+}
+
+}  // namespace polyrecon

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <vector>
+
+#include "core/image.h"
+#include "core/progress.h"
+#include "features/half_pair.h"
+#include "temporal/neighbour.h"
+
+namespace polyrecon {
+
+struct TemporalParams {
+  int radius = 0;                          ///< Frames before and after that may join; 0..8.
+  std::vector<double> scales{1, 2, 4, 8};  ///< Standard deviations of the Gaussians that look for a change, pixels.
+  double accept = 3;                       ///< Change, in units of what noise alone brings, that is not minded.
+  double softness = 2;                     ///< A neighbour's weight falls as exp(-(change - accept) / softness).
+  double max_weight = 4;                   ///< Most weight of an estimate beside the pixel's own.
+};
+
+/// What joined.
+struct JoinCounts {
+  std::size_t neighbours = 0;  ///< Frames in reach.
+  double weight = 0;           ///< Mean weight of all neighbours beside the own pixel's 1.
+};
+
+/// Averages each half of the frame in hand with the same half of its neighbours, pixel by pixel, along the motion:
+///     A'(i) = (A(i) + sum_g w_g(i) A_g(i)) / (1 + sum_g w_g(i))
+/// The estimates g are, for each distance k in time, the mean of the frames k before and k after (in which what changes
+/// steadily cancels out), or where the point is seen in only one of them that one. Their weights come from the other
+/// half: w_g = (Var(B) / Var(B_g)) x exp(-change above what is accepted), with the change
+///     z^2 = sum_rgb (G_s * (B - B_g))^2 / sum_rgb (G_s^2 * (Var(B) + Var(B_g)))
+/// at single pixels and under Gaussians G_s of several sizes: a small change of light that no pixel shows is seen by
+/// the large ones, a moving edge by the small ones. The weights are smooth in the noise and the same for all layers, so
+/// that layers that add up still do. The variance becomes that of the average; where the frames share their noise (one
+/// random seed for all) it stays what it was.
+JoinCounts join_neighbours(const Image& motion, const std::vector<TimedNeighbour>& neighbours,
+                           const TemporalParams& params, HalfPair& pair, Progress& progress);
+
+}  // namespace polyrecon

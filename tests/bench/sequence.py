@@ -1,0 +1,72 @@
+#!/usr/bin/env python3
+"""How much frames before and after help: denoises the animation of samples/make_sequence.py with several --frame-radius and
+prints relMSE of each frame, and flicker. Needs numpy and OpenImageIO's Python module.
+
+relMSE: mean of ((x - r)^2 - Var r) / (r^2 + 0.01), r the reference, Var r the variance of its mean.
+flicker: variance over the frames of a shot of the relative error (x - r) / sqrt(r^2 + 0.01), less what the reference's own
+noise adds, averaged over pixels and shots.
+"""
+
+import argparse
+import pathlib
+import subprocess
+
+import numpy
+import OpenImageIO
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+SHOTS = (range(1, 7), range(7, 11))
+
+
+def layer(path, name):
+    image = OpenImageIO.ImageBuf(str(path))
+    channels = list(image.spec().channelnames)
+    pixels = image.get_pixels(OpenImageIO.FLOAT)
+    return numpy.stack([pixels[..., channels.index(f"ViewLayer.{name}.{c}")] for c in "RGB"], -1).astype(float)
+
+
+def measure(folder, results):
+    """relMSE of each frame, flicker."""
+    errors, noises = {}, {}
+    for frame in (frame for shot in SHOTS for frame in shot):
+        reference = layer(folder / f"ref.{frame:04d}.exr", "Combined")
+        scale = reference**2 + 0.01
+        noises[frame] = layer(folder / f"ref.{frame:04d}.exr", "Combined Variance") / scale
+        errors[frame] = (layer(results(frame), "Combined") - reference) / numpy.sqrt(scale)
+    relmse = {frame: (errors[frame] ** 2 - noises[frame]).mean() for frame in errors}
+    flicker = 0
+    for shot in SHOTS:
+        of_errors = numpy.stack([errors[frame] for frame in shot]).var(axis=0, ddof=1).mean()
+        flicker += (of_errors - numpy.mean([noises[frame].mean() for frame in shot])) / len(SHOTS)
+    return relmse, flicker
+
+
+def denoise(options, radius, name, words):
+    target = options.work / "bench" / name
+    target.mkdir(parents=True, exist_ok=True)
+    command = [options.polyrecon, "denoise", "-i", options.work / "parade.####.exr", "-o", target / "####.exr"]
+    subprocess.run(list(map(str, [*command, "--quiet", "--frame-radius", radius, *words])), check=True)
+    return lambda frame: target / f"{frame:04d}.exr"
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--work", type=pathlib.Path, default=ROOT / "out" / "sequence", help="what make_sequence.py made")
+    parser.add_argument("--polyrecon", default=str(ROOT / "build" / "release" / "src" / "polyrecon"))
+    parser.add_argument("--radius", type=int, nargs="*", default=[0, 1, 2, 3])
+    parser.add_argument("words", nargs="*", help="further options of polyrecon denoise, after --")
+    options = parser.parse_args()
+    options.work = options.work.resolve()
+    rows = [("input", *measure(options.work, lambda frame: options.work / f"parade.{frame:04d}.exr"))]
+    for radius in options.radius:
+        results = denoise(options, radius, f"radius{radius}", options.words)
+        rows.append((f"radius {radius}", *measure(options.work, results)))
+    print("| | " + " | ".join(str(frame) for frame in rows[0][1]) + " | mean | flicker |")
+    print("|---" * (len(rows[0][1]) + 3) + "|")
+    for name, relmse, flicker in rows:
+        cells = [f"{value:.4f}" for value in (*relmse.values(), numpy.mean(list(relmse.values())), flicker)]
+        print(f"| {name} | " + " | ".join(cells) + " |")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,287 @@
+#include "temporal/join.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <vector>
+
+#include "pipeline/reconstruct.h"
+#include "support/images.h"
+#include "support/scene.h"
+#include "temporal/follow.h"
+
+namespace polyrecon {
+namespace {
+
+constexpr int width = 64, height = 48;
+constexpr double sigma = 0.1;
+
+/// mu(x, y) of a frame; frame 0 is the one in hand.
+using Truth = std::function<double(int frame, int x, int y)>;
+
+double texture(double x, double y) { return 1 + 0.3 * std::sin(0.9 * x) * std::cos(0.7 * y); }
+
+Image truth_of(const Truth& truth, int frame, int h = height) {
+  return test::image_of(width, h, 3, [&](int x, int y, int c) { return (1 + 0.2 * c) * truth(frame, x, y); });
+}
+
+/// Motion of the whole picture by (dx, dy) pixels a frame.
+Image motion_of(double dx, double dy, int h = height) {
+  return test::image_of(width, h, 4, [&](int, int, int c) { return c == 0 ? -dx : c == 1 ? -dy : c == 2 ? dx : dy; });
+}
+
+/// A frame with `radius` neighbours on each side, all with noise of their own.
+struct Sequence {
+  Image truth, motion;
+  HalfPair pair;
+  std::vector<Neighbour> frames;
+  std::vector<TimedNeighbour> neighbours;
+
+  Sequence(const Truth& of, Image vectors, int radius = 2, int h = height) : motion(std::move(vectors)) {
+    truth = truth_of(of, 0, h);
+    pair = test::pair_of(truth, sigma, 1);
+    frames.reserve(16);
+    for (int k = -radius; k <= radius; ++k) {
+      if (k == 0) continue;
+      frames.push_back({test::pair_of(truth_of(of, k, h), sigma, static_cast<std::uint64_t>(10 + k)), motion});
+      neighbours.push_back({k, &frames.back()});
+    }
+  }
+
+  JoinCounts join(int radius = 2) {
+    TemporalParams params;
+    params.radius = radius;
+    Progress silent;
+    return join_neighbours(motion, neighbours, params, pair, silent);
+  }
+
+  /// Mean squared error of both halves, where take(x, y).
+  double error(const std::function<bool(int, int)>& take = [](int, int) { return true; }) const {
+    double sum = 0, count = 0;
+    for (int y = 0; y < truth.height(); ++y)
+      for (int x = 0; x < width; ++x)
+        for (int c = 0; c < 3 && take(x, y); ++c)
+          for (const Image& half : pair.color) {
+            const double d = static_cast<double>(half.at(x, y, c)) - static_cast<double>(truth.at(x, y, c));
+            sum += d * d;
+            ++count;
+          }
+    return sum / count;
+  }
+
+  double claimed() const {
+    double sum = 0;
+    for (int c = 0; c < 3; ++c)
+      for (std::size_t i = 0; i < pair.variance.pixels(); ++i) sum += static_cast<double>(pair.variance.plane(c)[i]);
+    return sum / (3.0 * static_cast<double>(pair.variance.pixels()));
+  }
+};
+
+/// Five frames of one picture: the mean of all has a fifth of the variance. The gate refuses a few neighbours by
+/// chance, so a little less is gained; the variance that is claimed must be what is left, within 10 %.
+TEST(JoinNeighbours, AveragesWhatStandsStill) {
+  Sequence s([](int, int x, int y) { return texture(x, y); }, Image());
+  const JoinCounts counts = s.join();
+  EXPECT_EQ(counts.neighbours, 4u);
+  EXPECT_GT(counts.weight, 3);
+  EXPECT_LT(s.error(), 0.25 * sigma * sigma);
+  EXPECT_NEAR(s.claimed() / s.error(), 1, 0.1);
+}
+
+TEST(JoinNeighbours, FollowsTheMotion) {
+  const Truth moving = [](int frame, int x, int y) { return texture(x - 3 * frame, y + 2 * frame); };
+  Sequence with(moving, motion_of(3, -2)), without(moving, Image());
+  with.join();
+  without.join();
+  const auto inner = [](int x, int y) { return x > 8 && y > 8 && x < width - 8 && y < height - 8; };
+  EXPECT_LT(with.error(inner), 0.25 * sigma * sigma);
+  EXPECT_LT(without.error(inner), 1.1 * sigma * sigma);  // without vectors nothing fits, and nothing ghosts
+}
+
+/// Between pixels the cubic keeps a texture of 7 pixels' period to a few percent of its amplitude, below the noise.
+TEST(JoinNeighbours, FollowsMotionByPartsOfAPixel) {
+  Sequence s([](int frame, int x, int y) { return texture(x - 1.3 * frame, y); }, motion_of(1.3, 0));
+  s.join();
+  EXPECT_LT(s.error([](int x, int y) { return x > 8 && y > 8 && x < width - 8 && y < height - 8; }),
+            0.35 * sigma * sigma);
+}
+
+TEST(JoinNeighbours, NothingCrossesACut) {
+  Sequence s([](int frame, int x, int y) { return frame < 0 ? 0.5 * texture(y, x) : texture(x, y); }, Image());
+  s.neighbours.resize(2);  // the frames before the cut
+  const HalfPair before = s.pair;
+  EXPECT_LT(s.join().weight, 1e-3);
+  EXPECT_LT(s.error(), 1.001 * sigma * sigma);
+}
+
+/// A bright spot runs over a still picture, which has no vectors for it: along its way the joined frame is no worse.
+TEST(JoinNeighbours, AMovingHighlightLeavesNoTrail) {
+  const auto spot = [](int frame, int x, int y) { return std::hypot(x - 32 - 4 * frame, y - 24) < 4; };
+  Sequence s([&](int frame, int x, int y) { return 1 + (spot(frame, x, y) ? 1.0 : 0.0); }, Image());
+  const auto way = [](int x, int y) { return std::abs(x - 32) < 14 && std::abs(y - 24) < 6; };
+  const double before = s.error(way);
+  s.join();
+  EXPECT_LT(s.error(way), before);
+  // The places that the spot has left keep the light of their own frame.
+  double trail = 0, count = 0;
+  for (int y = 21; y < 28; ++y)
+    for (const int x : {24, 25, 39, 40})
+      for (const Image& half : s.pair.color) trail += static_cast<double>(half.at(x, y, 0)) - 1, ++count;
+  EXPECT_LT(std::abs(trail / count), 4 * sigma / std::sqrt(count));
+}
+
+/// Light that grows by a third of the noise in each frame: the frames before and after cancel out.
+TEST(JoinNeighbours, SteadyChangeCancelsOut) {
+  Sequence s([](int frame, int x, int y) { return texture(x, y) + 0.03 * frame; }, Image());
+  const JoinCounts counts = s.join();
+  EXPECT_GT(counts.weight, 3);
+  double bias = 0;
+  for (std::size_t i = 0; i < s.truth.pixels(); ++i)
+    bias += static_cast<double>(s.pair.color[0].plane(0)[i]) - static_cast<double>(s.truth.plane(0)[i]);
+  bias /= static_cast<double>(s.truth.pixels());
+  EXPECT_LT(std::abs(bias), 4 * sigma / std::sqrt(static_cast<double>(s.truth.pixels())));
+}
+
+/// A renderer that begins every frame with the same random numbers leaves the same noise in it: nothing is gained, and
+/// nothing may be claimed.
+TEST(JoinNeighbours, SharedNoiseIsNotTakenForIndependent) {
+  Sequence s([](int, int x, int y) { return texture(x, y); }, Image());
+  for (Neighbour& frame : s.frames) frame.pair.color = s.pair.color;
+  s.join();
+  EXPECT_GT(s.claimed(), 0.9 * sigma * sigma);
+}
+
+/// The weights know the noise: a neighbour of a hundredth of the variance counts more than the frame itself, a very
+/// noisy one next to nothing.
+TEST(JoinNeighbours, WeightsFollowTheVariance) {
+  for (const double noise : {0.1 * sigma, 10 * sigma}) {
+    Sequence s([](int, int x, int y) { return texture(x, y); }, Image(), 1);
+    for (std::size_t k = 0; k < s.frames.size(); ++k) s.frames[k].pair = test::pair_of(s.truth, noise, 50 + k);
+    const double weight = s.join(1).weight;
+    EXPECT_TRUE(noise < sigma ? weight > 3.5 : weight < 0.05) << weight;
+    EXPECT_LT(s.error(), 1.02 * sigma * sigma);
+  }
+}
+
+TEST(JoinNeighbours, LayersThatAddUpStillDo) {
+  Sequence s([](int frame, int x, int y) { return texture(x - frame, y); }, motion_of(1, 0));
+  const auto split = [](HalfPair& pair) {
+    for (Image& color : pair.color) {
+      Image all(width, height, 9);
+      for (int c = 0; c < 3; ++c)
+        for (std::size_t i = 0; i < color.pixels(); ++i) {
+          const Real value = color.plane(c)[i], part = value * Real(0.3) + Real(0.001) * static_cast<Real>(i % 7);
+          all.plane(c)[i] = value;
+          all.plane(3 + c)[i] = part;
+          all.plane(6 + c)[i] = value - part;
+        }
+      color = all;
+    }
+  };
+  split(s.pair);
+  for (Neighbour& frame : s.frames) split(frame.pair);
+  ASSERT_GT(s.join().weight, 2);
+  for (const Image& half : s.pair.color)
+    for (int c = 0; c < 3; ++c)
+      for (std::size_t i = 0; i < half.pixels(); ++i)
+        ASSERT_NEAR(half.plane(3 + c)[i] + half.plane(6 + c)[i], half.plane(c)[i], 1e-5);
+}
+
+TEST(JoinNeighbours, PixelsWithoutNoiseStay) {
+  Sequence s([](int, int x, int y) { return texture(x, y); }, Image());
+  for (int c = 0; c < 3; ++c) s.pair.variance.at(5, 6, c) = 0;
+  const HalfPair before = s.pair;
+  s.join();
+  for (std::size_t h = 0; h < 2; ++h)
+    for (int c = 0; c < 3; ++c) EXPECT_EQ(s.pair.color[h].at(5, 6, c), before.color[h].at(5, 6, c));
+}
+
+TEST(JoinNeighbours, OtherSizesAndGapsAreLeftOut) {
+  Sequence s([](int, int x, int y) { return texture(x, y); }, Image());
+  s.neighbours.erase(s.neighbours.begin() + 1);  // -1: so that -2 has no way to this frame
+  s.frames[3].pair = test::pair_of(Image(width, height + 1, 3, 1), sigma, 9);
+  EXPECT_EQ(s.join().neighbours, 1u);
+  s.neighbours.clear();
+  EXPECT_EQ(s.join().neighbours, 0u);
+}
+
+/// Worked in bands of rows: a cut picture gives the same bits where the cut is out of reach.
+TEST(JoinNeighbours, BandsDoNotShow) {
+  const Truth still = [](int, int x, int y) { return texture(x, y); };
+  Sequence tall(still, Image(), 1, 420), cut = tall;
+  const Rect top{0, 0, width, 330};
+  cut.pair = crop(tall.pair, top);
+  for (std::size_t k = 0; k < cut.frames.size(); ++k) {
+    cut.frames[k].pair = crop(tall.frames[k].pair, top);
+    cut.neighbours[k].frame = &cut.frames[k];
+  }
+  tall.join(1);
+  cut.join(1);
+  const Rect same{0, 0, width, 300};
+  for (std::size_t h = 0; h < 2; ++h)
+    EXPECT_TRUE(test::same_bits(crop(tall.pair.color[h], same), crop(cut.pair.color[h], same)));
+  EXPECT_TRUE(test::same_bits(crop(tall.pair.variance, same), crop(cut.pair.variance, same)));
+}
+
+/// A point that a nearer object covers in the other frame: the vectors there lead elsewhere, so it is not seen.
+TEST(Follow, HiddenPointsAreNotSeen) {
+  HalfPair pair = test::pair_of(Image(width, height, 3, 1), sigma, 1);
+  Neighbour next{pair, motion_of(0, 0)};
+  const auto covered = [](int x, int y) { return x >= 20 && x < 30 && y >= 10 && y < 20; };
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x)
+      if (covered(x, y)) next.motion.at(x, y, 0) = -10;  // what is there came from 10 pixels to the left
+  const std::vector<Places> places = follow(motion_of(0, 0), pair, {{1, &next}});
+  ASSERT_EQ(places.size(), 1u);
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x)
+      EXPECT_EQ(places[0].seen[pair.variance.index(x, y)], covered(x, y) ? 0 : 1) << x << " " << y;
+}
+
+/// Renders without variance or halves are split with random numbers; those of two frames must not be the same, or their
+/// halves would not be independent.
+TEST(PrepareNeighbour, SplitsEveryFrameWithNumbersOfItsOwn) {
+  Frame frame = test::make_scene(40, 32, 0.2, 3).frame;
+  frame.beauty.variance = frame.beauty.half_a = frame.beauty.half_b = Image();
+  Progress silent;
+  const Params params;
+  const auto difference = [&](int number) {
+    const Neighbour n = prepare_neighbour(frame, number, params, silent);
+    std::vector<double> out;
+    for (std::size_t i = 0; i < n.pair.variance.pixels(); ++i)
+      out.push_back(static_cast<double>(n.pair.color[0].plane(0)[i]) -
+                    static_cast<double>(n.pair.color[1].plane(0)[i]));
+    return out;
+  };
+  const auto correlation = [](const std::vector<double>& a, const std::vector<double>& b) {
+    double ab = 0, aa = 0, bb = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) ab += a[i] * b[i], aa += a[i] * a[i], bb += b[i] * b[i];
+    return ab / std::sqrt(aa * bb);
+  };
+  EXPECT_EQ(difference(4), difference(4));
+  // 1280 pixels: independent ones correlate by less than 5 / sqrt(1280).
+  EXPECT_LT(std::abs(correlation(difference(4), difference(5))), 0.14);
+  EXPECT_LT(std::abs(correlation(difference(-1), difference(1))), 0.14);
+}
+
+TEST(Reconstruct, NeighboursInTimeLowerTheError) {
+  const test::Scene scene = test::make_scene(80, 64, 0.5, 1);
+  Params params;
+  params.temporal.radius = 1;
+  Progress silent;
+  const Neighbour before = prepare_neighbour(test::make_scene(80, 64, 0.5, 2).frame, 1, params, silent);
+  const Neighbour after = prepare_neighbour(test::make_scene(80, 64, 0.5, 3).frame, 3, params, silent);
+  Frame once = scene.frame, again = scene.frame;
+  const Result alone = reconstruct(once, params, silent);
+  const Result joined = reconstruct(again, {{-1, &before}, {1, &after}}, params, silent);
+  EXPECT_EQ(joined.report.neighbours, 2u);
+  EXPECT_LT(test::relative_mse(joined.beauty, scene.truth), 0.8 * test::relative_mse(alone.beauty, scene.truth));
+  EXPECT_LT(joined.report.estimated_relative_mse, alone.report.estimated_relative_mse);
+  // The energy is that of the frame in hand.
+  for (std::size_t c = 0; c < 3; ++c)
+    EXPECT_NEAR(joined.report.energy_after[c] / joined.report.energy_before[c], 1, 1e-5);
+}
+
+}  // namespace
+}  // namespace polyrecon
