@@ -60,6 +60,12 @@ def free_ports(count):
             one.close()
 
 
+def can_run():
+    """Whether this process may start the daemons: as root, in process namespaces of their own."""
+    test = ["unshare", "--pid", "--fork", "--kill-child", "--mount-proc", "true"]
+    return os.geteuid() == 0 and subprocess.run(test, capture_output=True).returncode == 0
+
+
 class Cluster:
     """Use as a context. `environment` is what Slurm's commands need to reach it."""
 

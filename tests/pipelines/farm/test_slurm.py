@@ -10,7 +10,7 @@ from pathlib import Path
 
 from pipelines.farm.requirements import MIB, Model, frame_of
 
-from .cluster import Cluster
+from .cluster import Cluster, can_run
 from .shot import make_shot
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -28,7 +28,7 @@ def identities(folder):
     return {path.name: (path.stat().st_ino, path.stat().st_mtime_ns) for path in Path(folder).glob("shot.*.exr")}
 
 
-@unittest.skipUnless(os.geteuid() == 0, "a slurmctld of one's own needs root")
+@unittest.skipUnless(can_run(), "a Slurm of one's own needs root and process namespaces")
 class Slurm(unittest.TestCase):
     """One cluster of two nodes, one shot, for all tests here."""
 
