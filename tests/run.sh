@@ -23,7 +23,7 @@ run-clang-tidy -p build/dev -quiet -j "$(nproc)" "^$PWD/src/" >build/dev/clang-t
 echo "== unit tests under AddressSanitizer and UndefinedBehaviorSanitizer"
 cmake --preset asan
 cmake --build --preset asan --target unit_tests
-seq 0 3 | GTEST_TOTAL_SHARDS=4 xargs -P "$(nproc)" -I{} env GTEST_SHARD_INDEX={} build/asan/tests/unit_tests --gtest_brief=1
+seq 0 15 | GTEST_TOTAL_SHARDS=16 xargs -P "$(nproc)" -I{} env GTEST_SHARD_INDEX={} build/asan/tests/unit_tests --gtest_brief=1
 
 echo "== all tests"
 ctest --preset dev

@@ -14,11 +14,6 @@ constexpr double brightness_sigma = 1;
 constexpr Real least_relative_variance = Real(1e-12), most_relative_variance = Real(1e12);
 constexpr double pi = 3.14159265358979323846;
 
-void for_rows(int height, const std::function<void(int)>& body) {
-  Progress silent;
-  parallel_for(static_cast<std::size_t>(height), silent, [&](std::size_t y) { body(static_cast<int>(y)); });
-}
-
 /// 1 / (brightness^2 + epsilon), the square smoothed so that one dark pixel does not carry the risk of its
 /// neighbourhood.
 Image inverse_brightness(const Image& brightness, double epsilon) {

@@ -19,6 +19,11 @@ void parallel_for(std::size_t count, Progress& progress, const std::function<voi
   });
 }
 
+void for_rows(int height, const std::function<void(int)>& body) {
+  Progress silent;
+  parallel_for(static_cast<std::size_t>(height), silent, [&](std::size_t y) { body(static_cast<int>(y)); });
+}
+
 double ordered_sum(std::size_t count, const std::function<double(std::size_t)>& term) {
   std::vector<double> terms(count);
   tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) { terms[i] = term(i); });

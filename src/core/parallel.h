@@ -12,6 +12,9 @@ namespace polyrecon {
 /// Throws Error{Interrupted} when progress asks to stop; exceptions of a body are passed on.
 void parallel_for(std::size_t count, Progress& progress, const std::function<void(std::size_t)>& body);
 
+/// body(y) for every row of an image, for work too short to be reported.
+void for_rows(int height, const std::function<void(int)>& body);
+
 /// Sum of term(i) for i in [0, count). The sum is taken in order of i, so it has the same bits for any number of
 /// threads; make one term a row or a block, not a sample.
 double ordered_sum(std::size_t count, const std::function<double(std::size_t)>& term);

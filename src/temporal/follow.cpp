@@ -11,11 +11,6 @@ namespace {
 
 constexpr double way_back = 1;  // pixels by which a point may miss itself
 
-void for_rows(int height, const std::function<void(int)>& body) {
-  Progress silent;
-  parallel_for(static_cast<std::size_t>(height), silent, [&](std::size_t y) { body(static_cast<int>(y)); });
-}
-
 int nearest(double position, int size) { return std::clamp(static_cast<int>(std::lround(position)), 0, size - 1); }
 
 bool inside(double x, double y, const Image& image) {

@@ -21,11 +21,6 @@ constexpr double shared_below = 0.7;  // differences this far below what indepen
 constexpr double tiny = 1e-30;
 constexpr int band_rows = 256;  // worked at once
 
-void for_rows(int height, const std::function<void(int)>& body) {
-  Progress silent;
-  parallel_for(static_cast<std::size_t>(height), silent, [&](std::size_t y) { body(static_cast<int>(y)); });
-}
-
 /// An estimate of the frame in hand from other frames; zero where it is not valid.
 struct Estimate {
   std::array<Image, 2> color;
@@ -104,7 +99,6 @@ Image gate(const Image& difference, const TemporalParams& p) {
     for_rows(d.height(), [&](int y) {
       for (int x = 0; x < d.width(); ++x) {
         const std::size_t i = d.index(x, y);
-
         if (!(d.plane(4)[i] > 0)) continue;
         // Both are sums over the valid pixels only, with the same weights.
         const double noise = std::max(static_cast<double>(d.plane(3)[i]), static_cast<double>(floor.plane(3)[i]));
