@@ -162,7 +162,7 @@ class _Loop:
         if samples and not any(c.any() for c in counts.values()):
             self.why_ended = "no error is left that more samples could lower"
             samples = 0.0
-        entry = {"round": number, "spp": spent.samples, "seconds": self.seconds(), "error": spent.error, "extra": samples}
+        entry = {"round": number, "spp": spent.samples, "seconds": spent.seconds, "error": spent.error, "extra": samples}
         self.journal["rounds"].append(entry)
         if samples:
             self.journal["plan"] = self.place_in_sequence(number + 1, counts)
