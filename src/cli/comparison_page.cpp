@@ -8,8 +8,9 @@
 #include <vector>
 
 #include "cli/comparison_output.h"
-#include "core/rect.h"
+#include "core/resample.h"
 #include "io/preview.h"
+#include "tradeoff/plot.h"
 
 namespace polyrecon {
 namespace {
@@ -39,49 +40,7 @@ th{color:var(--soft);font-weight:600}th:first-child,td:first-child{text-align:le
 .ends{display:flex;justify-content:space-between}
 )";
 
-/// Text as an HTML text or attribute value shows it.
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      case '\'':
-        out += "&#39;";
-        break;
-      default:
-        out += c;
-    }
-  return out;
-}
-
 std::string file_name(const std::string& path) { return std::filesystem::path(path).filename().string(); }
-
-/// Mean over blocks, so that the picture is not wider than a page can show.
-Image reduced(const Image& image) {
-  const int factor = (image.width() + widest - 1) / widest;
-  if (factor <= 1) return image;
-  Image out((image.width() + factor - 1) / factor, (image.height() + factor - 1) / factor, image.channels());
-  for (int c = 0; c < out.channels(); ++c)
-    for (int y = 0; y < out.height(); ++y)
-      for (int x = 0; x < out.width(); ++x) {
-        const Rect block = intersect({x * factor, y * factor, (x + 1) * factor, (y + 1) * factor}, image.bounds());
-        double sum = 0;
-        for (int v = block.y0; v < block.y1; ++v)
-          for (int u = block.x0; u < block.x1; ++u) sum += image.at(u, v, c);
-        out.at(x, y, c) = static_cast<Real>(sum / static_cast<double>(block.area()));
-      }
-  return out;
-}
 
 /// One state of the viewer.
 struct View {
@@ -114,7 +73,7 @@ std::string error_scale(const LogRange& range) {
 /// Reference, images, then the differences: neighbours alternate by one press of an arrow key.
 std::vector<View> views_of(const std::vector<const Comparison*>& images, const LogRange& range,
                            const DisplayParams& display) {
-  const auto picture = [](const Image& rgb) { return png_data_uri(reduced(rgb)); };
+  const auto picture = [](const Image& rgb) { return png_data_uri(at_most_wide(rgb, widest)); };
   std::vector<View> views{{"reference", picture(to_display(images.front()->reference, display)), {}}};
   for (const Comparison* c : images)
     views.push_back({file_name(c->image), picture(to_display(c->picture, display)), {}});

@@ -41,4 +41,20 @@ Image double_resolution(const Image& image, int width, int height) {
   return out;
 }
 
+Image at_most_wide(const Image& image, int widest) {
+  const int factor = (image.width() + widest - 1) / widest;
+  if (factor <= 1) return image;
+  Image out((image.width() + factor - 1) / factor, (image.height() + factor - 1) / factor, image.channels());
+  for (int c = 0; c < out.channels(); ++c)
+    for (int y = 0; y < out.height(); ++y)
+      for (int x = 0; x < out.width(); ++x) {
+        const Rect block = intersect({x * factor, y * factor, (x + 1) * factor, (y + 1) * factor}, image.bounds());
+        double sum = 0;
+        for (int v = block.y0; v < block.y1; ++v)
+          for (int u = block.x0; u < block.x1; ++u) sum += static_cast<double>(image.at(u, v, c));
+        out.at(x, y, c) = static_cast<Real>(sum / static_cast<double>(block.area()));
+      }
+  return out;
+}
+
 }  // namespace polyrecon

@@ -11,4 +11,7 @@ Image half_resolution(const Image& image);
 /// them.
 Image double_resolution(const Image& image, int width, int height);
 
+/// Means over square blocks, as large as it takes for the picture to be at most so many pixels wide.
+Image at_most_wide(const Image& image, int widest);
+
 }  // namespace polyrecon

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/resample.h"
 #include "io/color.h"
 #include "io/preview.h"
 
@@ -10,23 +11,6 @@ namespace polyrecon {
 namespace {
 
 constexpr int widest = 640, parts = 4;
-
-/// Mean over blocks of factor x factor pixels.
-Image reduced(const Image& image) {
-  const int factor = (image.width() + widest - 1) / widest;
-  if (factor <= 1) return image;
-  Image out((image.width() + factor - 1) / factor, (image.height() + factor - 1) / factor, image.channels());
-  for (int c = 0; c < out.channels(); ++c)
-    for (int y = 0; y < out.height(); ++y)
-      for (int x = 0; x < out.width(); ++x) {
-        const Rect block = intersect({x * factor, y * factor, (x + 1) * factor, (y + 1) * factor}, image.bounds());
-        double sum = 0;
-        for (int v = block.y0; v < block.y1; ++v)
-          for (int u = block.x0; u < block.x1; ++u) sum += static_cast<double>(image.at(u, v, c));
-        out.at(x, y, c) = static_cast<Real>(sum / static_cast<double>(block.area()));
-      }
-  return out;
-}
 
 /// Mean over the channels of (x - r)^2 / (r^2 + 0.01).
 Image relative_error(const Image& image, const Image& reference) {
@@ -75,9 +59,13 @@ std::vector<PicturedResult> picture_results(const std::vector<Picture>& pictures
   std::vector<PicturedResult> results;
   for (std::size_t i = 0; i < pictures.size(); ++i) {
     const Image display = to_display(*pictures[i].linear, {});
-    PicturedResult result{
-        pictures[i].name, pictures[i].details, png_data_uri(reduced(display)), png_data_uri(crop(display, part)), {}};
-    if (pictures[i].linear != &reference) result.error = png_data_uri(reduced(false_color(errors[i], range)));
+    PicturedResult result{pictures[i].name,
+                          pictures[i].details,
+                          png_data_uri(at_most_wide(display, widest)),
+                          png_data_uri(crop(display, part)),
+                          {}};
+    if (pictures[i].linear != &reference)
+      result.error = png_data_uri(at_most_wide(false_color(errors[i], range), widest));
     results.push_back(std::move(result));
   }
   return results;
