@@ -54,7 +54,7 @@ def choose_sampling(cycles, threshold, denoise):
 
 def main():
     options = arguments()
-    bpy.ops.wm.open_mainfile(filepath=os.path.abspath(options.scene))
+    bpy.ops.wm.open_mainfile(filepath=os.path.abspath(options.scene), use_scripts=False)
     scene = bpy.context.scene
     scene.render.use_persistent_data = True
     choose_output(scene.render)

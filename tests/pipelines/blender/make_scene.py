@@ -100,6 +100,7 @@ def switched_on(scene):
 def hostile(scene):
     """A file that tries to run code in every way that a .blend has; each would leave a file beside this one."""
     folder = os.path.dirname(os.path.abspath(sys.argv[-2]))
+    scene.cycles.samples, scene.cycles.use_denoising = 1, False  # a render that fails draws no lines
 
     def code(name):
         return HOSTILE.format(mark=os.path.join(folder, f"ran_{name}"))

@@ -3,20 +3,34 @@
 import hashlib
 import json
 import os
+import pathlib
 import stat
+import subprocess
+import sys
 import time
 import unittest
 
 import numpy as np
 
 from pipelines.loop import exr
-from tests.pipelines.blender.support import BLENDER_3, SceneTest
+from tests.pipelines.blender.support import BLENDER_3, ROOT, SceneTest
 
 
 def executable(path, text):
     path.write_text(text)
     path.chmod(path.stat().st_mode | stat.S_IXUSR)
     return path
+
+
+def journal_of(passes):
+    return json.loads((passes / "journal.json").read_text())
+
+
+def running(pid):
+    try:
+        return pathlib.Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
+    except OSError:
+        return False
 
 
 class Adaptive(SceneTest):
@@ -29,6 +43,9 @@ class Adaptive(SceneTest):
         self.assertEqual(before, hashlib.sha256(scene.read_bytes()).digest())
         picture = exr.read(out)
         self.assertTrue(all(np.isfinite(picture[f"ViewLayer.Combined.{c}"]).all() for c in "RGB"))
+        self.assertIn("budget 16 samples per pixel: ", done.stdout)
+        taken = [part["spp"] for part in journal_of(out.with_suffix(".passes"))["parts"]]
+        self.assertLess(sum(taken[:-1]), 16)  # case 31: no pass begins when the budget is spent
         counts = exr.read(out.with_suffix(".passes") / "merged.exr")["ViewLayer.Sample Count.X"]
         self.assertLessEqual(counts.mean(), 16 * 1.15)
         self.assertGreaterEqual(counts.min(), 4)
@@ -58,6 +75,36 @@ class Adaptive(SceneTest):
         first, second = (exr.read(folder / f"<i>ä_0{n}.exr")["ViewLayer.Combined.R"] for n in (1, 3))
         self.assertGreater(np.abs(first - second).max(), 0.05)
         self.assertIn("&lt;i&gt;ä_01.exr", (folder / "<i>ä_01.passes" / "report.html").read_text())
+
+    def test_case31_case32_killed_outright_it_goes_on_within_its_seconds(self):
+        out, passes = self.folder / "out.exr", self.folder / "out.passes"
+        words = [self.scene(), "-o", out, "--budget-seconds", 8, "--first-pass", 4, "--quality", "draft", "--max-rounds", 99, "--bpy"]
+        killed = subprocess.Popen([sys.executable, ROOT / "pipelines" / "blender" / "adaptive.py", *map(str, words)], stderr=subprocess.DEVNULL)
+        while not (passes / "part_0b0.exr").exists():
+            self.assertIsNone(killed.poll())
+            time.sleep(0.02)
+        blender = pathlib.Path(f"/proc/{killed.pid}/task/{killed.pid}/children").read_text().split()
+        killed.kill()
+        killed.wait()
+        self.assertEqual(len(blender), 1)
+        patience = time.monotonic() + 60
+        while running(blender[0]):  # it ends by itself: nobody is left to ask it for a pass
+            self.assertLess(time.monotonic(), patience)
+            time.sleep(0.02)
+
+        before = journal_of(passes)
+        done = self.driver("adaptive.py", *words, "--resume")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("budget 8 s: the seconds are spent", done.stdout)
+        after = journal_of(passes)
+        parts = after["parts"]
+        self.assertEqual(parts[: len(before["parts"])], before["parts"])
+        self.assertEqual(len({part["first"] for part in parts}), len(parts))
+        counts = exr.read(passes / "merged.exr")["ViewLayer.Sample Count.X"]
+        self.assertAlmostEqual(counts.mean(), sum(part["spp"] for part in parts), delta=1e-3 * counts.mean())
+        # The seconds of both runs together; no round begins after them, whatever else the machine does.
+        self.assertGreater(after["seconds"], before["seconds"])
+        self.assertTrue(all(entry["seconds"] < 8 for entry in after["rounds"] if entry["extra"]))
 
     def test_wrong_use_is_told_before_any_work(self):
         scene = self.folder / "none.blend"
@@ -103,13 +150,18 @@ class Hostile(SceneTest):
             self.assertEqual(list(self.folder.glob("ran_*")), [], blender)
 
     def test_the_file_would_run_it_if_it_were_let(self):
-        """The test above can fail: Blender itself, told to trust the file, runs it."""
-        import subprocess
-
-        scene = self.scene("hostile", blender=BLENDER_3)
-        subprocess.run([BLENDER_3, "-b", "-y", "--factory-startup", scene, "-o", self.folder / "x", "-f", "1"], capture_output=True)
-        names = {mark.name for mark in self.folder.glob("ran_*")}
-        self.assertLessEqual({"ran_text", "ran_handler", "ran_driver"}, names)
+        """The test above can fail: Blender itself, told to trust the file, runs all of it."""
+        trust = "import sys, bpy; bpy.ops.wm.open_mainfile(filepath=sys.argv[1], use_scripts=True); bpy.ops.render.render()"
+        for blender in ("bpy", BLENDER_3):
+            scene = self.scene("hostile", blender=blender)
+            command = [sys.executable, "-c", trust, scene]
+            if blender != "bpy":
+                command = [blender, "-b", "-y", "--factory-startup", scene, "-f", "1", "-o", self.folder / "x"]
+            for mark in self.folder.glob("ran_*"):
+                mark.unlink()
+            subprocess.run(command, capture_output=True)
+            ran = {mark.name for mark in self.folder.glob("ran_*")}
+            self.assertEqual(ran, {"ran_text", "ran_handler", "ran_driver", "ran_freestyle"}, blender)
 
 
 class BadRenderers(SceneTest):
@@ -136,7 +188,7 @@ for line in sys.stdin:
         self.assertEqual(done.returncode, 7, done.stderr)
         self.assertEqual(len(done.stderr.strip().splitlines()), 1)
         self.assertFalse((self.folder / "o.exr").exists())
-        self.assertEqual(len(json.loads((passes / "journal.json").read_text())["parts"]), 1)
+        self.assertEqual(len(journal_of(passes)["parts"]), 1)
         again = self.driver("adaptive.py", *arguments, "--blender", BLENDER_3, "--resume")
         self.assertEqual(again.returncode, 0, again.stderr)
         return done.stderr

@@ -23,7 +23,7 @@ def run(*words):
 
 class Template(unittest.TestCase):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
+        folder = tempfile.TemporaryDirectory(prefix="-a 'b' \"{c}\" ä日;")  # case 33
         self.addCleanup(folder.cleanup)
         self.folder = Path(folder.name)
         (self.folder / "in").mkdir()

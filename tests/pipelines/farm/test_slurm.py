@@ -30,12 +30,12 @@ def identities(folder):
 
 @unittest.skipUnless(can_run(), "a Slurm of one's own needs root and process namespaces")
 class Slurm(unittest.TestCase):
-    """One cluster of two nodes, one shot, for all tests here."""
+    """One cluster of two nodes, one shot in a folder of an awkward name (case 33), for all tests here."""
 
     @classmethod
     def setUpClass(cls):
         cls.cluster = cls.enterClassContext(Cluster(NODES, 2000))
-        cls.folder = Path(cls.enterClassContext(tempfile.TemporaryDirectory()))
+        cls.folder = Path(cls.enterClassContext(tempfile.TemporaryDirectory(prefix="-a 'b' \"{c}\" ä日;")))
         (cls.folder / "in").mkdir()
         (cls.folder / "local").mkdir()
         make_shot(cls.folder / "in", FRAMES)

@@ -54,10 +54,10 @@ class SyntheticRenderer(Renderer):
         return int(counts.max())
 
 
-def loop(folder, budget, resume=False, seed=1, quality="draft", **size):
+def loop(folder, budget, resume=False, seed=1, quality="draft", renderer=None, **size):
     folder = pathlib.Path(folder)
     settings = adaptive.Settings(folder / "out.exr", folder / "passes", budget, resume=resume, quality=quality)
-    renderer = SyntheticRenderer(seed=seed, **size)
+    renderer = renderer or SyntheticRenderer(seed=seed, **size)
     return renderer, adaptive.run(renderer, Polyrecon(), settings, Progress("none"))
 
 

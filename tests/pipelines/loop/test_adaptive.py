@@ -99,6 +99,46 @@ class Budgets(Folder):
         self.assertLess(rounds[-2] if len(rounds) > 1 else 0, 6)
 
 
+class Failing(SyntheticRenderer):
+    def extra(self, first, counts, target):
+        raise DriverError(ExitCode.RENDERER, "it died")
+
+
+class Noiseless(SyntheticRenderer):
+    def sample(self, number):
+        return self.mean
+
+
+class HardFrames(Folder):
+    def run_with(self, renderer=None, **arrays):
+        """The loop over a frame some of whose `mean` or `spread` are other than usual."""
+        renderer = renderer or SyntheticRenderer()
+        for name, values in arrays.items():
+            setattr(renderer, name, values)
+        _, result = loop(self.folder, Budget(samples=24), renderer=renderer)
+        self.assertTrue(all(np.isfinite(p).all() for p in exr.read(self.folder / "out.exr", lambda n: ".Combined." in n).values()))
+        return result
+
+    def test_case34_a_frame_without_noise_ends_at_once_and_says_why(self):
+        result = self.run_with(Noiseless())
+        self.assertEqual(result.why_ended, "no error is left that more samples could lower")
+        self.assertEqual(result.samples, 8)
+
+    def test_case34_one_noisy_spot_draws_the_samples(self):
+        spread = np.full((64, 96), 1e-12)
+        spread[20:24, 30:34] = 1
+        counts = counts_of(self.run_with(spread=spread))
+        self.assertGreater(counts[20:24, 30:34].mean(), 4 * counts[44:, 60:].mean())
+
+    def test_case34_pixels_that_are_no_numbers_stop_nothing(self):
+        mean = SyntheticRenderer().mean
+        mean[30:33, 10:13] = np.nan
+        mean[5, 80] = np.inf
+        result = self.run_with(mean=mean)
+        self.assertEqual(result.why_ended, "the samples are spent")
+        self.assertGreater(result.samples, 18)
+
+
 class Resuming(Folder):
     def run_killed(self, folder, seconds):
         """Starts the loop and kills it after a while; whether it had ended by itself."""
@@ -138,6 +178,13 @@ class Resuming(Folder):
         before, after = small.journal["parts"], large.journal["parts"]
         self.assertEqual(after[: len(before)], before)
         self.assertGreater(large.samples, small.samples + 8)
+
+    def test_case31_a_loop_that_fails_leaves_the_result_before_it(self):
+        loop(self.folder, Budget(samples=8))
+        before = {name: (self.folder / name).read_bytes() for name in ("out.exr", "passes/merged.exr")}
+        with self.assertRaisesRegex(DriverError, "it died"):
+            loop(self.folder, Budget(samples=24), resume=True, renderer=Failing())
+        self.assertEqual(before, {name: (self.folder / name).read_bytes() for name in before})
 
     def test_passes_are_not_overwritten_unasked(self):
         loop(self.folder, Budget(samples=8))

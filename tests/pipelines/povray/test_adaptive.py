@@ -63,6 +63,14 @@ class Adaptive(InFolder):
         self.assertLess(errors[1], errors[0])
         self.assertTrue(os.path.getsize("ball.passes/report.html") > 10000)
 
+    def test_case34_a_scene_without_noise_ends_after_the_first_pass(self):
+        # The camera looks at an even wall: all subpixels are the same.
+        wall = "plane { -z, -2 hollow pigment { rgb <0.5,0.25,0.125> } finish { ambient 1 diffuse 0 } }\n"
+        self.scene(HEAD % 1 + CAMERA + wall, "ball.pov")
+        said = self.run_driver("--budget-spp", "48").stdout
+        self.assertIn("no error is left that more samples could lower", said)
+        self.assertEqual(set(exr.read("ball.passes/merged.exr")["Sample Count.X"].flat), {16})
+
     def test_wrong_use(self):
         self.scene(HEAD % 1 + CAMERA + BALL + NOISY_LAMP, "ball.pov")
         self.run_driver("--budget-spp", "8", code=2)
