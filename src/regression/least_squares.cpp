@@ -11,10 +11,6 @@ namespace {
 constexpr int max_columns = BasisLayout::max_columns;
 using Matrix = double[max_columns][max_columns];
 
-// Relative lengths (squared) of what is left of a column: below the first it is dropped, below the second cancellation
-// has cost it too many digits to stay orthogonal ("twice is enough", Giraud and Langou 2002).
-constexpr double drop_below = 1e-8, repeat_below = 1e-4;
-
 POLYRECON_SIMD void multiply(const Real* a, const Real* b, double* product, int rows) {
   for (int j = 0; j < rows; ++j) product[j] = static_cast<double>(a[j]) * static_cast<double>(b[j]);
 }
@@ -86,18 +82,18 @@ POLYRECON_SIMD void scale(Real* y, Real factor, int rows) {
 
 /// What is left of column a beside those before it.
 struct Remainder {
-  double ratio;    ///< Its squared length, relative to the column's own.
   double inverse;  ///< 1 / length.
-  bool keep;
+  bool keep, again;
 };
 
-Remainder remainder_of(const Matrix& gram, const Matrix& l, int a) {
+Remainder remainder_of(const Matrix& gram, const Matrix& l, int a, const DependenceLimits& limits) {
   double rest = gram[a][a];
   for (int b = 0; b < a; ++b) rest -= l[a][b] * l[a][b];
   const double ratio = gram[a][a] > 0 ? rest / gram[a][a] : 0;
   // The length and its inverse must be values of the storage type, or q overflows.
-  const bool keep = ratio > drop_below && std::isnormal(rest) && std::isnormal(static_cast<Real>(std::sqrt(rest)));
-  return {ratio, keep ? 1 / std::sqrt(rest) : 0, keep};
+  const bool keep =
+      ratio > limits.drop * limits.drop && std::isnormal(rest) && std::isnormal(static_cast<Real>(std::sqrt(rest)));
+  return {keep ? 1 / std::sqrt(rest) : 0, keep, ratio < limits.repeat * limits.repeat};
 }
 
 /// The inner product of column b > a with the part of column a that is orthogonal to those before it.
@@ -175,7 +171,8 @@ void column_sums(const NestedFactor& factor, const double* y, std::size_t stride
 
 }  // namespace
 
-void factorise(const Window& window, int columns, const Real* weight, NestedFactor& factor) {
+void factorise(const Window& window, int columns, const Real* weight, NestedFactor& factor,
+               const DependenceLimits& limits) {
   const auto stride = static_cast<std::size_t>(window.stride);
   factor.columns = columns;
   factor.rank = 0;
@@ -191,9 +188,9 @@ void factorise(const Window& window, int columns, const Real* weight, NestedFact
   Matrix gram, l;
   gram_matrix(factor.scratch.data(), columns, window.padded, stride, gram);
   for (int a = 0; a < columns; ++a) {
-    const Remainder remainder = remainder_of(gram, l, a);
+    const Remainder remainder = remainder_of(gram, l, a, limits);
     Real* const qa = factor.q.data() + static_cast<std::size_t>(a) * stride;
-    const bool again = remainder.ratio < repeat_below;
+    const bool again = remainder.again;
     if (remainder.keep) normalised_remainder(window, l, a, remainder.inverse, factor);
     const bool keep = remainder.keep && (!again || orthogonalise_again(factor, window, weight, a));
     if (!keep) std::fill(qa, qa + window.padded, Real(0));

@@ -21,10 +21,17 @@ struct NestedFactor {
   std::vector<double> scratch;                        ///< Weighted columns.
 };
 
+/// What is left of a column beside those before it, as a part of its own length: below `drop` the column depends on
+/// them and goes, below `repeat` cancellation has cost it digits and it is orthogonalised a second time ("twice is
+/// enough", Giraud and Langou 2002). What speaks for these values: docs/stability.md.
+struct DependenceLimits {
+  double drop = 1e-4, repeat = 1e-2;
+};
+
 /// Factorises the window's design under the weights w (window.padded of them, >= 0, zero beyond window.count). The Gram
-/// matrix is summed in double, factored by Cholesky in the order of the columns; a column whose part orthogonal to the
-/// ones before it is under 1e-4 of its own length is dropped, one under 1e-2 is orthogonalised a second time.
-void factorise(const Window& window, int columns, const Real* weight, NestedFactor& factor);
+/// matrix is summed in double and factored by Cholesky in the order of the columns.
+void factorise(const Window& window, int columns, const Real* weight, NestedFactor& factor,
+               const DependenceLimits& limits = {});
 
 /// z_a = sum_i w_i q_a(i) y(i) for every column a; zero for dropped ones. y has window.padded samples.
 void project(const NestedFactor& factor, const Window& window, const Real* weight, const Real* y, double* z);

@@ -1,0 +1,233 @@
+/// How well the windows met on real renders are conditioned, and what the limits of regression/least_squares.h do to
+/// them: stability FOLDER RENDER REFERENCE [RENDER REFERENCE]... writes into FOLDER
+///   windows.csv  one row a window: its condition number and the residual ratio of each solver
+///   columns.csv  one row a column: what is left of it, and how far from orthogonal one sweep and two leave it
+///   limits.csv   one row a setting of the limits: the error of the windows' fits against the reference
+/// The windows are those of stage 1, every 8th pixel both ways, with the bandwidths of both stages.
+/// tests/bench/stability.py runs it and draws.
+#include <Eigen/Dense>
+#include <cstdio>
+#include <exception>
+#include <fstream>
+#include <functional>
+#include <limits>
+#include <string>
+
+#include "estimate/variance.h"
+#include "features/prepare.h"
+#include "io/read_frame.h"
+#include "pipeline/params.h"
+#include "regression/least_squares.h"
+#include "regression/order_selection.h"
+#include "regression/weights.h"
+
+namespace polyrecon {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::MatrixXf;
+using Eigen::VectorXd;
+
+constexpr int step = 8;
+constexpr double eps = std::numeric_limits<Real>::epsilon();
+const Params params;
+
+/// A window with its weights, and S X and S y as exact numbers.
+struct Weighed {
+  Window window;
+  std::vector<Real> weight;
+  double weight_sum = 0;
+  MatrixXd sx;
+  VectorXd s, sy;
+};
+
+MatrixXd columns_of(const std::vector<Real>& values, int columns, const Window& window) {
+  MatrixXd m(window.count, columns);
+  for (int a = 0; a < columns; ++a)
+    for (int j = 0; j < window.count; ++j)
+      m(j, a) = static_cast<double>(values[static_cast<std::size_t>(a * window.stride + j)]);
+  return m;
+}
+
+/// Calls use(window) for windows all over the image, each half, each bandwidth.
+void each_window(const HalfPair& pair, const std::function<void(Weighed&)>& use) {
+  const BasisLayout layout(pair.features[0].channels(), params.max_order);
+  Weighed w;
+  w.window.reserve(params.radius, layout.columns(), 3);
+  w.weight.resize(static_cast<std::size_t>(w.window.stride));
+  PatchDistances distances;
+  for (std::size_t h = 0; h < 2; ++h) {
+    const WindowSource source{&pair.color[h], &pair.variance, &pair.features[1 - h], nullptr};
+    for (const Rect& block : aligned_blocks(pair.variance.bounds(), block_size)) {
+      distances.load(pair.color[1 - h], pair.variance, block, params.radius, params.patch_radius);
+      for (int y = block.y0; y < block.y1; y += step)
+        for (int x = block.x0; x < block.x1; x += step)
+          for (const Real bandwidth : params.later_bandwidths) {
+            distances.window_of(x, y, cut_exponent * bandwidth * bandwidth, w.window);
+            if (w.window.count == 0) continue;
+            gather(source, layout, x, y, params.radius, w.window);
+            w.weight_sum = kernel_weights(w.window, bandwidth, w.weight.data());
+            w.s = columns_of(w.weight, 1, w.window).col(0).cwiseSqrt();
+            w.sx = w.s.asDiagonal() * columns_of(w.window.design, w.window.layout.columns(), w.window);
+            w.sy = w.s.asDiagonal() * columns_of(w.window.response, 3, w.window).col(1);
+            use(w);
+          }
+    }
+  }
+}
+
+/// Largest over smallest singular value of S X with columns of length 1.
+double condition_of(const MatrixXd& sx) {
+  MatrixXd scaled = sx;
+  for (int a = 0; a < sx.cols(); ++a) scaled.col(a) /= std::max(sx.col(a).norm(), std::numeric_limits<double>::min());
+  const VectorXd values = Eigen::JacobiSVD<MatrixXd>(scaled).singularValues();
+  return scaled.rows() < scaled.cols() ? HUGE_VAL : values(0) / values(values.size() - 1);
+}
+
+/// LAPACK's ratio for a least squares solution (xQRT17): below 30 is as good as the arithmetic allows.
+double residual_ratio(const Weighed& w, const VectorXd& residual) {
+  const double scale = w.sx.norm() * w.sy.norm() * static_cast<double>(w.sx.rows()) * eps;
+  return scale > 0 ? (w.sx.transpose() * residual).norm() / scale : 0;
+}
+
+double ours(const Weighed& w, const DependenceLimits& limits, NestedFactor& factor) {
+  const int columns = static_cast<int>(w.sx.cols());
+  factorise(w.window, columns, w.weight.data(), factor, limits);
+  VectorXd z(columns);
+  project(factor, w.window, w.weight.data(), w.window.response.data() + w.window.stride, z.data());
+  return residual_ratio(w, w.sy - w.s.asDiagonal() * (columns_of(factor.q, columns, w.window) * z));
+}
+
+template <typename Scalar>
+double normal_equations(const Weighed& w) {
+  using Matrix = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>;
+  const Matrix sx = w.sx.cast<Scalar>(), gram = sx.transpose() * sx, right = sx.transpose() * w.sy.cast<Scalar>();
+  const VectorXd c = gram.llt().solve(right).template cast<double>();
+  return residual_ratio(w, w.sy - w.sx * c);
+}
+
+double householder(const Weighed& w) {
+  const MatrixXf sx = w.sx.cast<float>(), sy = w.sy.cast<float>();
+  const VectorXd c = sx.householderQr().solve(sy).cast<double>();
+  return residual_ratio(w, w.sy - w.sx * c);
+}
+
+/// Largest inner product of a column of S^-1 Q with those before it.
+VectorXd overlaps(const Weighed& w, const NestedFactor& factor) {
+  const MatrixXd q = w.s.asDiagonal() * columns_of(factor.q, factor.columns, w.window), gram = q.transpose() * q;
+  VectorXd out = VectorXd::Zero(factor.columns);
+  for (int a = 1; a < factor.columns; ++a) out(a) = gram.row(a).head(a).cwiseAbs().maxCoeff();
+  return out;
+}
+
+/// fit of the three channels as stage 1 takes it, pixels x 3.
+MatrixXd fit_of(Weighed& w, NestedFactor& factor) {
+  std::array<ColumnStatistics, 3> channels;
+  double* z[3] = {channels[0].z.data(), channels[1].z.data(), channels[2].z.data()};
+  double* s2[3] = {channels[0].variance.data(), channels[1].variance.data(), channels[2].variance.data()};
+  project_beauty(factor, w.window, w.weight.data(), false, z, nullptr, s2);
+  const VectorXd weight = w.s.cwiseAbs2();
+  const MatrixXd y = columns_of(w.window.response, 3, w.window), v = columns_of(w.window.noise_variance, 3, w.window);
+  for (int c = 0; c < 3; ++c) {
+    channels[static_cast<std::size_t>(c)].guess_energy = weight.dot(y.col(c).cwiseAbs2());
+    channels[static_cast<std::size_t>(c)].noise_energy = weight.dot(v.col(c));
+  }
+  const OrderChoice choice =
+      select_order(channels, w.window.layout, w.weight_sum, true, params.order_tolerance, params.parts.shrinkage);
+  MatrixXd coefficients(factor.columns, 3);
+  for (int c = 0; c < 3; ++c)
+    for (int a = 0; a < factor.columns; ++a) coefficients(a, c) = choice.factor[static_cast<std::size_t>(a)] * z[c][a];
+  return columns_of(factor.q, factor.columns, w.window) * coefficients;
+}
+
+/// Sums over the windows under one setting of the limits.
+struct LimitSums {
+  DependenceLimits limits;
+  double error = 0, weight = 0, overlap = 0;
+  std::size_t columns = 0, dropped = 0;
+
+  void add(Weighed& w, const Pass& reference, NestedFactor& factor) {
+    factorise(w.window, static_cast<int>(w.sx.cols()), w.weight.data(), factor, limits);
+    columns += static_cast<std::size_t>(factor.columns);
+    dropped += static_cast<std::size_t>(factor.columns - factor.rank);
+    overlap = std::max(overlap, overlaps(w, factor).maxCoeff());
+    const MatrixXd fit = fit_of(w, factor);
+    for (int j = 0; j < w.window.count; ++j)
+      for (int c = 0; c < 3; ++c) {
+        const std::size_t at = static_cast<std::size_t>(w.window.offset[static_cast<std::size_t>(j)]);
+        const double r = reference.mean.plane(c)[at], v = reference.variance.plane(c)[at], d = fit(j, c) - r;
+        const double weight_j = static_cast<double>(w.weight[static_cast<std::size_t>(j)]) / 3;
+        error += weight_j * (d * d - v) / (r * r + 0.01);
+        weight += weight_j;
+      }
+  }
+};
+
+std::vector<LimitSums> all_limits() {
+  std::vector<LimitSums> out;
+  for (const double drop : {1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 3e-2, 1e-1})
+    out.push_back({{drop, std::max(drop, 1e-2)}});
+  for (const double repeat : {0.0, 1e-3, 1e-1, 1.0}) out.push_back({{1e-4, repeat}});
+  return out;
+}
+
+struct Tables {
+  std::ofstream windows, columns, limits;
+};
+
+void tell_window(const std::string& name, const Weighed& w, Tables& tables) {
+  NestedFactor once, twice;
+  const double one_sweep = ours(w, {1e-7, 0}, once), two_sweeps = ours(w, {1e-7, 1e-2}, twice);
+  NestedFactor chosen;
+  tables.windows << name << ',' << w.sx.rows() << ',' << w.sx.cols() << ',' << condition_of(w.sx) << ','
+                 << ours(w, {}, chosen) << ',' << two_sweeps << ',' << one_sweep << ',' << householder(w) << ','
+                 << normal_equations<double>(w) << ',' << normal_equations<float>(w) << ',' << chosen.rank << '\n';
+  const VectorXd single = overlaps(w, once), both = overlaps(w, twice);
+  const MatrixXd r = w.sx.householderQr().matrixQR();
+  for (int a = 1; a < std::min(w.sx.rows(), w.sx.cols()); ++a)
+    tables.columns << name << ',' << a << ',' << std::abs(r(a, a)) / w.sx.col(a).norm() << ',' << single(a) << ','
+                   << both(a) << '\n';
+}
+
+void look_at_sample(const std::string& render, const std::string& reference_path, Tables& tables) {
+  Frame frame = read_frame(render).frame;
+  const Frame reference = read_frame(reference_path).frame;
+  Progress silent;
+  const NoiseVariance noise = noise_variance(frame, silent);
+  const HalfPair pair = prepare(frame, look_at(frame), noise.variance, params.cleaning, false, silent).pair;
+  const std::string name = render.substr(render.rfind('/') + 1, render.rfind('.') - render.rfind('/') - 1);
+  std::vector<LimitSums> sums = all_limits();
+  NestedFactor factor;
+  each_window(pair, [&](Weighed& w) {
+    tell_window(name, w, tables);
+    for (LimitSums& s : sums) s.add(w, reference.beauty, factor);
+  });
+  for (const LimitSums& s : sums)
+    tables.limits << name << ',' << s.limits.drop << ',' << s.limits.repeat << ',' << s.error / s.weight << ','
+                  << s.overlap << ',' << static_cast<double>(s.dropped) / static_cast<double>(s.columns) << '\n';
+}
+
+}  // namespace
+}  // namespace polyrecon
+
+int main(int argc, char** argv) {
+  if (argc < 4 || argc % 2 != 0) {
+    std::fprintf(stderr, "stability FOLDER RENDER REFERENCE [RENDER REFERENCE]...\n");
+    return 2;
+  }
+  try {
+    const std::string folder = argv[1];
+    polyrecon::Tables tables{std::ofstream(folder + "/windows.csv"), std::ofstream(folder + "/columns.csv"),
+                             std::ofstream(folder + "/limits.csv")};
+    tables.windows
+        << "sample,rows,columns,condition,chosen,two sweeps,one sweep,QR in float,normal equations in double,"
+           "normal equations in float,rank\n";
+    tables.columns << "sample,column,left,one sweep,two sweeps\n";
+    tables.limits << "sample,drop,repeat,error,overlap,dropped\n";
+    for (int k = 2; k < argc; k += 2) polyrecon::look_at_sample(argv[k], argv[k + 1], tables);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 1;
+  }
+  return 0;
+}
