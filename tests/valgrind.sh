@@ -18,7 +18,7 @@ check() {
 check inspect "${sample}0.exr" >/dev/null
 check merge "$sample"[0-3].exr -o "$folder/merged.exr" --quiet
 check denoise -i "$folder/merged.exr" -o "$folder/standard.exr" --threads 2 --quiet --error-map "$folder/error.exr" \
-  --sample-map "$folder/samples.exr"
+  --sample-map "$folder/samples.exr" --budget 8
 check denoise -i "${sample}0.exr" -o "$folder/draft.exr" --quality draft --threads 1 --quiet
 check compare "${sample}0.exr" "$folder/draft.exr" "$folder/standard.exr"
 echo "no error"

@@ -244,6 +244,18 @@ class Merger {
                                      kChunkLines);
   }
 
+  /// Throws Error{OutOfMemory} where a band, its sums and the chunks of the inputs beside it need more than that.
+  void require_memory(std::size_t max_bytes) const {
+    const auto lines = static_cast<std::size_t>(std::min(window_.height(), lines_per_band()));
+    std::size_t bytes = 0;  // of a pixel
+    for (const std::size_t l : merged_)
+      bytes += all_channels(first().layers[l]).size() * (3 * sizeof(Accumulator) + 4 * sizeof(float));
+    for (const PartInfo& part : first().file.parts) bytes += part.channels.size() * 3 * sizeof(float);
+    if (static_cast<std::size_t>(window_.width()) * lines > max_bytes / std::max<std::size_t>(bytes, 1))
+      throw Error(ExitCode::OutOfMemory, fmt::format("{}: {} lines of {} pixels need more than the limit of {} MB",
+                                                     first().file.path, lines, window_.width(), max_bytes >> 20));
+  }
+
   MergeResult report() {
     if (left_out_ > 0)
       report_.notes.push_back(fmt::format("{} samples that are not finite were left out of the means", left_out_));
@@ -537,6 +549,7 @@ MergeResult merge(const std::vector<std::string>& paths, const std::string& targ
   std::vector<std::string> all = paths;
   all.insert(all.end(), options.half_b.begin(), options.half_b.end());
   Merger merger(open_renders(all, options.limits), options.samples, options.half_b.empty() ? 0 : paths.size());
+  merger.require_memory(options.limits.max_bytes);
   write_single_part(
       target, merger.header(), [&](NativeBand& band) { merger.make(band); }, merger.lines_per_band());
   return merger.report();

@@ -37,9 +37,10 @@ struct MergeResult {
 /// unbiased. n_k comes from a sample-count pass, else from metadata or options, else all renders count alike. Samples
 /// that are not finite are left out and counted in a note. The sum of n_k is kept in `<view layer>.Sample Count.X`,
 /// other layers come from the first file, bit for bit, as do further ones that only it has. Writes one part of
-/// scanlines with ZIP, merged layers as float; memory is bounded by one band of lines. Throws Error{Usage} for fewer
-/// than two files or one given twice, Error{BadInput} naming the first file that does not fit the first one,
-/// Error{Missing}, and what write_atomically throws.
+/// scanlines with ZIP, merged layers as float; memory is bounded by one band of lines, Error{OutOfMemory} where that
+/// needs more than options.limits.max_bytes. Throws Error{Usage} for fewer than two files or one given twice,
+/// Error{BadInput} naming the first file that does not fit the first one, Error{Missing}, and what write_atomically
+/// throws.
 MergeResult merge(const std::vector<std::string>& paths, const std::string& target, const MergeOptions& options = {});
 
 }  // namespace polyrecon

@@ -317,6 +317,16 @@ TEST(MergeRenders, RefusesOneFileTheSameFileTwiceAndFilesThatDoNotFit) {
   EXPECT_FALSE(std::filesystem::exists(out));
 }
 
+TEST(MergeRenders, RefusesABandThatTheLimitDoesNotHold) {
+  const TemporaryFolder folder;
+  const auto paths = write_all(folder, {render(1), render(2)});
+  MergeOptions options;
+  options.limits.max_bytes = 1000;
+  const Error error = error_of([&] { merge(paths, folder / "m.exr", options); });
+  EXPECT_EQ(error.code(), ExitCode::OutOfMemory);
+  EXPECT_THAT(error.what(), HasSubstr(paths[0]));
+}
+
 TEST(MergeRenders, EqualRendersAreSuspicious) {
   const TemporaryFolder folder;
   const MergeResult result = merge(write_all(folder, {render(2), render(2)}), folder / "out.exr");
