@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 
 #include "core/simd.h"
 
@@ -16,8 +17,12 @@ void gather_channel(const Image& image, int channel, const Window& window, Real 
   gather_plane(image.plane(channel), window.offset.data(), minus, column, window.padded);
 }
 
-bool all_zero(const Real* column, int n) {
-  return std::all_of(column, column + n, [](Real x) { return x == 0; });
+// Of features, whose values are of order 1. What varies by less is rounding, of cleaned features above all: even where
+// they are flat, every pixel is a quotient of other sums. As a column of its own it would be fitted to the noise.
+constexpr Real least_variation = Real(1e-5);
+
+bool is_flat(const Real* column, int n) {
+  return std::all_of(column, column + n, [](Real x) { return std::abs(x) < least_variation; });
 }
 
 POLYRECON_SIMD void first_order_columns(const int* x, const int* y, int center_x, int center_y, Real scale, Real* dx,
@@ -85,7 +90,7 @@ void gather(const WindowSource& source, const BasisLayout& layout, int center_x,
   int varying = 0;
   for (int f = 0; f < layout.features(); ++f) {
     gather_channel(*source.features, f, window, source.features->at(center_x, center_y, f), column);
-    if (all_zero(column, window.count)) continue;
+    if (is_flat(column, window.count)) continue;
     column += stride;
     ++varying;
   }

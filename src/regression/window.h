@@ -40,9 +40,9 @@ struct WindowSource {
 };
 
 /// Fills design, response, noise_variance and guess for the pixels already listed in window.x, window.y (count of
-/// them), and sets window.layout: that of `layout` without the features that do not vary over the window. Features
-/// enter minus their value at the centre, positions as (i - c) / radius, both of order 1 or below: the columns of
-/// equation (2) but for scale.
+/// them), and sets window.layout: that of `layout` without the features that do not vary over the window but by
+/// rounding. Features enter minus their value at the centre, positions as (i - c) / radius, both of order 1 or below:
+/// the columns of equation (2) but for scale.
 void gather(const WindowSource& source, const BasisLayout& layout, int center_x, int center_y, int radius,
             Window& window);
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <utility>
 
 #include "support/images.h"
 #include "support/random.h"
@@ -80,6 +81,24 @@ TEST(Gather, ColumnsAreThoseOfEquation2) {
     check_columns(order, 0, 0, 3);  // in a corner
     check_columns(order, 8, 5, 2);  // at a border
     check_columns(order, 4, 3, 1);
+  }
+}
+
+TEST(Gather, AFeatureThatVariesByRoundingAloneHasNoColumn) {
+  const Image plain(5, 5, 3);
+  for (const auto& [size, columns] : {std::pair{1e-7, 1}, std::pair{1e-6, 1}, std::pair{1e-4, 2}}) {
+    test::Random random(6);
+    const double variation = size;
+    const Image feature = image_of(5, 5, 1, [&](int, int, int) { return 0.5 + variation * random.uniform(-1, 1); });
+    Window window;
+    window.reserve(2, 2, 3);
+    window.count = 25;
+    for (int j = 0; j < 25; ++j) {
+      window.x[static_cast<std::size_t>(j)] = j % 5;
+      window.y[static_cast<std::size_t>(j)] = j / 5;
+    }
+    gather({&plain, &plain, &feature, nullptr}, BasisLayout(1, 0), 2, 2, 2, window);
+    EXPECT_EQ(window.layout.columns(), columns) << size;
   }
 }
 
