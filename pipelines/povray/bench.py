@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Makes the figures and pictures of docs/povray.md: for each scene a reference of 1024 subpixels a pixel, render_passes.py
-and `polyrecon denoise`, adaptive.py; relMSE and processor seconds of each. A reference that is there in --work is not made
-again."""
+"""Makes the figures of docs/povray.md: for each scene a reference of 1024 subpixels a pixel, render_passes.py and `polyrecon
+denoise`, adaptive.py; relMSE and processor seconds of each. A reference that is there in --work is not made again. With
+--picture its picture instead."""
 
 if not __package__:  # run as a script from a checkout
     import pathlib
@@ -22,6 +22,7 @@ import numpy as np
 from ..loop import exr
 from ..loop.errors import run_main
 from ..loop.polyrecon_cli import Polyrecon
+from . import gallery
 from .scene import Crop, Scene
 from .subpixels import estimate
 
@@ -34,6 +35,9 @@ SCENES = {
     "pawns": (EXAMPLES / "advanced/pawns.pov", 128, 96),
     "focalblur": (EXAMPLES / "camera/focalblur.pov", 96, 72),
 }
+GALLERY = [SCENES["still_life"][0]] + [
+    EXAMPLES / "advanced" / name for name in ("woodbox.pov", "chess2.pov", "wineglass.pov", "glasschess/glasschess.pov")
+]
 REFERENCE_GRID = 32
 UNIFORM_GRIDS = (4, 8)  # after the first pass of 2 x 2: 20 and 68 samples where there is noise
 ADAPTIVE_SAMPLES = 68
@@ -49,9 +53,13 @@ def _main(words):
     parser.add_argument("scenes", nargs="*", metavar="SCENE", help=f"{', '.join(SCENES)} (all)")
     parser.add_argument("--work", type=pathlib.Path, default=HERE.parents[1] / "out" / "povray")
     parser.add_argument("--only-references", action="store_true", help="leave it at the references")
+    parser.add_argument("--picture", type=pathlib.Path, metavar="FILE.jpg", help="write scenes and their passes here")
     options = parser.parse_args(words)
     if unknown := set(options.scenes) - set(SCENES):
         parser.error(f"no such scene: {', '.join(sorted(unknown))}")
+    if options.picture:
+        gallery.write(options.picture, GALLERY)
+        return
     options.work.mkdir(parents=True, exist_ok=True)
     for name in options.scenes or SCENES:
         reference(options.work, name)

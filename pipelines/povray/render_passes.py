@@ -21,7 +21,7 @@ from ..loop.errors import run_main
 from ..loop.renderer import SAMPLE_COUNT
 from . import passes, regions
 from .scene import Scene
-from .subpixels import estimate, join
+from .subpixels import Estimate, estimate, join
 
 FIRST_GRID = 2  # subpixels a side of the first pass and of the feature passes
 NOISE_LIMIT = 0.005  # standard error of the first pass, relative to the brightness, that counts as noise
@@ -68,9 +68,10 @@ def render_beauty(scene, grid, say=lambda text: None):
     beauty = estimate(scene.render(FIRST_GRID), FIRST_GRID)
     samples = np.full(beauty.mean.shape[:2], FIRST_GRID**2, np.float32)
     per_sample = max(time.monotonic() - begun - scene.parse_seconds, 1e-3) / samples.sum()
+    noisy = noise(beauty)
+    beauty = without_variance(beauty, ~noisy)
     if grid <= FIRST_GRID:
         return beauty, samples
-    noisy = noise(beauty)
     say(f"  {'yes' if noisy.any() else 'no '} more subpixels: {noisy.mean():.0%} of the frame is noisy")
     for crop, n in regions.cover(noisy * grid, scene.parse_seconds / per_sample):
         more = estimate(scene.render(n, crop=crop), n)
@@ -95,6 +96,15 @@ def noise(beauty):
         for dx in range(3):
             near |= noisy[dy : dy + up[0], dx : dx + up[1]]
     return near.repeat(NOISE_BLOCK, 0).repeat(NOISE_BLOCK, 1)[:height, :width]
+
+
+def without_variance(beauty, where):
+    """There the reconstruction keeps the pixels as they are. Where nothing is noisy the subpixels differ by edges and
+    highlights alone: chance does not tell them from fireflies, their variance is several times the error of a grid's mean,
+    and the features, taken from the same subpixels, err with the picture."""
+    where = where[..., None]
+    halves = (np.where(where, beauty.mean, half) for half in (beauty.a, beauty.b))
+    return Estimate(beauty.mean, np.where(where, 0, beauty.variance), *halves)
 
 
 def channels(layers):

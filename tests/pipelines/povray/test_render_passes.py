@@ -51,11 +51,16 @@ class RenderPasses(InFolder):
     def compare(self, *images):
         return json.loads(Polyrecon().run("compare", "--json", *images, "reference.exr"))["results"]
 
-    def test_a_scene_without_noise_is_left_at_the_first_pass(self):
+    def test_a_scene_without_noise_is_left_at_the_first_pass_and_as_it_is(self):
         scene = self.scene(HEAD % 1 + CAMERA + BALL + LAMP)
         said = self.run_driver(scene, "-o", "merged.exr", "--subpixels", "8", "--", *SIZE).stdout
         self.assertIn("no  more subpixels", said)
-        self.assertEqual(set(np.unique(exr.read("merged.exr")["Sample Count.X"])), {4})
+        merged = exr.read("merged.exr")
+        self.assertEqual(set(np.unique(merged["Sample Count.X"])), {4})
+        Polyrecon().run("denoise", "-i", "merged.exr", "-o", "clean.exr", "--quiet")
+        clean = exr.read("clean.exr")
+        for c in "RGB":
+            np.testing.assert_array_equal(clean[f"Combined.{c}"], merged[f"Combined.{c}"])
 
     def test_wrong_use(self):
         scene = self.scene(HEAD % 1 + CAMERA + BALL + LAMP)
