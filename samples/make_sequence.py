@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
-"""Renders the animation of scenes/parade.py, 10 frames of 160 x 90, into out/sequence/: noisy frames `parade.####.exr` of 8
-samples (8 subsets of one sequence, merged), with Blender's motion vectors, and references `ref.####.exr` of 256 samples.
+"""Renders the animation of scenes/parade.py, 10 frames of 160 x 90, into out/sequence/: for each --spp N noisy frames
+`parade_N.####.exr` (8 subsets of one sequence, merged), with Blender's motion vectors, and references `ref.####.exr` of 256
+samples.
 
-Needs a Python that has the Blender 5 module (pip install bpy==5.0.1) and polyrecon built; five minutes on two cores. What is
-there already is not rendered again. tests/bench/sequence.py measures on them.
+Needs a Python that has the Blender 5 module (pip install bpy==5.0.1) and polyrecon built; a second for 10 samples of a frame on
+two cores. What is there already is not rendered again. tests/bench/sequence.py measures on them.
 """
 
 import argparse
@@ -35,20 +36,26 @@ def render(options, name, count, *words):
     return stem
 
 
+def merge(options, name, merged, samples):
+    for frame in FRAMES:
+        target = options.work / f"{merged}.{frame:04d}.exr"
+        run([options.polyrecon, "merge", *parts(options.work / name, frame, 8), "-o", target, "--samples", samples])
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--work", type=pathlib.Path, default=HERE.parent / "out" / "sequence", help="folder of the results")
+    parser.add_argument("--spp", type=int, nargs="*", default=[8, 64, 128], help="samples of the noisy frames")
     parser.add_argument("--blender5", default=sys.executable, help="Python with bpy 5.0.1")
     parser.add_argument("--polyrecon", default=str(HERE.parent / "build" / "release" / "src" / "polyrecon"))
     options = parser.parse_args()
     options.work = options.work.resolve()
     options.work.mkdir(parents=True, exist_ok=True)
-    noisy = render(options, "in", 8, "--spp=8", "--passes=denoising,vector,samples")
-    reference = render(options, "seed", 8, "--spp=32", "--seeds")
-    for frame in FRAMES:
-        for stem, name, samples in ((noisy, "parade", 1), (reference, "ref", 32)):
-            target = options.work / f"{name}.{frame:04d}.exr"
-            run([options.polyrecon, "merge", *parts(stem, frame, 8), "-o", target, "--samples", samples])
+    for spp in options.spp:
+        render(options, f"in_{spp}", 8, f"--spp={spp}", "--passes=denoising,vector,samples")
+        merge(options, f"in_{spp}", f"parade_{spp}", spp // 8)
+    render(options, "seed", 8, "--spp=32", "--seeds")
+    merge(options, "seed", "ref", 32)
 
 
 if __name__ == "__main__":

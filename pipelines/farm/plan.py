@@ -7,7 +7,7 @@ import re
 
 from ..loop.errors import DriverError, ExitCode
 from . import frames as frame_names
-from .requirements import MEMORY_MARGIN, Model, frame_of
+from .requirements import DEFAULT_RADIUS, MEMORY_MARGIN, Model, frame_of
 
 
 def size(text):
@@ -54,15 +54,26 @@ def parse_words(parser, words):
     return options
 
 
-def quality_of(words):
-    """The quality that words of `polyrecon denoise` ask for."""
-    quality = "standard"
+def value_of(option, words, default):
+    """What words of `polyrecon denoise` give as an option."""
+    value = default
     for at, word in enumerate(words):
-        if word == "--quality" and at + 1 < len(words):
-            quality = words[at + 1]
-        elif word.startswith("--quality="):
-            quality = word.partition("=")[2]
-    return quality
+        if word == option and at + 1 < len(words):
+            value = words[at + 1]
+        elif word.startswith(f"{option}="):
+            value = word.partition("=")[2]
+    return value
+
+
+def quality_of(words):
+    return value_of("--quality", words, "standard")
+
+
+def radius_of(words):
+    radius = value_of("--frame-radius", words, str(DEFAULT_RADIUS))
+    if not radius.isdecimal():
+        raise DriverError(ExitCode.USAGE, f"--frame-radius {radius}: write a number")
+    return int(radius)
 
 
 def model_of(options):
@@ -89,7 +100,7 @@ def request_of(options, frame):
     if options.memory:
         return options.memory
     aovs = sum(word in ("-l", "--aov") or word.startswith("--aov=") for word in options.options)
-    return model_of(options).request_bytes(frame, quality_of(options.options), aovs)
+    return model_of(options).request_bytes(frame, quality_of(options.options), aovs, radius_of(options.options))
 
 
 def limit_of(options, request):
@@ -100,4 +111,5 @@ def limit_of(options, request):
 
 def seconds_of(options, frame, threads):
     """Of one frame; 0 where there is none to tell it from."""
-    return model_of(options).wall_seconds(frame, quality_of(options.options), threads) if frame else 0
+    words = options.options
+    return model_of(options).wall_seconds(frame, quality_of(words), threads, radius_of(words)) if frame else 0

@@ -13,6 +13,8 @@ from ..loop.errors import DriverError, ExitCode
 MODEL_FILE = pathlib.Path(__file__).with_name("model.json")
 MEMORY_MARGIN = 1.15  # of what is asked for over what the model says
 MIB = 1 << 20
+AOV_BYTES = 24  # of a neighbour's pixel: two halves of three floats
+DEFAULT_RADIUS = 2  # of `polyrecon denoise --frame-radius`
 # The passes that take part in the fit; other channels are only copied.
 ROLES_OF_THE_FIT = ("beauty", "normal", "albedo", "depth", "visibility", "prior", "alpha")
 
@@ -53,30 +55,34 @@ class Model:
         try:
             constants = json.loads(pathlib.Path(path).read_text())
             self.memory, self.seconds = constants["memory"], constants["seconds"]
+            self.neighbour = constants["neighbour"]
             self.parallel_part = constants["parallel_part"]
         except OSError as error:
             raise DriverError(ExitCode.MISSING, f"{path}: {error.strerror}") from error
         except (ValueError, KeyError) as error:
             raise DriverError(ExitCode.BAD_INPUT, f"{path}: no model of farm_model.py ({error})") from error
 
-    def peak_bytes(self, frame, quality, aovs=0):
+    def peak_bytes(self, frame, quality, aovs=0, radius=DEFAULT_RADIUS):
         """Largest resident size of `polyrecon denoise` on a sequence (the next frame is read meanwhile), no tiles."""
         m = self.memory
         per_pixel = m["per_pixel"][quality] + m["per_fit_channel"] * (frame.fit_channels + 3 * aovs)
+        held = 2 * radius + 2 if radius else 0  # neighbours, with those of the next frame
+        per_pixel += held * (self.neighbour["bytes"] + AOV_BYTES * aovs)
         return m["base"] + frame.pixels * (per_pixel + m["per_channel"] * frame.channels)
 
-    def request_bytes(self, frame, quality, aovs=0):
+    def request_bytes(self, frame, quality, aovs=0, radius=DEFAULT_RADIUS):
         """What to ask an engine for: with margin, whole MiB."""
-        return math.ceil(MEMORY_MARGIN * self.peak_bytes(frame, quality, aovs) / MIB) * MIB
+        return math.ceil(MEMORY_MARGIN * self.peak_bytes(frame, quality, aovs, radius) / MIB) * MIB
 
-    def cpu_seconds(self, frame, quality):
+    def cpu_seconds(self, frame, quality, radius=DEFAULT_RADIUS):
         """Of all threads, for one frame, on a machine like the one that was measured."""
         s = self.seconds
-        return s["start"] + frame.pixels * (s["per_pixel"][quality] + s["per_channel"] * frame.channels)
+        per_pixel = s["per_pixel"][quality] + s["per_channel"] * frame.channels + self.neighbour["seconds"] * 2 * radius
+        return s["start"] + frame.pixels * per_pixel
 
-    def wall_seconds(self, frame, quality, threads):
+    def wall_seconds(self, frame, quality, threads, radius=DEFAULT_RADIUS):
         """Amdahl's law with the measured parallel part."""
-        return self.cpu_seconds(frame, quality) * (1 - self.parallel_part + self.parallel_part / threads)
+        return self.cpu_seconds(frame, quality, radius) * (1 - self.parallel_part + self.parallel_part / threads)
 
 
 def threads_for(memory, nodes):

@@ -28,7 +28,7 @@ void check(const DenoiseOptions& o, const std::vector<FrameFiles>& frames) {
     throw Error(ExitCode::Usage, "--budget, --export and the like need --sample-map");
   if (wants_plan(o) && o.time_budget <= 0 && o.settings_given)
     throw Error(ExitCode::Usage, "--target chooses the settings: leave --quality, --stages and --order away");
-  if (o.frame_radius > 0 && !is_sequence(o))
+  if (frame_radius_of(o) > 0 && !is_sequence(o))
     throw Error(ExitCode::Usage, "--frame-radius needs a sequence: -i with #### or %04d in its name, or several files");
   if (!o.sample_map.empty()) check_sample_map_options(o.sampling);
   std::vector<std::string> outputs;
@@ -58,10 +58,11 @@ void work(const std::vector<FrameFiles>& frames, const DenoiseOptions& o, RunPro
 
 void run(DenoiseOptions o) {
   for (const std::string& role : o.roles) o.read.map.push_back(parse_mapping(role));
-  o.read.motion = o.frame_radius > 0;
+  o.read.motion = frame_radius_of(o) > 0;
   o.read.accept = [o](const std::string& path, FrameShape shape) {
     const Params params = params_of(o);
-    if (is_sequence(o)) shape.beside = channels_ahead(shape, params) + neighbour_channels(shape, 2 * o.frame_radius);
+    if (is_sequence(o))
+      shape.beside = channels_ahead(shape, params) + neighbour_channels(shape, 2 * params.temporal.radius);
     require_memory(path, shape, params);
   };
   const auto progress = make_progress(o.quiet ? ProgressStyle::None : o.progress);

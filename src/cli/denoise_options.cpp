@@ -6,6 +6,7 @@
 
 #include "cli/choice.h"
 #include "cli/effects_option.h"
+#include "cli/frame_files.h"
 #include "cli/read_limits.h"
 
 namespace polyrecon {
@@ -112,10 +113,11 @@ void add_sequence_options(CLI::App& app, DenoiseOptions& o) {
       ->check([](const std::string& text) { return std::string(text.empty() ? "is empty" : ""); }, "", "")
       ->type_name("RANGES")
       ->group(group);
-  app.add_option("--frame-radius", o.frame_radius,
-                 "Frames before and after that help each frame, along its motion vectors where there are any")
+  app.add_option(
+         "--frame-radius", o.frame_radius,
+         "Frames before and after that help each frame of a sequence, along its motion vectors where there are any; 2 "
+         "unless given")
       ->check(CLI::Range(0, 8))
-      ->capture_default_str()
       ->type_name("R")
       ->group(group);
   app.add_flag("--skip-existing", o.skip_existing,
@@ -138,6 +140,8 @@ Params params_of(const DenoiseOptions& o) {
   return with_options(params, o);
 }
 
+int frame_radius_of(const DenoiseOptions& o) { return o.frame_radius.value_or(is_sequence(o) ? 2 : 0); }
+
 bool wants_plan(const DenoiseOptions& o) {
   return o.time_budget > 0 || (o.sampling.params.target > 0 && o.sample_map.empty());
 }
@@ -146,7 +150,7 @@ Params with_options(Params params, const DenoiseOptions& o) {
   if (o.max_memory) params.max_memory = *o.max_memory;
   params.reconstruct_alpha = o.alpha;
   apply_effects(o.effects, params);
-  params.temporal.radius = o.frame_radius;
+  params.temporal.radius = frame_radius_of(o);
   return params;
 }
 
@@ -162,7 +166,7 @@ std::string settings_text(const DenoiseOptions& o) {
   for (const std::string& aov : o.read.aovs) text += " --aov '" + aov + "'";
   for (const std::string& role : o.roles) text += " --map '" + role + "'";
   if (o.read.samples > 0) text += fmt::format(" --samples {:g}", o.read.samples);
-  if (o.frame_radius > 0) text += fmt::format(" --frame-radius {}", o.frame_radius);
+  if (params.temporal.radius > 0) text += fmt::format(" --frame-radius {}", params.temporal.radius);
   if (o.keep_noisy) text += " --keep-noisy";
   if (!o.sample_map.empty()) text += sample_map_settings(o.sampling);
   return text;

@@ -17,9 +17,9 @@ namespace polyrecon {
 struct DenoiseOptions {
   std::vector<std::string> inputs;
   std::string output, error_map, order_map, sample_map, report;
-  int frame_radius = 0;            ///< Frames before and after that join.
-  std::string frames;              ///< "1-10,20-40x2"; empty: every frame that is there.
-  std::vector<std::string> roles;  ///< "role=LAYER"
+  std::optional<int> frame_radius;  ///< As given; frame_radius_of() is what holds.
+  std::string frames;               ///< "1-10,20-40x2"; empty: every frame that is there.
+  std::vector<std::string> roles;   ///< "role=LAYER"
   ReadOptions read;
   Quality quality = Quality::Standard;
   std::optional<int> stages, order;  ///< In place of what the quality says.
@@ -41,6 +41,9 @@ void add_denoise_options(CLI::App& app, DenoiseOptions& options);
 
 /// The reconstruction's parameters that the options ask for.
 Params params_of(const DenoiseOptions& options);
+
+/// Frames before and after that join: unless given 2 in a sequence, and none for a file on its own.
+int frame_radius_of(const DenoiseOptions& options);
 
 /// Whether the settings are to be chosen for the frame: by --time-budget, or by --target without a sample map.
 bool wants_plan(const DenoiseOptions& options);

@@ -78,7 +78,7 @@ std::vector<FrameFiles> frames_of_pattern(const DenoiseOptions& o, const FramePa
                   fmt::format("{} {}: a sequence needs #### or %04d in the name", name.option, *name.given));
     for (FrameFiles& files : frames) files.*name.path = pattern->path(*files.frame);
   }
-  add_neighbours(inputs, o.frame_radius, frames);
+  add_neighbours(inputs, frame_radius_of(o), frames);
   return frames;
 }
 
@@ -100,7 +100,7 @@ std::vector<FrameFiles> frames_of_list(const DenoiseOptions& o) {
       files.*name.path = pattern ? pattern->path(*files.frame) : in_folder(name, files.input);
     }
   }
-  add_neighbours(o.frame_radius, frames);
+  add_neighbours(frame_radius_of(o), frames);
   return frames;
 }
 

@@ -165,14 +165,27 @@ void add_estimate(const Estimate& estimate, std::size_t half, const Image& weigh
   });
 }
 
-/// Weight of an estimate for one half, from what the difference of the other half shows.
+/// By how much the squared difference is above what noise brings, 1 channel: squared error of the estimate that comes
+/// from neither frame's noise, such as a texture's between the pixels.
+Image excess_error(const Image& difference) {
+  Image excess(difference.width(), difference.height(), 1);
+  for (std::size_t i = 0; i < excess.pixels(); ++i)
+    excess.plane(0)[i] = static_cast<Real>(squared(difference, i)) - difference.plane(3)[i];
+  excess = gaussian_blur(excess, ratio_sigma);
+  for (std::size_t i = 0; i < excess.pixels(); ++i) excess.plane(0)[i] = std::max(Real(0), excess.plane(0)[i]);
+  return excess;
+}
+
+/// Weight of an estimate for one half, from what the difference of the other half shows: its variance and other error
+/// beside the variance of the pixel itself.
 Image weight_of(const HalfPair& pair, const Estimate& estimate, const Image& difference, const TemporalParams& params) {
   Image weight = gate(difference, params);
   const Image own = gaussian_blur(sum_of_channels(pair.variance), ratio_sigma);
   const Image theirs = gaussian_blur(sum_of_channels(estimate.variance), ratio_sigma);
+  const Image excess = excess_error(difference);
   for_rows(weight.height(), [&](int y) {
     for (int x = 0; x < weight.width(); ++x) {
-      const double v = theirs.at(x, y, 0), o = own.at(x, y, 0);
+      const double v = theirs.at(x, y, 0) + excess.at(x, y, 0), o = own.at(x, y, 0);
       weight.at(x, y, 0) *= static_cast<Real>(std::min(v > 0 ? o / v : params.max_weight, params.max_weight));
     }
   });

@@ -4,6 +4,7 @@
 Frames are shipped samples tiled in mirror image: as an ordinary render (the passes of the fit without variance and
 halves), as a merge of parts (with both), and the same with passes that are only copied. Each run is a sequence, so that
 its peak memory has the next frame in it, which is read meanwhile. A frame larger than those of the fit checks the model.
+Frames work alone there; what their neighbours in time add is measured by --neighbours.
 """
 
 import argparse
@@ -25,6 +26,7 @@ sys.path.append(str(scaling.ROOT))
 from pipelines.farm.requirements import MODEL_FILE, Model, frame_of
 
 FRAMES = 2
+RADIUS = 2
 SIZES = ((320, 180), (640, 360))
 # (layouts, quality, sizes); best takes long, and only its windows differ from standard.
 RUNS = (
@@ -61,14 +63,20 @@ def write_layout(sample, path, wanted, copies):
     target.close()
 
 
-def command(program, folder, quality, threads):
-    words = [program, "denoise", "-i", folder / "in.####.exr", "-o", folder / "out.####.exr", "--frames", f"1-{FRAMES}"]
+def command(program, folder, quality, threads, radius=0):
+    words = [program, "denoise", "-i", folder / "in.####.exr", "-o", folder / "out.####.exr"]
+    words += ["--frames", f"1-{frames_of(radius)}", "--frame-radius", radius]
     return [*words, "--quality", quality, "--threads", threads, "--max-memory", "1T", "--progress", "none", "--quiet"]
 
 
-def run(program, folder, quality, threads):
+def frames_of(radius):
+    """So many that one frame has all its neighbours, and another one after it."""
+    return FRAMES + 2 * radius
+
+
+def run(program, folder, quality, threads, radius=0):
     """A sequence in one process of its own; memory and seconds are what the kernel counted."""
-    child = subprocess.Popen([str(word) for word in command(program, folder, quality, threads)])
+    child = subprocess.Popen([str(word) for word in command(program, folder, quality, threads, radius)])
     os.waitid(os.P_PID, child.pid, os.WEXITED | os.WNOWAIT)
     lines = pathlib.Path(f"/proc/{child.pid}/io").read_text().splitlines()
     traffic = dict(line.split(": ") for line in lines)
@@ -78,9 +86,9 @@ def run(program, folder, quality, threads):
         sys.exit(f"{folder}: polyrecon ended with {child.returncode}")
     return {
         "peak": usage.ru_maxrss * 1024,
-        "cpu": (usage.ru_utime + usage.ru_stime) / FRAMES,
-        "read": int(traffic["rchar"]) / FRAMES,
-        "written": int(traffic["wchar"]) / FRAMES,
+        "cpu": (usage.ru_utime + usage.ru_stime) / frames_of(radius),
+        "read": int(traffic["rchar"]) / frames_of(radius),
+        "written": int(traffic["wchar"]) / frames_of(radius),
     }
 
 
@@ -108,7 +116,7 @@ class Shots:
             folder.mkdir()
             write_layout(self.layouts[layout][0], folder / "layout.exr", *self.layouts[layout][1:])
             scaling.make_frame(folder / "layout.exr", width, height, folder / "in.0001.exr")
-            for k in range(2, FRAMES + 1):
+            for k in range(2, frames_of(RADIUS) + 1):
                 os.link(folder / "in.0001.exr", folder / f"in.{k:04}.exr")
         return folder, inspect(self.program, folder / "in.0001.exr")
 
@@ -190,6 +198,21 @@ def measure_scaling(program, shots):
     return min(1.0, 2 * (cpu - first) / cpu)
 
 
+def measure_neighbours(program, shots):
+    """Prints a table; returns bytes and processor seconds of a pixel and neighbour."""
+    folder, frame = shots.get("merged", *SCALING_SIZE)
+    alone, joined = (run(program, folder, "draft", THREADS, radius) for radius in (0, RADIUS))
+    numbers = range(frames_of(RADIUS))
+    in_reach = sum(0 < abs(a - b) <= RADIUS for a in numbers for b in numbers) / len(numbers)
+    scaling.row("", "radius 0", f"radius {RADIUS}", "a pixel and neighbour")
+    scaling.row("---", *["---:"] * 3)
+    extra = (joined["peak"] - alone["peak"]) / frame.pixels / (2 * RADIUS + 2)
+    scaling.row("peak MB", *(f"{r['peak'] / 1e6:.0f}" for r in (alone, joined)), f"{extra:.0f} bytes")
+    seconds = (joined["cpu"] - alone["cpu"]) / frame.pixels / in_reach
+    scaling.row("CPU s a frame", *(f"{r['cpu']:.2f}" for r in (alone, joined)), f"{1e6 * seconds:.2f} us")
+    return {"bytes": extra, "seconds": seconds}
+
+
 def measure_constants(program, shots):
     runs = []
     for layouts, quality, sizes in RUNS:
@@ -204,6 +227,7 @@ def main():
     parser.add_argument("--program", type=pathlib.Path, default=scaling.ROOT / "build/release/src/polyrecon")
     parser.add_argument("--model", type=pathlib.Path, default=MODEL_FILE, help="file to write (default: the driver's)")
     parser.add_argument("--scaling", action="store_true", help="only one and two tasks, one and two threads")
+    parser.add_argument("--neighbours", action="store_true", help="only what frames before and after add")
     args = parser.parse_args()
     constants = json.loads(args.model.read_text()) if args.model.exists() else {}
     with tempfile.TemporaryDirectory(prefix="polyrecon_farm_model_") as folder:
@@ -212,12 +236,17 @@ def main():
             constants["parallel_part"] = float(f"{measure_scaling(args.program, shots):.3g}")
             write_model(args.model, constants)
             return
+        if args.neighbours:
+            constants["neighbour"] = rounded(measure_neighbours(args.program, shots))
+            write_model(args.model, constants)
+            return
         runs = measure_constants(args.program, shots)
         version = subprocess.run([args.program, "--version"], check=True, capture_output=True, text=True).stdout.strip()
         constants.update(
-            made_by=f"tests/bench/farm_model.py and farm_model.py --scaling, {version}", **rounded(fit_model(runs))
+            made_by=f"tests/bench/farm_model.py, also with --neighbours and with --scaling, {version}", **rounded(fit_model(runs))
         )
         constants.setdefault("parallel_part", 1.0)
+        constants.setdefault("neighbour", {"bytes": 0.0, "seconds": 0.0})
         write_model(args.model, constants)
         size, quality = CHECK
         place, frame = shots.get("merged", *size)
@@ -255,13 +284,13 @@ def print_runs(runs, model):
             frame.fit_channels,
             r["quality"],
             f"{r['peak'] / 1e6:.0f}",
-            f"{model.peak_bytes(frame, r['quality']) / 1e6:.0f}",
+            f"{model.peak_bytes(frame, r['quality'], radius=0) / 1e6:.0f}",
             f"{r['cpu']:.2f}",
-            f"{model.cpu_seconds(frame, r['quality']):.2f}",
+            f"{model.cpu_seconds(frame, r['quality'], radius=0):.2f}",
             f"{r['read'] / 1e6:.1f}",
             f"{r['written'] / 1e6:.1f}",
         )
-    worst = max(r["peak"] / model.peak_bytes(r["frame"], r["quality"]) for r in runs)
+    worst = max(r["peak"] / model.peak_bytes(r["frame"], r["quality"], radius=0) for r in runs)
     print(f"\nworst peak over model: {worst:.3f}")
     if worst > 1.1:
         sys.exit("the model does not fit: its margin of 1.15 is nearly used up")

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """How much frames before and after help: denoises the animation of samples/make_sequence.py with several --frame-radius and
-prints relMSE of each frame, and flicker. Needs numpy and OpenImageIO's Python module.
+prints relMSE of each frame and flicker, in thousandths, and the frame that fares worst beside the first radius. Needs numpy and OpenImageIO's
+Python module.
 
 relMSE: mean of ((x - r)^2 - Var r) / (r^2 + 0.01), r the reference, Var r the variance of its mean.
 flicker: variance over the frames of a shot of the relative error (x - r) / sqrt(r^2 + 0.01), less what the reference's own
@@ -41,11 +42,11 @@ def measure(folder, results):
     return relmse, flicker
 
 
-def denoise(options, radius, name, words):
-    target = options.work / "bench" / name
+def denoise(options, spp, radius):
+    target = options.work / "bench" / f"{spp}_radius{radius}"
     target.mkdir(parents=True, exist_ok=True)
-    command = [options.polyrecon, "denoise", "-i", options.work / "parade.####.exr", "-o", target / "####.exr"]
-    subprocess.run(list(map(str, [*command, "--quiet", "--frame-radius", radius, *words])), check=True)
+    command = [options.polyrecon, "denoise", "-i", options.work / f"parade_{spp}.####.exr", "-o", target / "####.exr"]
+    subprocess.run(list(map(str, [*command, "--quiet", "--frame-radius", radius, *options.words])), check=True)
     return lambda frame: target / f"{frame:04d}.exr"
 
 
@@ -53,19 +54,26 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--work", type=pathlib.Path, default=ROOT / "out" / "sequence", help="what make_sequence.py made")
     parser.add_argument("--polyrecon", default=str(ROOT / "build" / "release" / "src" / "polyrecon"))
+    parser.add_argument("--spp", type=int, nargs="*", default=[8, 64, 128])
     parser.add_argument("--radius", type=int, nargs="*", default=[0, 1, 2, 3])
     parser.add_argument("words", nargs="*", help="further options of polyrecon denoise, after --")
     options = parser.parse_args()
     options.work = options.work.resolve()
-    rows = [("input", *measure(options.work, lambda frame: options.work / f"parade.{frame:04d}.exr"))]
-    for radius in options.radius:
-        results = denoise(options, radius, f"radius{radius}", options.words)
-        rows.append((f"radius {radius}", *measure(options.work, results)))
-    print("| | " + " | ".join(str(frame) for frame in rows[0][1]) + " | mean | flicker |")
-    print("|---" * (len(rows[0][1]) + 3) + "|")
+    for spp in options.spp:
+        rows = [("input", *measure(options.work, lambda frame: options.work / f"parade_{spp}.{frame:04d}.exr"))]
+        for radius in options.radius:
+            rows.append((f"radius {radius}", *measure(options.work, denoise(options, spp, radius))))
+        print_table(spp, rows)
+
+
+def print_table(spp, rows):
+    print(f"\n| {spp} samples | " + " | ".join(str(frame) for frame in rows[0][1]) + " | mean | flicker | worst frame |")
+    print("|---" * (len(rows[0][1]) + 4) + "|")
+    base = rows[1][1]  # of the first radius
     for name, relmse, flicker in rows:
-        cells = [f"{value:.4f}" for value in (*relmse.values(), numpy.mean(list(relmse.values())), flicker)]
-        print(f"| {name} | " + " | ".join(cells) + " |")
+        cells = [f"{1e3 * value:.3f}" for value in (*relmse.values(), numpy.mean(list(relmse.values())), flicker)]
+        worst = max(relmse[frame] / base[frame] for frame in base)
+        print(f"| {name} | " + " | ".join(cells) + f" | {worst:.2f} x |", flush=True)
 
 
 if __name__ == "__main__":

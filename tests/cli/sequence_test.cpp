@@ -131,10 +131,10 @@ TEST_F(Sequence, AListOfFilesGoesIntoAFolder) {
 
 TEST_F(Case14Sequence, SkipsOnlyWhatIsTheSameAndWhole) {
   render_frames(1, 3);
-  ASSERT_EQ(denoise({}).code, 0);
+  ASSERT_EQ(denoise({"--frame-radius", "0"}).code, 0);  // a changed neighbour: see below
   const auto first = time_of("out/shot.0001.exr");
   const auto skipped = [&](const std::vector<std::string>& more) {
-    std::vector<std::string> arguments{"--skip-existing"};
+    std::vector<std::string> arguments{"--skip-existing", "--frame-radius", "0"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     const Outcome o = denoise(arguments);
     EXPECT_EQ(o.code, 0) << o.err;
@@ -150,7 +150,7 @@ TEST_F(Case14Sequence, SkipsOnlyWhatIsTheSameAndWhole) {
   // Another render under the same name, a damaged result, a missing map, other settings.
   write_render(path("shot.0002.exr"), width, height + 1);
   EXPECT_EQ(skipped({}), 2);
-  ASSERT_EQ(denoise({"--skip-existing", "--frames", "1,3"}).code, 0);
+  ASSERT_EQ(denoise({"--skip-existing", "--frame-radius", "0", "--frames", "1,3"}).code, 0);
   cut_last_byte(path("out/shot.0003.exr"));
   EXPECT_EQ(skipped({"--frames", "1,3"}), 1);
   EXPECT_EQ(skipped({"--frames", "1,3"}), 2);
@@ -196,7 +196,7 @@ TEST_F(Case10Sequence, AFrameWithoutAPassIsWorkedAndCounted) {
 
 TEST_F(Sequence, NeighboursInTimeJoinWhateverElseIsAskedFor) {
   render_frames(1, 4);
-  ASSERT_EQ(denoise({}).code, 0);
+  ASSERT_EQ(denoise({"--frame-radius", "0"}).code, 0);
   const std::string alone = read_text(path("out/shot.0002.exr"));
   const Outcome all = denoise({"--frame-radius", "1", "--report", "out/####.json"});
   ASSERT_EQ(all.code, 0) << all.err;
@@ -212,6 +212,19 @@ TEST_F(Sequence, NeighboursInTimeJoinWhateverElseIsAskedFor) {
   std::filesystem::remove(path("out/shot.0002.exr"));
   ASSERT_EQ(denoise({"--frame-radius", "1", "--frames", "2"}).code, 0);
   EXPECT_EQ(read_text(path("out/shot.0002.exr")), joined);
+}
+
+TEST_F(Sequence, TwoNeighboursOnEachSideJoinUnlessAFileIsOnItsOwn) {
+  render_frames(1, 4);
+  ASSERT_EQ(denoise({}).code, 0);
+  const std::string joined = read_text(path("out/shot.0002.exr"));
+  ASSERT_EQ(denoise({"--frame-radius", "2", "--frames", "2"}).code, 0);
+  EXPECT_EQ(read_text(path("out/shot.0002.exr")), joined);
+  ASSERT_EQ(denoise({"--frame-radius", "0", "--frames", "2"}).code, 0);
+  const std::string alone = read_text(path("out/shot.0002.exr"));
+  EXPECT_NE(alone, joined);
+  ASSERT_EQ(run({"denoise", "-i", "shot.0002.exr", "-o", "out/shot.0002.exr", "--quality", "draft"}).code, 0);
+  EXPECT_EQ(read_text(path("out/shot.0002.exr")), alone);
 }
 
 TEST_F(Sequence, ABrokenNeighbourIsLeftOutAndAChangedOneIsNoticed) {

@@ -107,6 +107,21 @@ TEST(JoinNeighbours, FollowsMotionByPartsOfAPixel) {
             0.35 * sigma * sigma);
 }
 
+/// A texture as fine as the pixels is lost between them. Its error changes sign from pixel to pixel, and may hide below
+/// the noise of each: what joins must not be worse than the frame alone, however strong the texture.
+TEST(JoinNeighbours, FineTextureIsNoWorseThanTheFrameAlone) {
+  for (const double strength : {0.25, 0.5, 1.0, 2.0, 4.0, 16.0}) {
+    const Truth fine = [&](int frame, int x, int y) {
+      return 3 + strength * sigma * std::sin(2.3 * (x - 1.3 * frame)) * std::cos(2.1 * (y - 0.4 * frame));
+    };
+    Sequence s(fine, motion_of(1.3, 0.4));
+    const auto inner = [](int x, int y) { return x > 8 && y > 8 && x < width - 8 && y < height - 8; };
+    const double before = s.error(inner);
+    s.join();
+    EXPECT_LT(s.error(inner), 1.02 * before) << strength;
+  }
+}
+
 TEST(JoinNeighbours, NothingCrossesACut) {
   Sequence s([](int frame, int x, int y) { return frame < 0 ? 0.5 * texture(y, x) : texture(x, y); }, Image());
   s.neighbours.resize(2);  // the frames before the cut

@@ -75,7 +75,7 @@ class Requirements(unittest.TestCase):
         )
         self.assertEqual((frame.width, frame.height, frame.channels), (320, 180, 58))
         with tempfile.TemporaryDirectory() as folder:
-            for k in (1, 2):
+            for k in range(1, 7):  # one frame has all four neighbours, and another one after it
                 os.symlink(sample, f"{folder}/in.{k}.exr")
             child = subprocess.Popen(
                 [
@@ -86,7 +86,7 @@ class Requirements(unittest.TestCase):
                     "-o",
                     f"{folder}/out.#.exr",
                     "--frames",
-                    "1-2",
+                    "1-6",
                     "--quiet",
                 ]
                 + ["--quality", "draft", "--threads", "1"]
