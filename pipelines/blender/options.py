@@ -13,6 +13,8 @@ def add_common(parser):
     add_frame_arguments(parser)
     parser.add_argument("--visibility", choices=("shadow", "ambient-occlusion", "none"), default="none",
                         help="pass to render as the feature of that name (none)")  # fmt: skip
+    parser.add_argument("--with-prior", action="store_true",
+                        help="denoise each half by Cycles' own denoiser too, stored as the layers Prior A and Prior B")  # fmt: skip
     blender = parser.add_mutually_exclusive_group()
     blender.add_argument("--blender", metavar="PATH", help="Blender to run ($BLENDER, else `blender`)")
     blender.add_argument("--bpy", action="store_const", const="bpy", dest="blender", help="use the module bpy of this Python")
@@ -23,4 +25,4 @@ def renderer_of(options, method="auto"):
     if not options.scene.is_file():
         raise DriverError(ExitCode.MISSING, f"{options.scene}: no such file")
     visibility = None if options.visibility == "none" else options.visibility
-    return BlenderRenderer(options.scene, options.blender, method, visibility, options.pass_timeout)
+    return BlenderRenderer(options.scene, options.blender, method, visibility, options.pass_timeout, options.with_prior)

@@ -7,7 +7,7 @@ import numpy as np
 from ..loop import exr
 from ..loop.errors import DriverError, ExitCode
 from ..loop.renderer import RENDER_SECONDS, SAMPLE_COUNT, Audit, Renderer, Switch
-from . import masks, regions
+from . import masks, prior, regions
 from .session import BlenderSession
 
 SEQUENCE = 1 << 13  # samples that Cycles lays a pixel's sequence out for; more follow where a frame takes more
@@ -18,12 +18,13 @@ OVERHEAD_SECONDS = 0.045  # of a pass, until one was measured
 
 class BlenderRenderer(Renderer):
     """scene: a .blend file. method: how extra samples are rendered: 'osl' (a camera with a mask, Blender >= 5), 'regions'
-    (rectangles), or 'auto'. visibility: 'shadow', 'ambient-occlusion' or None."""
+    (rectangles), or 'auto'. visibility: 'shadow', 'ambient-occlusion' or None. with_prior: see prior.py."""
 
-    def __init__(self, scene, blender=None, method="auto", visibility=None, timeout=3600.0):
+    def __init__(self, scene, blender=None, method="auto", visibility=None, timeout=3600.0, with_prior=False):
         self.scene = pathlib.Path(scene).absolute()
         self.method = method
         self.visibility = visibility
+        self.with_prior = with_prior
         self.session = BlenderSession(blender, timeout)
         self.overhead_seconds = OVERHEAD_SECONDS
         self.seconds_per_sample = 0.0
@@ -34,6 +35,8 @@ class BlenderRenderer(Renderer):
         self.name = f"Blender {self.opened['version']}"
         if self.method == "osl" and not self.masked:
             raise DriverError(ExitCode.USAGE, f"--method osl: {self.opened['no_mask_camera']}")
+        if self.with_prior and not self.opened["has_denoiser"]:
+            raise DriverError(ExitCode.USAGE, f"--with-prior: {self.name} was built without OpenImageDenoise")
         return self._audit()
 
     @property
@@ -59,6 +62,8 @@ class BlenderRenderer(Renderer):
         passes = {"Combined": "the picture", "Denoising Albedo, Normal, Depth": "features"}
         if self.visibility:
             passes[self.visibility] = "feature: visibility"
+        if self.with_prior:
+            passes["Prior A, B"] = "each half by Cycles' own denoiser"
         if found["own_passes"]:
             passes[", ".join(found["own_passes"])] = "switched on in the file: rendered once, in the first part"
         effects = (f"{name}: {_said(value)}" for name, value in found["effects"].items())
@@ -87,6 +92,10 @@ class BlenderRenderer(Renderer):
             taken[y0:y1, x0:x1] += piece.samples * piece.inside
         self._write(target, sums, taken)
         return int(taken.max(initial=0))
+
+    def complete(self, merged):
+        if self.with_prior:
+            prior.add(merged, self.opened["view_layer"], self.session)
 
     def _render_piece(self, first, piece):
         job = {"first": first, "samples": piece.samples, "crop": piece.box}

@@ -15,6 +15,8 @@ import traceback
 
 import bpy
 
+import _cycles  # noqa: I001  (comes with bpy)
+
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
 import audit  # noqa: E402
@@ -53,6 +55,7 @@ class Session:
             "switches": self.switches,
             "own_passes": [name for _, name in self.user_passes if name != "use_pass_combined"],
             "no_mask_camera": reason,
+            "has_denoiser": bool(_cycles.with_openimagedenoise),
             "filter_reach": camera.filter_reach(scene),
         }
 
@@ -122,6 +125,18 @@ class Session:
         begin = time.monotonic()
         bpy.ops.render.render(write_still=True, scene=scene.name)
         return {"seconds": time.monotonic() - begin}
+
+    def denoise(self, source, target):
+        """Cycles' own denoiser on an EXR of picture and features."""
+        cycles = bpy.context.scene.cycles
+        kept = cycles.use_denoising
+        cycles.use_denoising, cycles.denoiser = True, "OPENIMAGEDENOISE"
+        cycles.denoising_input_passes, cycles.denoising_prefilter = "RGB_ALBEDO_NORMAL", "ACCURATE"
+        try:
+            bpy.ops.cycles.denoise_animation(input_filepath=source, output_filepath=target)
+        finally:
+            cycles.use_denoising = kept
+        return {}
 
     def choose_samples(self, first, samples):
         cycles = self.scene.cycles

@@ -1,0 +1,32 @@
+"""Priors: each half of a picture's samples denoised by Cycles' own denoiser, for the reconstruction to draw on."""
+
+import numpy as np
+
+from ..loop import exr
+
+FEATURES = {"Denoising Albedo": "RGB", "Denoising Normal": "XYZ", "Denoising Depth": "Z"}
+
+
+def add(merged, layer, session):
+    """Puts the layers `Prior A` and `Prior B` into a merged file. Each comes from its half of picture and features alone, so
+    that the noise of one is not in the other."""
+    channels = exr.read(merged)
+    attributes = {name: value for name, value in exr.metadata(merged).items() if isinstance(value, (str, int, float))}
+    source, target = session.folder / "half.exr", session.folder / "denoised.exr"
+    priors = {}
+    for half in "AB":
+        exr.write(source, _half(channels, layer, half), {f"cycles.{layer}.samples": "1"})
+        session.ask("denoise", source=str(source), target=str(target))
+        denoised = exr.read(target)
+        priors.update({f"{layer}.Prior {half}.{c}": denoised[f"{layer}.Combined.{c}"] for c in "RGB"})
+        source.unlink()
+        target.unlink()
+    exr.write(merged, {**channels, **priors}, attributes)
+
+
+def _half(channels, layer, half):
+    """The passes that Cycles' denoiser of files asks for; it wants motion vectors too, and reads them in animations only."""
+    picture = {c: channels[f"{layer}.Combined {half}.{c}"] for c in "RGB"} | {"A": np.ones_like(channels[f"{layer}.Combined.R"])}
+    found = {f"{layer}.{name}.{c}": plane for name in ("Combined", "Noisy Image") for c, plane in picture.items()}
+    found.update({f"{layer}.{name}.{c}": channels[f"{layer}.{name} {half}.{c}"] for name, cs in FEATURES.items() for c in cs})
+    return found | {f"{layer}.Vector.{c}": np.zeros_like(picture["A"]) for c in "XYZW"}
