@@ -28,7 +28,11 @@ cp -r tests/packaging/consumer "$root/try/"
 cp /etc/resolv.conf "$root/etc/resolv.conf"
 
 # oiiotool comes with libpolyrecon-dev, as a dependency.
-inside() { chroot "$root" env DEBIAN_FRONTEND=noninteractive LC_ALL=C.UTF-8 bash -euc "cd /try; $1"; }
+# Nothing of this environment goes in: it may name tools that are not there, such as a compiler launcher.
+inside() {
+  chroot "$root" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C.UTF-8 DEBIAN_FRONTEND=noninteractive \
+    ${http_proxy:+http_proxy="$http_proxy"} bash -euc "cd /try; $1"
+}
 
 echo "== the program"
 inside 'apt-get update -qq; apt-get install -y -qq --no-install-recommends ./polyrecon_*.deb >/dev/null'
