@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "blend/levels.h"
+#include "blend/prior.h"
 #include "blend/undershoot.h"
 #include "core/parallel.h"
 #include "estimate/variance.h"
@@ -199,13 +200,20 @@ Result reconstruct(Frame& frame, const std::vector<TimedNeighbour>& neighbours, 
 
   const std::size_t memory = tile_memory(shape, params);
   FitCounters counters;
-  const Candidate solved = timed(report, progress, "polynomials", fit_steps(frame, params),
+  Candidate solved = timed(report, progress, "polynomials", fit_steps(frame, params),
                                  [&] { return solve_level(pair, 0, params, memory, counters, progress); });
   note_fits(counters, report);
   const double left_alone = share_left_alone(pair, params);
   report.decisions.push_back(decide_on_pixels(left_alone, params));
   estimate_savings(frame, params.cleaning, left_alone, report.stages.back().seconds, report.decisions);
 
+  result.error = timed(report, progress, "error map", 1, [&] { return make_error_map(pair, noise.variance, solved); });
+  result.order = solved.order;
+  if (!frame.prior.mean.empty())
+    solved = timed(report, progress, "prior", 1, [&] {
+      const Image prior = usable_prior(frame.prior, pair, average(pair, solved));
+      return add_prior(pair, prior, result.error.mse, std::move(solved), params.selection);
+    });
   Image image = timed(report, progress, "energy", 1, [&] {
     Image out = average(pair, solved);
     if (params.parts.raise_undershoot) report.raised_pixels = raise_undershoot(noisy_mean(pair), out);
@@ -213,8 +221,6 @@ Result reconstruct(Frame& frame, const std::vector<TimedNeighbour>& neighbours, 
     if (params.parts.restore_totals) report.restored_gain = restore_totals(totals, max_total_gain, out);
     return out;
   });
-  result.error = timed(report, progress, "error map", 1, [&] { return make_error_map(pair, noise.variance, solved); });
-  result.order = solved.order;
   result.beauty = channels_of(image, 0, 3);
   for (std::size_t k = 0; k < frame.aovs.size(); ++k)
     result.aovs.push_back(channels_of(image, 3 * static_cast<int>(k + 1), 3));

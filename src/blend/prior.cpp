@@ -1,0 +1,116 @@
+#include "blend/prior.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/gaussian.h"
+#include "core/parallel.h"
+#include "core/sanitise.h"
+
+namespace polyrecon {
+namespace {
+
+constexpr double most_gain = 2;        // between the exposures of a frame and its prior; beyond it is another image
+constexpr double least_error = 1e-12;  // relative; keeps D / E finite
+constexpr int beauty_channels = 3;
+
+Image beauty_of_halves(const std::array<Image, 2>& half) {
+  Image out(half[0].width(), half[0].height(), beauty_channels);
+  for_rows(out.height(), [&](int y) {
+    for (int c = 0; c < beauty_channels; ++c)
+      for (int x = 0; x < out.width(); ++x) out.at(x, y, c) = Real(0.5) * (half[0].at(x, y, c) + half[1].at(x, y, c));
+  });
+  return out;
+}
+
+/// Factor that brings a channel of the prior to the pair's sum over the pixels where the prior is usable; 1 where that
+/// is out of reach.
+double exposure_gain(const Image& prior, const HalfPair& pair, int c) {
+  double noisy = 0, denoised = 0;
+  for (std::size_t i = 0; i < prior.pixels(); ++i) {
+    if (!usable(prior.plane(c)[i])) continue;
+    noisy += 0.5 * (static_cast<double>(pair.color[0].plane(c)[i]) + static_cast<double>(pair.color[1].plane(c)[i]));
+    denoised += static_cast<double>(prior.plane(c)[i]);
+  }
+  const double gain = noisy / denoised;
+  return gain >= 1 / most_gain && gain <= most_gain ? gain : 1;
+}
+
+/// Squared distance of a candidate from own, over the estimated squared error of own, both relative and averaged.
+Image contradiction(const Image& own, const Image& prior, double share, const Image& mse, double epsilon,
+                    double sigma) {
+  Image terms(own.width(), own.height(), 2);
+  for_rows(own.height(), [&](int y) {
+    for (int c = 0; c < beauty_channels; ++c)
+      for (int x = 0; x < own.width(); ++x) {
+        const double f = own.at(x, y, c), d = share * (static_cast<double>(prior.at(x, y, c)) - f);
+        const double scale = 1 / (f * f + epsilon);
+        terms.at(x, y, 0) += static_cast<Real>(std::min(d * d * scale, static_cast<double>(largest_value)));
+        terms.at(x, y, 1) += static_cast<Real>(
+            std::min(static_cast<double>(mse.at(x, y, c)) * scale, static_cast<double>(largest_value)));
+      }
+  });
+  terms = gaussian_blur(terms, sigma);
+  Image ratio(own.width(), own.height(), 1);
+  for_rows(own.height(), [&](int y) {
+    for (int x = 0; x < own.width(); ++x)
+      ratio.at(x, y, 0) = static_cast<Real>(static_cast<double>(terms.at(x, y, 0)) /
+                                            (static_cast<double>(terms.at(x, y, 1)) + least_error));
+  });
+  return ratio;
+}
+
+Image belief_in(const Image& contradiction) {
+  Image belief(contradiction.width(), contradiction.height(), 1);
+  for_rows(belief.height(), [&](int y) {
+    for (int x = 0; x < belief.width(); ++x)
+      belief.at(x, y, 0) =
+          static_cast<Real>(std::exp(-std::max(0.0, static_cast<double>(contradiction.at(x, y, 0)) - 1)));
+  });
+  return belief;
+}
+
+/// own with the given share of the prior in its beauty, as far as that is believed.
+Image toward(Image own, const Image& prior, Real share, const Image& belief) {
+  for_rows(own.height(), [&](int y) {
+    for (int c = 0; c < beauty_channels; ++c)
+      for (int x = 0; x < own.width(); ++x)
+        own.at(x, y, c) += share * belief.at(x, y, 0) * (prior.at(x, y, c) - own.at(x, y, c));
+  });
+  return own;
+}
+
+}  // namespace
+
+Image usable_prior(const Pass& prior, const HalfPair& pair, const Image& own) {
+  Image out = prior.has_halves() ? beauty_of_halves({prior.half_a, prior.half_b}) : prior.mean;
+  for (int c = 0; c < beauty_channels; ++c) {
+    const auto gain = static_cast<Real>(exposure_gain(out, pair, c));
+    for (std::size_t i = 0; i < out.pixels(); ++i) {
+      const Real value = out.plane(c)[i];
+      out.plane(c)[i] = usable(value) ? gain * value : own.plane(c)[i];
+    }
+  }
+  return out;
+}
+
+Candidate add_prior(const HalfPair& pair, const Image& prior, const Image& mse, Candidate own,
+                    const SelectParams& params) {
+  const Image brightness = beauty_of_halves(own.half);
+  std::vector<Candidate> candidates(3);
+  for (const std::size_t k : {1, 2}) {
+    const double share = 0.5 * static_cast<double>(k);
+    const Image belief = belief_in(contradiction(brightness, prior, share, mse, pair.epsilon, params.risk_sigma));
+    for (std::size_t h = 0; h < 2; ++h)
+      candidates[k].half[h] = toward(own.half[h], prior, static_cast<Real>(share), belief);
+  }
+  candidates[0].half = std::move(own.half);
+  Candidate out = select(pair, brightness, candidates, params);
+  out.error = std::move(own.error);
+  out.variance = std::move(own.variance);
+  out.order = std::move(own.order);
+  return out;
+}
+
+}  // namespace polyrecon

@@ -1,0 +1,24 @@
+#pragma once
+
+#include "blend/select.h"
+#include "core/frame.h"
+#include "features/half_pair.h"
+
+namespace polyrecon {
+
+/// What a denoised layer of the file says of the beauty: the mean of its halves where it has them (their noise is
+/// averaged), else its mean. Each channel is brought to the sum of the noisy halves where that takes a factor of 1/2 to
+/// 2: noise hardly moves a sum over the frame, so what differs is the prior's exposure. Pixels that are not usable, and
+/// all of a prior without a usable one, take the value of own. 3 channels; prior is not empty and of the pair's size.
+Image usable_prior(const Pass& prior, const HalfPair& pair, const Image& own);
+
+/// Order -1 of equation (2): takes the prior as it is, whole or by half, where that has less error. own, own + b (prior
+/// - own) / 2 and own + b (prior - own) are judged by cross-validation like any others. b is how far each is believed,
+///     exp(-max(0, D / E - 1)),   D = its squared distance from own,   E = mse,
+/// both relative and averaged over risk_sigma: an image that contradicts the samples by more than our own estimated
+/// error is wrong, whatever the noise of the validation lets it score. prior: 3 channels. mse: estimated squared error
+/// of own (ErrorMap::mse). Only the beauty changes; error, variance and order stay those of own.
+Candidate add_prior(const HalfPair& pair, const Image& prior, const Image& mse, Candidate own,
+                    const SelectParams& params);
+
+}  // namespace polyrecon
