@@ -8,7 +8,7 @@ FEATURES = {"Denoising Albedo": "RGB", "Denoising Normal": "XYZ", "Denoising Dep
 
 
 def add(merged, layer, session):
-    """Puts the layers `Prior A` and `Prior B` into a merged file. Each comes from its half of picture and features alone, so
+    """Puts the layers `Prior A`, `Prior B` and their mean `Prior` into a merged file. Each half comes from its half of picture and features alone, so
     that the noise of one is not in the other."""
     channels = exr.read(merged)
     attributes = {name: value for name, value in exr.metadata(merged).items() if isinstance(value, (str, int, float))}
@@ -21,6 +21,7 @@ def add(merged, layer, session):
         priors.update({f"{layer}.Prior {half}.{c}": denoised[f"{layer}.Combined.{c}"] for c in "RGB"})
         source.unlink()
         target.unlink()
+    priors.update({f"{layer}.Prior.{c}": (priors[f"{layer}.Prior A.{c}"] + priors[f"{layer}.Prior B.{c}"]) / 2 for c in "RGB"})
     exr.write(merged, {**channels, **priors}, attributes)
 
 

@@ -95,6 +95,19 @@ Image usable_prior(const Pass& prior, const HalfPair& pair, const Image& own) {
   return out;
 }
 
+double noise_in_prior(const Image& prior, const HalfPair& pair, const Image& own) {
+  double shared = 0, input = 0;
+  for (int c = 0; c < beauty_channels; ++c)
+    for (std::size_t i = 0; i < own.pixels(); ++i) {
+      const double f = own.plane(c)[i], scale = 1 / (f * f + pair.epsilon);
+      const double noisy =
+          0.5 * (static_cast<double>(pair.color[0].plane(c)[i]) + static_cast<double>(pair.color[1].plane(c)[i]));
+      shared += (static_cast<double>(prior.plane(c)[i]) - f) * (noisy - f) * scale;
+      input += (noisy - f) * (noisy - f) * scale;
+    }
+  return input > 0 ? shared / input : 0;
+}
+
 Candidate add_prior(const HalfPair& pair, const Image& prior, const Image& mse, Candidate own,
                     const SelectParams& params) {
   const Image brightness = beauty_of_halves(own.half);

@@ -12,6 +12,10 @@ namespace polyrecon {
 /// all of a prior without a usable one, take the value of own. 3 channels; prior is not empty and of the pair's size.
 Image usable_prior(const Pass& prior, const HalfPair& pair, const Image& own);
 
+/// How much of the input's noise the prior holds, 1 if it is the input itself: slope of its difference from own over
+/// the input's. An upper bound, since detail that own misses counts too. All 3 channels.
+double noise_in_prior(const Image& prior, const HalfPair& pair, const Image& own);
+
 /// Order -1 of equation (2): takes the prior as it is, whole or by half, where that has less error. own, own + b (prior
 /// - own) / 2 and own + b (prior - own) are judged by cross-validation like any others. b is how far each is believed,
 ///     exp(-max(0, D / E - 1)),   D = its squared distance from own,   E = mse,

@@ -21,14 +21,16 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
-/// The layer that holds the picture: the denoised one where the file has both (there people and compositors look for
-/// the result), else the noisy one that was reconstructed.
+/// The layer that holds the picture: the denoised one where the renderer's own denoiser left both (there people and
+/// compositors look for the result), else the noisy one that was reconstructed.
 std::string picture_layer(const ReadResult& in) {
   for (const Role role : {Role::Prior, Role::Beauty})
     for (const RoleChoice& choice : in.source.chosen) {
       if (choice.role != role || choice.companion != Companion::Mean) continue;
       for (const Layer& layer : in.source.layers)
-        if (layer.name == choice.layer && layer.file == 0) return layer.name;
+        if (layer.name == choice.layer && layer.file == 0 &&
+            (role == Role::Beauty || (layer.rank != rank_by_hand && layer.rank != rank_beside)))
+          return layer.name;
     }
   return in.frame.beauty.name;
 }

@@ -57,6 +57,11 @@ void add_input_options(CLI::App& app, DenoiseOptions& o) {
       ->expected(1)
       ->take_all()
       ->group(group);
+  app.add_option_function<std::string>(
+         "--prior", [&o](const std::string& layer) { o.roles.push_back("prior=" + layer); },
+         "Denoised layer, or file, that is taken where it is better: --map prior=LAYER")
+      ->type_name("LAYER|FILE")
+      ->group(group);
   app.add_option("--view-layer", o.read.view_layer, "View layer to denoise, in place of the first one")
       ->type_name("NAME")
       ->group(group);

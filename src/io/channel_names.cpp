@@ -40,6 +40,7 @@ constexpr std::array kKnownPasses{
     KnownPass{"effectsresult", Role::Prior, 1, "V-Ray"},
     KnownPass{"denoiser", Role::Prior, 2, "V-Ray"},
     KnownPass{"vraydenoiser", Role::Prior, 2, "V-Ray"},
+    KnownPass{"prior", Role::Prior, rank_beside, "polyrecon's drivers"},
     KnownPass{"alpha", Role::Alpha, 1, "several renderers"},
     KnownPass{"a", Role::Alpha, 1, "RenderMan"},
     // Features.

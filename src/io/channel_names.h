@@ -32,6 +32,9 @@ struct Layer {
   int rank = 0;     ///< Among layers of one role in one view layer the lowest rank is used.
 };
 
+constexpr int rank_by_hand = -1000;  ///< Of a layer that the user named.
+constexpr int rank_beside = 9;  ///< Of a prior made to stand beside the picture: nobody looks for the result in it.
+
 const char* name_of(Role role);
 const char* name_of(Companion companion);
 /// "beauty", "albedo", ... as typed in --map; nothing for an unknown word.

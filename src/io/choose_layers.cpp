@@ -15,8 +15,6 @@
 namespace polyrecon {
 namespace {
 
-constexpr int kByHand = -1000;  ///< Rank of a layer that the user named.
-
 const PartInfo& part_of(const FrameSource& source, const Layer& layer) {
   return source.files[static_cast<std::size_t>(layer.file)].parts[static_cast<std::size_t>(layer.part)];
 }
@@ -124,7 +122,7 @@ void apply_map(FrameSource& source, const ReadOptions& options) {
       Layer& layer = source.layers[static_cast<std::size_t>(index)];
       layer.role = mapping.role;
       layer.companion = mapping.companion;
-      layer.rank = kByHand;
+      layer.rank = rank_by_hand;
       layer.view = source.view;
       layer.view_layer = source.view_layer;
       layer.of.clear();
@@ -137,7 +135,7 @@ void apply_map(FrameSource& source, const ReadOptions& options) {
 int find_mean(const FrameSource& source, Role role, bool readable = true) {
   int best = -1;
   const auto key = [&](const Layer& l) {
-    return std::make_tuple(l.rank != kByHand, l.view_layer != source.view_layer, l.rank);
+    return std::make_tuple(l.rank != rank_by_hand, l.view_layer != source.view_layer, l.rank);
   };
   for (std::size_t i = 0; i < source.layers.size(); ++i) {
     const Layer& layer = source.layers[i];
@@ -158,7 +156,7 @@ int find_companion(const FrameSource& source, const Layer& mean, Wanted wanted) 
   int best = -1;
   for (std::size_t i = 0; i < source.layers.size(); ++i) {
     const Layer& layer = source.layers[i];
-    const bool by_hand = layer.rank == kByHand && layer.of.empty() && layer.role == mean.role;
+    const bool by_hand = layer.rank == rank_by_hand && layer.of.empty() && layer.role == mean.role;
     if (!wanted(layer.companion) || !part_of(source, layer).readable()) continue;
     if (!by_hand && (layer.of != mean.name || layer.view != mean.view)) continue;
     if (by_hand) return static_cast<int>(i);
@@ -285,7 +283,7 @@ LayerChoice choose_layers(const std::string& path, const ReadOptions& options) {
   for (const PassChoice& pass : choice.passes)
     if (pass.role == Role::Alpha) {
       const Layer& own = source.layers[static_cast<std::size_t>(pass.mean)];
-      if (layer.alpha.empty() || own.rank == kByHand) source.alpha_layer = own.name;
+      if (layer.alpha.empty() || own.rank == rank_by_hand) source.alpha_layer = own.name;
     }
   describe_choice(choice);
   return choice;

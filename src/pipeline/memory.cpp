@@ -26,8 +26,9 @@ FrameShape shape_of(const Frame& frame) {
     for (const Image* image : {&pass.mean, &pass.variance, &pass.half_a, &pass.half_b})
       shape.channels += image->channels();
   };
-  add(frame.beauty);
   add(frame.prior);
+  shape.beside = shape.channels;  // waits beside the fits for its turn
+  add(frame.beauty);
   shape.channels += frame.motion.channels();
   for (const Pass& aov : frame.aovs) add(aov);
   for (const Feature& feature : frame.features) {

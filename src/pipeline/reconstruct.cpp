@@ -23,6 +23,7 @@ namespace {
 constexpr int smallest_level = 16;           // pixels; a smaller level has no window of its own
 constexpr double max_total_gain = 0.05;      // more than what the weights' preference for ordinary pixels can lose
 constexpr double max_restored_gain = 0.002;  // a fifth of the smallest step in brightness that can be seen (Weber)
+constexpr double most_noise_in_prior = 0.9;  // beyond it a prior is the input, which would judge itself
 
 /// Runs a step, tells progress of it, and notes how long it took.
 template <typename Step>
@@ -131,6 +132,15 @@ void note_neighbours(const JoinCounts& counts, bool with_motion, Report& report)
                                                                                  : " frames, no motion vectors")});
 }
 
+/// The denoised layer of the file as a candidate, unless it is none.
+Candidate use_prior(const Pass& pass, const HalfPair& pair, const ErrorMap& error, const SelectParams& params,
+                    Candidate solved, std::vector<Decision>& decisions) {
+  const Image own = average(pair, solved), prior = usable_prior(pass, pair, own);
+  const bool denoised = noise_in_prior(prior, pair, own) < most_noise_in_prior;
+  decisions.push_back({"prior", denoised, "layer '" + pass.name + (denoised ? "'" : "' is the noisy image itself")});
+  return denoised ? add_prior(pair, prior, error.mse, std::move(solved), params) : solved;
+}
+
 /// Progress steps of the fits over all levels and stages: blocks x phases, both halves. Close enough for a bar.
 std::size_t fit_steps(const Frame& frame, const Params& params) {
   const std::size_t blocks = aligned_blocks({0, 0, frame.width(), frame.height()}, block_size).size();
@@ -165,7 +175,7 @@ Result reconstruct(Frame& frame, const std::vector<TimedNeighbour>& neighbours, 
                    Progress& progress) {
   validate(params);
   FrameShape shape = shape_of(frame);
-  shape.beside = neighbour_channels(shape, static_cast<int>(neighbours.size()));
+  shape.beside += neighbour_channels(shape, static_cast<int>(neighbours.size()));
   require_memory("layer '" + frame.beauty.name + "'", shape, params);
   Result result;
   Report& report = result.report;
@@ -201,7 +211,7 @@ Result reconstruct(Frame& frame, const std::vector<TimedNeighbour>& neighbours, 
   const std::size_t memory = tile_memory(shape, params);
   FitCounters counters;
   Candidate solved = timed(report, progress, "polynomials", fit_steps(frame, params),
-                                 [&] { return solve_level(pair, 0, params, memory, counters, progress); });
+                           [&] { return solve_level(pair, 0, params, memory, counters, progress); });
   note_fits(counters, report);
   const double left_alone = share_left_alone(pair, params);
   report.decisions.push_back(decide_on_pixels(left_alone, params));
@@ -211,8 +221,7 @@ Result reconstruct(Frame& frame, const std::vector<TimedNeighbour>& neighbours, 
   result.order = solved.order;
   if (!frame.prior.mean.empty())
     solved = timed(report, progress, "prior", 1, [&] {
-      const Image prior = usable_prior(frame.prior, pair, average(pair, solved));
-      return add_prior(pair, prior, result.error.mse, std::move(solved), params.selection);
+      return use_prior(frame.prior, pair, result.error, params.selection, std::move(solved), report.decisions);
     });
   Image image = timed(report, progress, "energy", 1, [&] {
     Image out = average(pair, solved);

@@ -1,0 +1,102 @@
+#include "blend/prior.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "support/images.h"
+#include "support/scene.h"
+
+namespace polyrecon {
+namespace {
+
+using test::image_of;
+
+constexpr int size = 64;
+constexpr double noise = 0.4;       // standard deviation of a half
+constexpr double own_error = 0.06;  // amplitude of what our own result gets wrong
+
+double detail(int x, int y) { return 1 + 0.3 * std::sin(0.7 * x) * std::cos(0.5 * y); }
+Image truth() {
+  return image_of(size, size, 3, [](int x, int y, int) { return detail(x, y); });
+}
+
+/// A noisy pair, our own result with an error that is known but not where, and its estimated error.
+struct Case {
+  HalfPair pair = test::pair_of(truth(), noise, 7);
+  Image own = image_of(size, size, 3,
+                       [](int x, int y, int) { return detail(x, y) + own_error * ((x / 4 + y / 4) % 2 ? 1 : -1); });
+  Image mse{size, size, 3, Real(1.5 * own_error * own_error)};
+
+  Candidate result() const { return {{own, own}, mse, mse, Image(size, size, 1)}; }
+  double error_with(const Pass& prior) const {
+    const Candidate out = add_prior(pair, usable_prior(prior, pair, own), mse, result(), SelectParams{});
+    double sum = 0;
+    const Image wanted = truth();
+    for (std::size_t i = 0; i < wanted.pixels(); ++i) {
+      const double d = static_cast<double>(out.half[0].plane(1)[i]) - static_cast<double>(wanted.plane(1)[i]);
+      sum += d * d;
+    }
+    return sum / static_cast<double>(wanted.pixels());
+  }
+};
+
+Pass pass_of(Image mean) { return {"prior", std::move(mean), {}, {}, {}}; }
+
+constexpr double own_mse = own_error * own_error;
+
+TEST(AddPrior, TakesAnImageThatIsBetter) { EXPECT_LT(Case().error_with(pass_of(truth())), 0.3 * own_mse); }
+
+TEST(AddPrior, MendsTheExposure) {
+  EXPECT_LT(Case().error_with(pass_of(image_of(size, size, 3, [](int x, int y, int) { return 1.3 * detail(x, y); }))),
+            0.3 * own_mse);
+}
+
+TEST(AddPrior, AWrongImageCostsNothing) {
+  const Case c;
+  const auto other = [](int x, int y, int) { return 1 + 0.9 * std::sin(0.2 * x + 0.3 * y); };
+  EXPECT_LE(c.error_with(pass_of(image_of(size, size, 3, other))), 1.02 * own_mse);
+  const auto shifted = [](int x, int y, int) { return detail(x + 2, y); };
+  EXPECT_LE(c.error_with(pass_of(image_of(size, size, 3, shifted))), 1.02 * own_mse);
+  EXPECT_LE(c.error_with(pass_of(Image(size, size, 3))), 1.02 * own_mse);
+}
+
+TEST(AddPrior, PixelsThatAreNoNumberAreOurs) {
+  const Case c;
+  Image holes = truth();
+  for (int y = 0; y < size; ++y)
+    for (int x = 0; x < size / 2; ++x) holes.at(x, y, 1) = std::numeric_limits<Real>::quiet_NaN();
+  const Image prior = usable_prior(pass_of(holes), c.pair, c.own);
+  EXPECT_EQ(prior.at(3, 5, 1), c.own.at(3, 5, 1));
+  EXPECT_LT(c.error_with(pass_of(holes)), own_mse);
+  const Image nothing(size, size, 3, std::numeric_limits<Real>::infinity());
+  EXPECT_TRUE(test::same_bits(usable_prior(pass_of(nothing), c.pair, c.own), c.own));
+}
+
+TEST(AddPrior, HalvesAreAveraged) {
+  const Case c;
+  Pass halves = pass_of(Image(size, size, 3));
+  halves.half_a = image_of(size, size, 3, [](int x, int y, int) { return detail(x, y) + 0.2; });
+  halves.half_b = image_of(size, size, 3, [](int x, int y, int) { return detail(x, y) - 0.2; });
+  EXPECT_LT(c.error_with(halves), 0.3 * own_mse);
+}
+
+TEST(AddPrior, TheErrorStaysThatOfOurOwnResult) {
+  const Case c;
+  const Candidate out = add_prior(c.pair, truth(), c.mse, c.result(), SelectParams{});
+  EXPECT_TRUE(test::same_bits(out.error, c.mse));
+  EXPECT_TRUE(test::same_bits(out.variance, c.mse));
+}
+
+TEST(NoiseInPrior, IsOneForTheInputAndNothingForTheTruth) {
+  const Case c;
+  const Image noisy = image_of(size, size, 3, [&](int x, int y, int k) {
+    return 0.5 * (static_cast<double>(c.pair.color[0].at(x, y, k)) + static_cast<double>(c.pair.color[1].at(x, y, k)));
+  });
+  EXPECT_NEAR(noise_in_prior(noisy, c.pair, c.own), 1, 1e-4);
+  EXPECT_LT(noise_in_prior(truth(), c.pair, c.own), 0.1);
+}
+
+}  // namespace
+}  // namespace polyrecon
