@@ -12,6 +12,7 @@ namespace polyrecon {
 namespace {
 
 constexpr double most_gain = 2;        // between the exposures of a frame and its prior; beyond it is another image
+constexpr double plausible = 3;        // D / E up to which a prior is believed whole: E is known to a factor of 2.5
 constexpr double least_error = 1e-12;  // relative; keeps D / E finite
 constexpr int beauty_channels = 3;
 
@@ -66,7 +67,7 @@ Image belief_in(const Image& contradiction) {
   for_rows(belief.height(), [&](int y) {
     for (int x = 0; x < belief.width(); ++x)
       belief.at(x, y, 0) =
-          static_cast<Real>(std::exp(-std::max(0.0, static_cast<double>(contradiction.at(x, y, 0)) - 1)));
+          static_cast<Real>(std::exp(-std::max(0.0, static_cast<double>(contradiction.at(x, y, 0)) - plausible)));
   });
   return belief;
 }

@@ -18,10 +18,10 @@ double noise_in_prior(const Image& prior, const HalfPair& pair, const Image& own
 
 /// Order -1 of equation (2): takes the prior as it is, whole or by half, where that has less error. own, own + b (prior
 /// - own) / 2 and own + b (prior - own) are judged by cross-validation like any others. b is how far each is believed,
-///     exp(-max(0, D / E - 1)),   D = its squared distance from own,   E = mse,
-/// both relative and averaged over risk_sigma: an image that contradicts the samples by more than our own estimated
-/// error is wrong, whatever the noise of the validation lets it score. prior: 3 channels. mse: estimated squared error
-/// of own (ErrorMap::mse). Only the beauty changes; error, variance and order stay those of own.
+///     exp(-max(0, D / E - 3)),   D = its squared distance from own,   E = mse,
+/// both relative and averaged over risk_sigma: an image that contradicts the samples by far more than our own
+/// estimated error is wrong, whatever the noise of the validation lets it score. prior: 3 channels. mse: estimated
+/// squared error of own (ErrorMap::mse). Only the beauty changes; error, variance and order stay those of own.
 Candidate add_prior(const HalfPair& pair, const Image& prior, const Image& mse, Candidate own,
                     const SelectParams& params);
 
