@@ -113,7 +113,7 @@ Candidate add_prior(const HalfPair& pair, const Image& prior, const Image& mse, 
                     const SelectParams& params) {
   const Image brightness = beauty_of_halves(own.half);
   std::vector<Candidate> candidates(3);
-  for (const std::size_t k : {1, 2}) {
+  for (std::size_t k = 1; k < candidates.size(); ++k) {
     const double share = 0.5 * static_cast<double>(k);
     const Image belief = belief_in(contradiction(brightness, prior, share, mse, pair.epsilon, params.risk_sigma));
     for (std::size_t h = 0; h < 2; ++h)
