@@ -38,8 +38,9 @@ class Prior(SceneTest):
             np.testing.assert_array_equal(again[f"ViewLayer.Prior A.{c}"], found[f"ViewLayer.Prior A.{c}"])
             self.assertGreater(np.abs(again[f"ViewLayer.Prior B.{c}"] - found[f"ViewLayer.Prior B.{c}"]).max(), 0.01)
 
-        layers = {layer["name"] for layer in json.loads(Polyrecon().run("inspect", "--json", self.folder / "prior.exr"))["layers"]}
-        self.assertLessEqual({"ViewLayer.Prior A", "ViewLayer.Prior B"}, layers)
+        roles = json.loads(Polyrecon().run("inspect", "--json", self.folder / "prior.exr"))["roles"]
+        priors = {role["layer"] for role in roles if role["role"] == "prior"}
+        self.assertEqual(priors, {"ViewLayer.Prior", "ViewLayer.Prior A", "ViewLayer.Prior B"})
 
     def test_the_loop(self):
         done = self.driver("adaptive.py", self.scene(), "-o", "out.exr", "--budget-spp", 8, "--first-pass", 4, "--quality", "draft",
