@@ -14,7 +14,7 @@ import venv
 SOURCE, PROGRAM = (pathlib.Path(word).resolve() for word in sys.argv[1:3])
 PIPELINES = SOURCE / "pipelines"
 PROJECT = tomllib.loads((SOURCE / "pyproject.toml").read_text())["project"]
-GIVEN_BY_THE_RENDERER = {"bpy", "mathutils", "oslquery", "cycles"}
+GIVEN_BY_THE_RENDERER = {"_cycles", "bpy", "mathutils", "oslquery", "cycles"}
 MODULES = {"yaml": "PyYAML"}
 
 
