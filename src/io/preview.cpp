@@ -82,7 +82,7 @@ void draw_legend(OIIO::ImageBuf& image, const LogRange& range, int x, int y, int
   draw_text(image, fmt::format("{:.3g}", range.low), x, below, width / 2, Align::Left);
   draw_text(image, fmt::format("{:.3g}", range.high), x + width, below, width / 2, Align::Right);
   if (range.high <= range.low) return;
-  constexpr int room = 48;  // of one number
+  constexpr int room = 76;  // of one number such as 7.48e-06, and a gap
   int taken = x + room;
   for (double power = std::ceil(std::log10(range.low)); std::pow(10, power) < range.high; ++power) {
     const double value = std::pow(10, power), at = std::log(value / range.low) / std::log(range.high / range.low);
