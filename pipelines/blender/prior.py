@@ -8,8 +8,8 @@ FEATURES = {"Denoising Albedo": "RGB", "Denoising Normal": "XYZ", "Denoising Dep
 
 
 def add(merged, layer, session):
-    """Puts the layers `Prior A`, `Prior B` and their mean `Prior` into a merged file. Each half comes from its half of picture and features alone, so
-    that the noise of one is not in the other."""
+    """Puts the layers `Prior A`, `Prior B` and their mean `Prior` into a merged file. A and B come from their half of picture and
+    features alone, so that the noise of one is not in the other."""
     channels = exr.read(merged)
     attributes = {name: value for name, value in exr.metadata(merged).items() if isinstance(value, (str, int, float))}
     source, target = session.folder / "half.exr", session.folder / "denoised.exr"
