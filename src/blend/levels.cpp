@@ -33,23 +33,14 @@ HalfPair downsample(const HalfPair& pair) {
 }
 
 Candidate add_coarse(const HalfPair& pair, Candidate fine, const Candidate& coarse, const SelectParams& params) {
-  std::vector<Candidate> candidates(3);
-  Image brightness(pair.width(), pair.height(), 3);
+  std::vector<Candidate> corrected(2);
   for (std::size_t h = 0; h < 2; ++h) {
     const Image remainder =
         double_resolution(plus(coarse.half[h], -1, half_resolution(fine.half[h])), pair.width(), pair.height());
-    candidates[1].half[h] = plus(fine.half[h], Real(0.5), remainder);
-    candidates[2].half[h] = plus(fine.half[h], 1, remainder);
-    for (int c = 0; c < 3; ++c)
-      for (std::size_t i = 0; i < brightness.pixels(); ++i)
-        brightness.plane(c)[i] += Real(0.5) * fine.half[h].plane(c)[i];
-    candidates[0].half[h] = std::move(fine.half[h]);
+    corrected[0].half[h] = plus(fine.half[h], Real(0.5), remainder);
+    corrected[1].half[h] = plus(fine.half[h], 1, remainder);
   }
-  Candidate out = select(pair, brightness, candidates, params);
-  out.error = std::move(fine.error);
-  out.variance = std::move(fine.variance);
-  out.order = std::move(fine.order);
-  return out;
+  return select_correction(pair, std::move(fine), std::move(corrected), params);
 }
 
 }  // namespace polyrecon

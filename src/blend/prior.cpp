@@ -16,15 +16,6 @@ constexpr double plausible = 3;        // D / E up to which a prior is believed 
 constexpr double least_error = 1e-12;  // relative; keeps D / E finite
 constexpr int beauty_channels = 3;
 
-Image beauty_of_halves(const std::array<Image, 2>& half) {
-  Image out(half[0].width(), half[0].height(), beauty_channels);
-  for_rows(out.height(), [&](int y) {
-    for (int c = 0; c < beauty_channels; ++c)
-      for (int x = 0; x < out.width(); ++x) out.at(x, y, c) = Real(0.5) * (half[0].at(x, y, c) + half[1].at(x, y, c));
-  });
-  return out;
-}
-
 /// Factor that brings a channel of the prior to the pair's sum over the pixels where the prior is usable; 1 where that
 /// is out of reach.
 double exposure_gain(const Image& prior, const HalfPair& pair, int c) {
@@ -85,7 +76,7 @@ Image toward(Image own, const Image& prior, Real share, const Image& belief) {
 }  // namespace
 
 Image usable_prior(const Pass& prior, const HalfPair& pair, const Image& own) {
-  Image out = prior.has_halves() ? beauty_of_halves({prior.half_a, prior.half_b}) : prior.mean;
+  Image out = prior.has_halves() ? mean_of_halves({{prior.half_a, prior.half_b}, {}, {}, {}}) : prior.mean;
   for (int c = 0; c < beauty_channels; ++c) {
     const auto gain = static_cast<Real>(exposure_gain(out, pair, c));
     for (std::size_t i = 0; i < out.pixels(); ++i) {
@@ -111,20 +102,15 @@ double noise_in_prior(const Image& prior, const HalfPair& pair, const Image& own
 
 Candidate add_prior(const HalfPair& pair, const Image& prior, const Image& mse, Candidate own,
                     const SelectParams& params) {
-  const Image brightness = beauty_of_halves(own.half);
-  std::vector<Candidate> candidates(3);
-  for (std::size_t k = 1; k < candidates.size(); ++k) {
-    const double share = 0.5 * static_cast<double>(k);
-    const Image belief = belief_in(contradiction(brightness, prior, share, mse, pair.epsilon, params.risk_sigma));
+  const Image mean = mean_of_halves(own);
+  std::vector<Candidate> corrected(2);
+  for (std::size_t k = 0; k < corrected.size(); ++k) {
+    const double share = 0.5 * static_cast<double>(k + 1);
+    const Image belief = belief_in(contradiction(mean, prior, share, mse, pair.epsilon, params.risk_sigma));
     for (std::size_t h = 0; h < 2; ++h)
-      candidates[k].half[h] = toward(own.half[h], prior, static_cast<Real>(share), belief);
+      corrected[k].half[h] = toward(own.half[h], prior, static_cast<Real>(share), belief);
   }
-  candidates[0].half = std::move(own.half);
-  Candidate out = select(pair, brightness, candidates, params);
-  out.error = std::move(own.error);
-  out.variance = std::move(own.variance);
-  out.order = std::move(own.order);
-  return out;
+  return select_correction(pair, std::move(own), std::move(corrected), params);
 }
 
 }  // namespace polyrecon

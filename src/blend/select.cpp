@@ -2,6 +2,7 @@
 
 #include <cassert>
 #include <cmath>
+#include <utility>
 
 #include "core/gaussian.h"
 #include "core/parallel.h"
@@ -157,6 +158,25 @@ Candidate select(const HalfPair& pair, const Image& brightness, const std::vecto
     add_share(candidates[k].variance, shares[k], total, out.variance);
     add_share(candidates[k].order, shares[k], total, out.order);
   }
+  return out;
+}
+
+Image mean_of_halves(const Candidate& candidate) {
+  Image out(candidate.half[0].width(), candidate.half[0].height(), 3);
+  for (int c = 0; c < 3; ++c)
+    for (std::size_t i = 0; i < out.pixels(); ++i)
+      out.plane(c)[i] = Real(0.5) * (candidate.half[0].plane(c)[i] + candidate.half[1].plane(c)[i]);
+  return out;
+}
+
+Candidate select_correction(const HalfPair& pair, Candidate own, std::vector<Candidate> corrected,
+                            const SelectParams& params) {
+  const Image brightness = mean_of_halves(own);
+  corrected.insert(corrected.begin(), Candidate{std::move(own.half), {}, {}, {}});
+  Candidate out = select(pair, brightness, corrected, params);
+  out.error = std::move(own.error);
+  out.variance = std::move(own.variance);
+  out.order = std::move(own.order);
   return out;
 }
 

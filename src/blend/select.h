@@ -38,4 +38,12 @@ int select_halo(const SelectParams& params);
 Candidate select(const HalfPair& pair, const Image& brightness, const std::vector<Candidate>& candidates,
                  const SelectParams& params);
 
+/// Beauty of the mean of a candidate's halves, 3 channels.
+Image mean_of_halves(const Candidate& candidate);
+
+/// The best of own and further images made from it, of which only the halves are given; error, variance and order are
+/// those of own. Without variances: they would be own's for all.
+Candidate select_correction(const HalfPair& pair, Candidate own, std::vector<Candidate> corrected,
+                            const SelectParams& params);
+
 }  // namespace polyrecon

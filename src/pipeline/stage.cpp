@@ -79,14 +79,6 @@ Candidate take_as_it_is(const HalfPair& pair) {
   return {{pair.color[0], pair.color[1]}, noise, noise, Image(pair.width(), pair.height(), 1)};
 }
 
-Image mean_of_halves(const Candidate& candidate) {
-  Image out(candidate.half[0].width(), candidate.half[0].height(), 3);
-  for (int c = 0; c < 3; ++c)
-    for (std::size_t i = 0; i < out.pixels(); ++i)
-      out.plane(c)[i] = Real(0.5) * (candidate.half[0].plane(c)[i] + candidate.half[1].plane(c)[i]);
-  return out;
-}
-
 /// Noise left in a stage's result, from the difference of its halves.
 Image residual_variance(const Candidate& candidate) {
   Image out(candidate.half[0].width(), candidate.half[0].height(), 3);
