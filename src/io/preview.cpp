@@ -47,23 +47,21 @@ const std::string& font() {
   return found;
 }
 
+/// Pixels that text takes from left to right; 0 where there is no font.
+int text_width(const std::string& text) {
+  return font().empty() ? 0 : OIIO::ImageBufAlgo::text_size(text, text_size, font()).width();
+}
+
 enum class Align { Left, Right };
 
 /// text at x (its left or right end), cut to width pixels, on the strip whose top is y.
 void draw_text(OIIO::ImageBuf& image, std::string text, int x, int y, int width, Align align) {
   if (font().empty()) return;
-  const auto length = [&] { return OIIO::ImageBufAlgo::text_size(text, text_size, font()).width(); };
-  while (!text.empty() && length() > width) text.pop_back();
+  while (!text.empty() && text_width(text) > width) text.pop_back();
   if (text.empty()) return;
-  const int left = align == Align::Left ? x : x - length();
+  const int left = align == Align::Left ? x : x - text_width(text);
   OIIO::ImageBufAlgo::render_text(image, left, y + text_size + (strip_height - text_size) / 2 - 2, text, text_size,
                                   font(), text_color);
-}
-
-/// Where text stands that is centred at x, kept within from..to.
-int centred(const std::string& text, int x, int from, int to) {
-  const int length = font().empty() ? 0 : OIIO::ImageBufAlgo::text_size(text, text_size, font()).width();
-  return std::max(from, std::min(x - length / 2, to - length));
 }
 
 /// The scale of a false-colour picture: the colours from low to high, below them these two numbers and the powers of
@@ -79,21 +77,22 @@ void draw_legend(OIIO::ImageBuf& image, const LogRange& range, int x, int y, int
     for (int row = 0; row < legend_height; ++row) image.setpixel(x + i, y + row, pixel.data(), 3);
   }
   const int below = y + legend_height;
-  draw_text(image, fmt::format("{:.3g}", range.low), x, below, width / 2, Align::Left);
-  draw_text(image, fmt::format("{:.3g}", range.high), x + width, below, width / 2, Align::Right);
+  const std::string low = fmt::format("{:.3g}", range.low), high = fmt::format("{:.3g}", range.high);
+  draw_text(image, low, x, below, width / 2, Align::Left);
+  draw_text(image, high, x + width, below, width / 2, Align::Right);
   if (range.high <= range.low) return;
-  constexpr int room = 76;  // of one number such as 7.48e-06, and a gap
-  int taken = x + room;
+  int taken = x + text_width(low) + gap;
+  const int end = x + width - text_width(high) - gap;
   for (double power = std::ceil(std::log10(range.low)); std::pow(10, power) < range.high; ++power) {
     const double value = std::pow(10, power), at = std::log(value / range.low) / std::log(range.high / range.low);
     const int tick = x + static_cast<int>(at * (width - 1));
     const std::string text = fmt::format("{:g}", value);
-    const int left = centred(text, tick, x, x + width);
-    if (left < taken || tick + room > x + width - room / 2) continue;
+    const int length = text_width(text), left = tick - length / 2;
+    if (left < taken || left + length > end) continue;
     const std::array<float, 3> dark{ground, ground, ground};
     for (int row = legend_height / 2; row < legend_height; ++row) image.setpixel(tick, y + row, dark.data(), 3);
-    draw_text(image, text, left, below, room, Align::Left);
-    taken = left + room;
+    draw_text(image, text, left, below, length, Align::Left);
+    taken = left + length + gap;
   }
 }
 
