@@ -1,4 +1,4 @@
-"""Sample counts as masked passes: one a power of two, each over the smallest box that holds its pixels."""
+"""Sample counts as masked passes, each over the smallest box that holds its pixels."""
 
 import dataclasses
 import itertools
@@ -15,6 +15,7 @@ SUBPIXELS = 4
 
 @dataclasses.dataclass
 class Pass:
+    skip: int  # samples of the sequence before this pass's
     samples: int
     box: tuple  # x0, y0, x1, y1 in pixels from the top left, end excluded
     inside: np.ndarray  # bool, of the box's shape: pixels whose samples count
@@ -26,12 +27,15 @@ def bounding_box(inside):
 
 
 def plan(counts):
-    """One pass for each value of counts but 0."""
-    passes = []
-    for samples in np.unique(counts[counts > 0]):
-        inside = counts == samples
+    """Passes that lie one in another: all pixels with samples take those of the lowest count, those that ask for more go on in
+    the sequence up to the next higher count, and so on. A border between two counts thus has one rim, on one side, and
+    of the samples that the two differ by; with a pass for each count it would have two, of all samples."""
+    passes, done = [], 0
+    for count in np.unique(counts[counts > 0]).astype(int):
+        inside = counts >= count
         x0, y0, x1, y1 = box = bounding_box(inside)
-        passes.append(Pass(int(samples), box, inside[y0:y1, x0:x1]))
+        passes.append(Pass(done, int(count) - done, box, inside[y0:y1, x0:x1]))
+        done = int(count)
     return passes
 
 

@@ -23,7 +23,7 @@ def plan(counts, overhead):
         mean = _sum(tables[0], (x0, y0, x1, y1)) / ((x1 - x0) * (y1 - y0))
         if mean >= 0.5:
             samples = int(2 ** max(0, round(np.log2(mean))))
-            passes.append(Pass(samples, (x0, y0, x1, y1), np.ones((y1 - y0, x1 - x0), bool)))
+            passes.append(Pass(0, samples, (x0, y0, x1, y1), np.ones((y1 - y0, x1 - x0), bool)))
     return passes
 
 

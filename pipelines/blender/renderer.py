@@ -88,9 +88,10 @@ class BlenderRenderer(Renderer):
             channels = self._render_piece(first, piece)
             for name, values in channels.items():
                 whole = sums.setdefault(name, np.zeros(counts.shape))
-                whole[y0:y1, x0:x1] += np.where(piece.inside, values, 0)
+                whole[y0:y1, x0:x1] += np.where(piece.inside, piece.samples * values, 0)
             taken[y0:y1, x0:x1] += piece.samples * piece.inside
-        self._write(target, sums, taken)
+        means = {name: whole / np.maximum(taken, 1) for name, whole in sums.items()}
+        self._write(target, means, taken)
         return int(taken.max(initial=0))
 
     def complete(self, merged):
@@ -98,7 +99,7 @@ class BlenderRenderer(Renderer):
             prior.add(merged, self.opened["view_layer"], self.session)
 
     def _render_piece(self, first, piece):
-        job = {"first": first, "samples": piece.samples, "crop": piece.box}
+        job = {"first": first + piece.skip, "samples": piece.samples, "crop": piece.box}
         if not self.masked:
             channels, seconds = self._render(**job)
             self.overhead_seconds = max(0.001, seconds - self.seconds_per_sample * piece.samples * piece.inside.size)

@@ -7,6 +7,8 @@ the samples that would dilute it, as it would if one and the same set of samples
 """
 
 import dataclasses
+import itertools
+import os
 import pathlib
 import time
 from typing import Optional
@@ -14,7 +16,7 @@ from typing import Optional
 import numpy as np
 
 from . import exr
-from .budget import Budget, Spent, next_slice
+from .budget import Budget, Spent, next_slice, nothing_left
 from .counts import cost_of_samples, quantise
 from .errors import DriverError, ExitCode
 from .journal import Journal
@@ -98,7 +100,7 @@ class _Loop:
         for part in self.journal["parts"]:
             self.totals[part["half"]].add(self.folder / part["file"])
         self.why_ended = ""
-        self.reserve = 0.0
+        self.judging = None  # seconds of the last reconstruction of both halves
 
     def run(self):
         self.audit = self.renderer.begin(self.settings.frame)
@@ -150,34 +152,57 @@ class _Loop:
     def plan_round(self):
         """Reconstructs both halves and decides where the next samples of each go; None where the loop ends."""
         number = len(self.journal["rounds"])
+        if self.judging is not None:
+            self.why_ended = nothing_left(self.settings.budget, self.spent())
+            if self.why_ended:
+                return None
         (self.folder / f"round_{number}").mkdir(exist_ok=True)
-        for half in HALVES:
-            self.tell(f"reconstruction {number}, half {half.upper()}", round=number)
-            self.reconstruct_half(number, half)
-        spent = self.spent(number)
+        self.reconstruct_halves(number)
+        spent = dataclasses.replace(self.spent(), **self.error_of_mean(number))
         samples, self.why_ended = next_slice(self.settings.budget, spent)
         if samples and number >= self.settings.max_rounds:
             samples, self.why_ended = 0.0, f"{number} rounds are done (--max-rounds)"
-        counts = {half: self.counts_for(number, half, samples) for half in HALVES} if samples else {}
+        counts = self.counts_for(number, samples) if samples else {}
         if samples and not any(c.any() for c in counts.values()):
             self.why_ended = "no error is left that more samples could lower"
             samples = 0.0
-        entry = {"round": number, "spp": spent.samples, "seconds": spent.seconds, "error": spent.error, "extra": samples}
+        entry = {"round": number, "spp": spent.samples, "seconds": spent.seconds, "judging": spent.judging, "error": spent.error}
+        entry["extra"] = samples
         self.journal["rounds"].append(entry)
         if samples:
             self.journal["plan"] = self.place_in_sequence(number + 1, counts)
         self.save()
         return self.journal["plan"]
 
-    def reconstruct_half(self, number, half):
-        merged, clean, error = (self.file(number, f"{kind}_{half}") for kind in ("merged", "clean", "error"))
-        self.polyrecon.run("merge", *self.journal.files(half), "-o", merged, "--quiet")
-        self.renderer.complete(merged)
+    def reconstruct_halves(self, number):
+        """Both at a time, each on half of the processors: a frame of a draft keeps several less busy than two frames do."""
+        self.tell(f"reconstruction {number}", round=number)
         begin = time.monotonic()
-        self.polyrecon.run("denoise", "-i", merged, "-o", clean, "--quality", ROUND_QUALITY, "--error-map", error, "--quiet")
-        self.reserve = (time.monotonic() - begin) * LAST_OVER_ROUND[self.settings.quality]
+        files = {half: [self.file(number, f"{kind}_{half}") for kind in ("merged", "clean", "error")] for half in HALVES}
+        self.polyrecon.run_side_by_side("merge", [
+            [*self.journal.files(half), "-o", merged, "--compression", "none", "--quiet"] for half, (merged, _, _) in files.items()])  # fmt: skip
+        for merged, _, _ in files.values():
+            self.renderer.complete(merged)
+        threads = max(1, len(os.sched_getaffinity(0)) // 2)
+        self.polyrecon.run_side_by_side("denoise", [
+            ["-i", merged, "-o", clean, "--quality", ROUND_QUALITY, "--error-map", error, "--threads", threads, "--quiet"]
+            for merged, clean, error in files.values()])  # fmt: skip
+        self.judging = time.monotonic() - begin
 
-    def spent(self, number):
+    def spent(self):
+        parts = self.journal["parts"]
+        whole = self.totals["a"] + self.totals["b"]
+        cost = self.cost(whole)
+        return Spent(
+            samples=sum(p["spp"] for p in parts),
+            seconds=self.seconds(),
+            render_seconds=sum(p["seconds"] for p in parts),
+            worth=float((cost * whole.counts).mean() / cost.mean()),
+            judging=self.judging,
+            reserve=self.judging * LAST_OVER_ROUND[self.settings.quality],
+        )
+
+    def error_of_mean(self, number):
         """Joins what the halves tell: pictures for the report, and the error of (A + B) / 2, whose variance is half of
         each half's while its bias stays."""
         halves = [exr.read(self.file(number, f"error_{half}")) for half in HALVES]
@@ -189,31 +214,21 @@ class _Loop:
             exr.write(self.file(number, name), {c: (files[0][c] + files[1][c]) / 2 for c in files[0]})
             for half in HALVES:
                 self.file(number, f"{kind}_{half}").unlink()
-        parts = self.journal["parts"]
-        whole = self.totals["a"] + self.totals["b"]
-        cost = self.cost(whole)
-        return Spent(
-            samples=sum(p["spp"] for p in parts),
-            seconds=self.seconds(),
-            render_seconds=sum(p["seconds"] for p in parts),
-            worth=float((cost * whole.counts).mean() / cost.mean()),
-            reserve=self.reserve,
-            error=float(np.nanmean(error)),
-            variance=float(np.nanmean(variance)),
-        )
+        return {"error": float(np.nanmean(error)), "variance": float(np.nanmean(variance))}
 
-    def counts_for(self, number, half, samples):
-        """Counts of a half's next samples, from the other half's error map and costs. Half of the slice goes to each."""
-        other = OTHER[half]
-        cost = self.cost(self.totals[other])
-        cost_file, map_file = self.file(number, f"cost_{other}"), self.file(number, f"map_{half}")
-        exr.write(cost_file, {"Y": cost})
-        self.polyrecon.run("samplemap", "--error-map", self.file(number, f"error_{other}"), "--budget", samples / 2,
-                           "--max-samples", max(1024, 4 * samples), "--cost", cost_file, "-o", map_file, "--quiet")  # fmt: skip
-        wanted = exr.read(map_file)["samples.Y"]
-        cost_file.unlink()
-        map_file.unlink()
-        return quantise(wanted, cost)
+    def counts_for(self, number, samples):
+        """Counts of each half's next samples, from the other half's error map and costs. Half of the slice goes to each."""
+        costs = {half: self.cost(self.totals[OTHER[half]]) for half in HALVES}
+        files = {half: [self.file(number, f"{kind}_{half}") for kind in ("cost", "map")] for half in HALVES}
+        for half, (cost_file, _) in files.items():
+            exr.write(cost_file, {"Y": costs[half]})
+        self.polyrecon.run_side_by_side("samplemap", [
+            ["--error-map", self.file(number, f"error_{OTHER[half]}"), "--budget", samples / 2, "--max-samples", max(1024, 4 * samples),
+             "--cost", cost_file, "-o", map_file, "--quiet"] for half, (cost_file, map_file) in files.items()])  # fmt: skip
+        counts = {half: quantise(exr.read(map_file)["samples.Y"], costs[half]) for half, (_, map_file) in files.items()}
+        for file in itertools.chain(*files.values()):
+            file.unlink()
+        return counts
 
     def place_in_sequence(self, number, counts):
         """Each half's round begins at a multiple of its largest count, so that every count is a whole block of the

@@ -1,10 +1,13 @@
 """How much is spent, and how much the next round may take."""
 
 import dataclasses
+import math
 from typing import Optional
 
 GROWTH = 1.0  # a round takes as much as was spent before it, so the slices double
 LEAST_SAMPLES = 0.25  # per pixel: a smaller round does not pay its overhead
+MOST_JUDGING = 0.1  # of a round's seconds, where seconds are the budget: fewer and larger rounds where judging is dear
+SAMPLES_SPENT, SECONDS_SPENT = "the samples are spent", "the seconds are spent"
 
 
 @dataclasses.dataclass(frozen=True)
@@ -24,16 +27,27 @@ class Budget:
 @dataclasses.dataclass
 class Spent:
     """samples: per pixel. seconds: of everything. render_seconds: of the passes, which brought `worth` samples per pixel
-    (weighted by what they cost). reserve: seconds that the result still needs. error, variance: estimated mean relative
-    MSE of the result and the part of it that falls as 1/n."""
+    (weighted by what they cost). judging: seconds of the last reconstruction of both halves. reserve: seconds that the
+    result still needs. error, variance: estimated mean relative MSE of the result and the part of it that falls as 1/n."""
 
     samples: float
     seconds: float
     render_seconds: float
     worth: float
+    judging: float
     reserve: float
-    error: float
-    variance: float
+    error: float = math.nan
+    variance: float = math.nan
+
+
+def nothing_left(budget, spent):
+    """Why the loop ends, where that is known before another round is judged; else ''. A round of which the judging takes
+    more seconds than the samples does not pay."""
+    if budget.samples and budget.samples - spent.samples < LEAST_SAMPLES:
+        return SAMPLES_SPENT
+    if budget.seconds and budget.seconds - spent.seconds - spent.reserve < 2 * spent.judging:
+        return SECONDS_SPENT
+    return ""
 
 
 def next_slice(budget, spent):
@@ -41,10 +55,12 @@ def next_slice(budget, spent):
     what is left, and one that would leave no more than half of itself takes that too."""
     step = GROWTH * spent.worth
     if budget.samples:
-        left, reason = budget.samples - spent.samples, "the samples are spent"
+        left, reason = budget.samples - spent.samples, SAMPLES_SPENT
     elif budget.seconds:
         seconds = budget.seconds - spent.seconds - spent.reserve
-        left, reason = seconds * spent.worth / max(spent.render_seconds, 1e-9), "the seconds are spent"
+        rate = spent.worth / max(spent.render_seconds, 1e-9)
+        left, reason = seconds * rate, SECONDS_SPENT
+        step = max(step, spent.judging / MOST_JUDGING * rate)
     elif spent.error <= budget.target:
         return 0.0, f"the target is reached: {spent.error:.3g}"
     else:

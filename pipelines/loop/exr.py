@@ -51,7 +51,7 @@ def write(path, channels, attributes=None):
     height, width, count = pixels.shape
     spec = oiio.ImageSpec(width, height, count, "float")
     spec.channelnames = names
-    spec.attribute("compression", "zip")
+    spec.attribute("compression", "zip:2")
     spec.attribute("oiio:ColorSpace", "scene_linear")
     for name, value in (attributes or {}).items():
         spec.attribute(name, value)

@@ -34,9 +34,14 @@ class Polyrecon:
 
     def run(self, command, *words):
         """Runs one sub-command; returns what it printed."""
-        code, output, errors = process.run([self.program, command, *words])
-        if code != 0:
-            lines = [line for line in errors.splitlines() if line.strip()] or [f"ended with code {code}"]
-            known = code in ExitCode.__members__.values()
-            raise DriverError(code if known else ExitCode.INTERNAL, f"polyrecon {command}: {lines[-1]}")
-        return output
+        return self.run_side_by_side(command, [words])[0]
+
+    def run_side_by_side(self, command, several):
+        """Runs one sub-command with several lists of words at the same time."""
+        answers = process.run_side_by_side([[self.program, command, *words] for words in several])
+        for code, _, errors in answers:
+            if code != 0:
+                lines = [line for line in errors.splitlines() if line.strip()] or [f"ended with code {code}"]
+                known = code in ExitCode.__members__.values()
+                raise DriverError(code if known else ExitCode.INTERNAL, f"polyrecon {command}: {lines[-1]}")
+        return [output for _, output, _ in answers]

@@ -33,12 +33,20 @@ def stop(child):
 def run(words, timeout=None, **options):
     """Runs a command to its end; returns (exit code, standard output, standard error). Whatever interrupts the wait,
     a time limit (subprocess.TimeoutExpired) or a signal, the child's group is ended first."""
-    child = start(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, errors="replace", **options)
+    return run_side_by_side([words], timeout, **options)[0]
+
+
+def run_side_by_side(commands, timeout=None, **options):
+    """The same for several commands at once, in their order; each prints a few lines at most."""
+    children = []
     try:
-        output, errors = child.communicate(timeout=timeout)
-        return child.returncode, output, errors
+        for words in commands:
+            children.append(start(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, errors="replace", **options))
+        said = [child.communicate(timeout=timeout) for child in children]
+        return [(child.returncode, *texts) for child, texts in zip(children, said)]
     except BaseException:
-        stop(child)
-        child.stdout.close()
-        child.stderr.close()
+        for child in children:
+            stop(child)
+            child.stdout.close()
+            child.stderr.close()
         raise

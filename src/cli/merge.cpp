@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cli/checks.h"
+#include "cli/choice.h"
 #include "cli/commands.h"
 #include "cli/read_limits.h"
 #include "core/error.h"
@@ -58,6 +59,8 @@ void setup_merge(CLI::App& app, Command& chosen) {
                   "Samples per pixel of each render, where the files mislead: subsets by Blender 5 tell the whole's")
       ->check(CLI::PositiveNumber)
       ->type_name("N");
+  add_choice<bool>(*sub, "--compression", o->merge.compress, {{"zip", true}, {"none", false}},
+                   "Of the output: zip, or none for a file that is soon deleted");
   sub->add_flag("-q,--quiet", o->quiet, "Print nothing but errors");
   add_read_limits(*sub, o->merge.limits);
   sub->footer(

@@ -36,6 +36,9 @@ struct NativeBand {
 
 std::size_t size_of(Imf::PixelType type);
 
+/// Of 9, for all that is written: zlib takes a fifth less time than at the usual 4, files grow by 4 %.
+constexpr int kZipLevel = 2;
+
 constexpr int kBandLines = 256;  ///< A multiple of the lines in a chunk, whatever the compression.
 
 /// The bands that cover a part: so many lines each, or a row of tiles, in the order in which the part's line order has

@@ -28,7 +28,7 @@
 namespace polyrecon {
 namespace {
 
-constexpr std::size_t kSumsAtOnce = std::size_t{1} << 21;
+constexpr std::size_t kSumsAtOnce = std::size_t{1} << 18;
 constexpr int kChunkLines = 32;
 
 /// One render and its layers, which are those of the first render in the same order. A layer that only the first render
@@ -201,8 +201,8 @@ void copy_metadata(const Imf::MultiPartInputFile& input, Imf::Header& header) {
 class Merger {
  public:
   /// first_b: index of the first render of half B, the others being half A; 0: even and odd index.
-  Merger(std::vector<Render> renders, double samples, std::size_t first_b)
-      : renders_(std::move(renders)), samples_(samples), first_b_(first_b) {
+  Merger(std::vector<Render> renders, const MergeOptions& options, std::size_t first_b)
+      : renders_(std::move(renders)), samples_(options.samples), compress_(options.compress), first_b_(first_b) {
     choose_window();
     for (std::size_t l = 0; l < first().layers.size(); ++l) sort_layer(l);
     find_weights();
@@ -213,7 +213,8 @@ class Merger {
     const Imf::MultiPartInputFile input(first().file.path.c_str(), 0, false);
     Imf::Header header(input.header(0).displayWindow(), {{window_.x0, window_.y0}, {window_.x1 - 1, window_.y1 - 1}});
     header.setType(Imf::SCANLINEIMAGE);
-    header.compression() = Imf::ZIP_COMPRESSION;
+    header.compression() = compress_ ? Imf::ZIP_COMPRESSION : Imf::NO_COMPRESSION;
+    header.zipCompressionLevel() = kZipLevel;
     copy_metadata(input, header);
     header.channels() = output_channels();
     if (const auto views = stereo_views(); !views.empty()) Imf::addMultiView(header, views);
@@ -234,7 +235,7 @@ class Merger {
     for (const std::string& view_layer : counted_) write_counts(view_layer, weights, band);
   }
 
-  /// Lines merged at once, so that the sums take some 200 MB at most (and one chunk of the tallest usual kind at
+  /// Lines merged at once, so that the sums take some 25 MB (and one chunk of the tallest usual kind at
   /// least).
   int lines_per_band() const {
     std::size_t channels = 0;
@@ -532,6 +533,7 @@ class Merger {
 
   std::vector<Render> renders_;
   double samples_;       ///< Of each render, 0 where the files tell.
+  bool compress_;
   std::size_t first_b_;  ///< First render of half B, 0: even and odd index.
   Rect window_;
   std::vector<std::size_t> merged_, kept_;  ///< Indices of layers.
@@ -548,7 +550,7 @@ class Merger {
 MergeResult merge(const std::vector<std::string>& paths, const std::string& target, const MergeOptions& options) {
   std::vector<std::string> all = paths;
   all.insert(all.end(), options.half_b.begin(), options.half_b.end());
-  Merger merger(open_renders(all, options.limits), options.samples, options.half_b.empty() ? 0 : paths.size());
+  Merger merger(open_renders(all, options.limits), options, options.half_b.empty() ? 0 : paths.size());
   merger.require_memory(options.limits.max_bytes);
   write_single_part(
       target, merger.header(), [&](NativeBand& band) { merger.make(band); }, merger.lines_per_band());

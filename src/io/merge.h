@@ -13,6 +13,7 @@ struct MergeOptions {
   double samples = 0;
   /// Renders of half B; the others are half A then, in place of even and odd index.
   std::vector<std::string> half_b;
+  bool compress = true;  ///< ZIP, or none: larger, several times as fast to write and to read.
   ReadLimits limits;
 };
 
@@ -37,7 +38,7 @@ struct MergeResult {
 /// unbiased. n_k comes from a sample-count pass, else from metadata or options, else all renders count alike. Samples
 /// that are not finite are left out and counted in a note. The sum of n_k is kept in `<view layer>.Sample Count.X`,
 /// other layers come from the first file, bit for bit, as do further ones that only it has. Writes one part of
-/// scanlines with ZIP, merged layers as float; memory is bounded by one band of lines, Error{OutOfMemory} where that
+/// scanlines, merged layers as float; memory is bounded by one band of lines, Error{OutOfMemory} where that
 /// needs more than options.limits.max_bytes. Throws Error{Usage} for fewer than two files or one given twice,
 /// Error{BadInput} naming the first file that does not fit the first one, Error{Missing}, and what write_atomically
 /// throws.

@@ -82,9 +82,10 @@ class Masks(SceneTest):
         self.assertEqual(masks.bounding_box(mask), (11, 7, 17, 13))  # 4 subpixels and one more on each side
         self.assertEqual(masks.subpixel_mask(inside, 0, 0).sum(), 16)
 
-    def test_one_pass_a_count(self):
+    def test_passes_lie_one_in_another_and_go_on_in_the_sequence(self):
         counts = np.array([[0, 4, 4], [0, 0, 1]])
-        self.assertEqual([(p.samples, p.box) for p in masks.plan(counts)], [(1, (2, 1, 3, 2)), (4, (1, 0, 3, 1))])
+        passes = [(p.skip, p.samples, p.box, p.inside.tolist()) for p in masks.plan(counts)]
+        self.assertEqual(passes, [(0, 1, (1, 0, 3, 2), [[True, True], [False, True]]), (1, 3, (1, 0, 3, 1), [[True, True]])])
         self.assertEqual(masks.plan(np.zeros((2, 2))), [])
 
 

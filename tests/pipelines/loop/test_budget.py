@@ -1,14 +1,14 @@
 import unittest
 from pathlib import Path
 
-from pipelines.loop.budget import Budget, Spent, next_slice
+from pipelines.loop.budget import Budget, Spent, next_slice, nothing_left
 from pipelines.loop.errors import DriverError
 from pipelines.loop.frames import frame_path, parse_frames
 
 
-def spent(samples, seconds=10.0, error=0.1, variance=0.08):
+def spent(samples, seconds=10.0, error=0.1, variance=0.08, judging=0.5):
     """Of 10 seconds 8 were rendering; the result takes 2 more."""
-    return Spent(samples, seconds, 0.8 * seconds, samples, 2.0, error, variance)
+    return Spent(samples, seconds, 0.8 * seconds, samples, judging, 2.0, error, variance)
 
 
 class Slices(unittest.TestCase):
@@ -28,6 +28,19 @@ class Slices(unittest.TestCase):
         self.assertAlmostEqual(next_slice(Budget(seconds=20), spent(8.0))[0], 8)
         self.assertAlmostEqual(next_slice(Budget(seconds=15), spent(8.0))[0], 3)
         self.assertEqual(next_slice(Budget(seconds=12), spent(8.0)), (0.0, "the seconds are spent"))
+
+    def test_judging_takes_no_more_than_a_tenth_of_a_round(self):
+        # A sample takes a second: rounds of 20 samples where judging takes 2 seconds.
+        self.assertEqual(next_slice(Budget(seconds=100), spent(8.0, judging=2))[0], 20)
+        self.assertEqual(next_slice(Budget(samples=64), spent(8.0, judging=2))[0], 8)  # not by the clock
+
+    def test_a_round_that_cannot_pay_is_not_judged(self):
+        self.assertEqual(nothing_left(Budget(samples=8), spent(8.0)), "the samples are spent")
+        self.assertEqual(nothing_left(Budget(samples=9), spent(8.0)), "")
+        # 10 seconds are spent and 2 kept: judging (2) and samples (2 at least) need 4 more.
+        self.assertEqual(nothing_left(Budget(seconds=15.9), spent(8.0, judging=2)), "the seconds are spent")
+        self.assertEqual(nothing_left(Budget(seconds=16.1), spent(8.0, judging=2)), "")
+        self.assertEqual(nothing_left(Budget(target=0.2), spent(8.0)), "")
 
     def test_a_target_takes_what_it_needs(self):
         self.assertEqual(next_slice(Budget(target=0.2), spent(8.0))[0], 0)
