@@ -132,7 +132,7 @@ class BlenderRenderer(Renderer):
         part[f"{layer}.{SAMPLE_COUNT}"] = counts
         if time is not None:
             part[f"{layer}.{RENDER_SECONDS}"] = time * counts  # Cycles writes the mean of a sample
-        exr.write(target, part)
+        exr.write(target, part, compression="none")  # read again at once, and by every merge
 
 
 def _said(value):

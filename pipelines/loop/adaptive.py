@@ -25,6 +25,7 @@ from .renderer import RENDER_SECONDS, SAMPLE_COUNT
 HALVES = ("a", "b")
 OTHER = {"a": "b", "b": "a"}
 ROUND_QUALITY = "draft"
+EXTRA_OVER_UNIFORM = 1.5  # seconds of a sample in a masked pass over one in a whole pass, until they are measured
 # Time of the last reconstruction, of all samples, over that of a half at ROUND_QUALITY (docs/performance.md).
 LAST_OVER_ROUND = {"draft": 1.1, "standard": 4.0, "best": 16.0}
 
@@ -142,7 +143,9 @@ class _Loop:
             samples = self.renderer.extra(first, counts, self.folder / name)
         seconds = time.monotonic() - begin
         taken = self.totals[half].add(self.folder / name)
+        cost = self.cost(self.totals[half])
         part = {"file": name, "half": half, "round": round_number, "first": first, "spp": float(taken.mean()), "seconds": seconds}
+        part["worth"] = float((cost * taken).mean() / cost.mean())  # samples of average cost
         self.journal["parts"].append(part)
         self.journal["next"] = max(self.journal["next"], first + samples)
         self.save()
@@ -191,13 +194,13 @@ class _Loop:
 
     def spent(self):
         parts = self.journal["parts"]
-        whole = self.totals["a"] + self.totals["b"]
-        cost = self.cost(whole)
+        extra = [part for part in parts if part["round"] > 0]
+        seconds, worth = (sum(part[key] for part in extra or parts) for key in ("seconds", "worth"))
         return Spent(
             samples=sum(p["spp"] for p in parts),
             seconds=self.seconds(),
-            render_seconds=sum(p["seconds"] for p in parts),
-            worth=float((cost * whole.counts).mean() / cost.mean()),
+            worth=sum(p["worth"] for p in parts),
+            seconds_per_sample=seconds / worth * (1 if extra else EXTRA_OVER_UNIFORM),
             judging=self.judging,
             reserve=self.judging * LAST_OVER_ROUND[self.settings.quality],
         )

@@ -26,14 +26,14 @@ class Budget:
 
 @dataclasses.dataclass
 class Spent:
-    """samples: per pixel. seconds: of everything. render_seconds: of the passes, which brought `worth` samples per pixel
-    (weighted by what they cost). judging: seconds of the last reconstruction of both halves. reserve: seconds that the
-    result still needs. error, variance: estimated mean relative MSE of the result and the part of it that falls as 1/n."""
+    """samples: per pixel. worth: the same in samples of average cost. seconds: of everything. seconds_per_sample: of the next
+    ones, of average cost. judging: seconds of the last reconstruction of both halves. reserve: seconds that the result
+    still needs. error, variance: estimated mean relative MSE of the result and the part of it that falls as 1/n."""
 
     samples: float
     seconds: float
-    render_seconds: float
     worth: float
+    seconds_per_sample: float
     judging: float
     reserve: float
     error: float = math.nan
@@ -58,7 +58,7 @@ def next_slice(budget, spent):
         left, reason = budget.samples - spent.samples, SAMPLES_SPENT
     elif budget.seconds:
         seconds = budget.seconds - spent.seconds - spent.reserve
-        rate = spent.worth / max(spent.render_seconds, 1e-9)
+        rate = 1 / max(spent.seconds_per_sample, 1e-9)
         left, reason = seconds * rate, SECONDS_SPENT
         step = max(step, spent.judging / MOST_JUDGING * rate)
     elif spent.error <= budget.target:

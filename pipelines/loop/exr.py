@@ -44,14 +44,14 @@ def metadata(path):
     return attributes
 
 
-def write(path, channels, attributes=None):
-    """Writes one part of 32-bit floats with ZIP: {name: array (height, width)}. The file appears whole or not at all."""
+def write(path, channels, attributes=None, compression="zip:2"):
+    """Writes one part of 32-bit floats: {name: array (height, width)}. The file appears whole or not at all."""
     names = list(channels)
     pixels = np.stack([np.asarray(channels[name], np.float32) for name in names], axis=-1)
     height, width, count = pixels.shape
     spec = oiio.ImageSpec(width, height, count, "float")
     spec.channelnames = names
-    spec.attribute("compression", "zip:2")
+    spec.attribute("compression", compression)
     spec.attribute("oiio:ColorSpace", "scene_linear")
     for name, value in (attributes or {}).items():
         spec.attribute(name, value)

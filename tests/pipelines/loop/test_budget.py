@@ -7,8 +7,8 @@ from pipelines.loop.frames import frame_path, parse_frames
 
 
 def spent(samples, seconds=10.0, error=0.1, variance=0.08, judging=0.5):
-    """Of 10 seconds 8 were rendering; the result takes 2 more."""
-    return Spent(samples, seconds, 0.8 * seconds, samples, judging, 2.0, error, variance)
+    """10 seconds were spent; a sample takes one, the result 2 more."""
+    return Spent(samples, seconds, samples, 1.0, judging, 2.0, error, variance)
 
 
 class Slices(unittest.TestCase):
