@@ -12,7 +12,7 @@ from .session import BlenderSession
 
 SEQUENCE = 1 << 13  # samples that Cycles lays a pixel's sequence out for; more follow where a frame takes more
 PART_LAYERS = {"Combined", "Denoising Albedo", "Denoising Normal", "Denoising Depth", "Shadow", "Ambient Occlusion", "AO"}
-RENDER_TIME = "Render Time"
+RENDER_TIME = "Render Time"  # of all samples of a pass, in milliseconds of a thread
 OVERHEAD_SECONDS = 0.045  # of a pass, until one was measured
 
 
@@ -88,9 +88,10 @@ class BlenderRenderer(Renderer):
             channels = self._render_piece(first, piece)
             for name, values in channels.items():
                 whole = sums.setdefault(name, np.zeros(counts.shape))
-                whole[y0:y1, x0:x1] += np.where(piece.inside, piece.samples * values, 0)
+                weight = 1 if _is_time(name) else piece.samples
+                whole[y0:y1, x0:x1] += np.where(piece.inside, weight * values, 0)
             taken[y0:y1, x0:x1] += piece.samples * piece.inside
-        means = {name: whole / np.maximum(taken, 1) for name, whole in sums.items()}
+        means = {name: whole if _is_time(name) else whole / np.maximum(taken, 1) for name, whole in sums.items()}
         self._write(target, means, taken)
         return int(taken.max(initial=0))
 
@@ -127,12 +128,16 @@ class BlenderRenderer(Renderer):
 
     def _write(self, target, channels, counts, keep_all=False):
         layer = self.opened["view_layer"]
-        time = channels.get(f"{layer}.{RENDER_TIME}.X")
-        part = {name: values for name, values in channels.items() if (keep_all and RENDER_TIME not in name) or name.split(".")[-2] in PART_LAYERS}
+        time = next((values for name, values in channels.items() if _is_time(name)), None)
+        part = {name: values for name, values in channels.items() if (keep_all and not _is_time(name)) or name.split(".")[-2] in PART_LAYERS}
         part[f"{layer}.{SAMPLE_COUNT}"] = counts
         if time is not None:
-            part[f"{layer}.{RENDER_SECONDS}"] = time * counts  # Cycles writes the mean of a sample
+            part[f"{layer}.{RENDER_SECONDS}"] = 1e-3 * time
         exr.write(target, part, compression="none")  # read again at once, and by every merge
+
+
+def _is_time(name):
+    return name.split(".")[-2] == RENDER_TIME
 
 
 def _said(value):

@@ -130,11 +130,11 @@ class _Loop:
             if not self.journal.has(plan["round"], half):
                 self.tell(f"round {plan['round']}, half {half.upper()}", round=plan["round"])
                 counts = next(iter(exr.read(self.file(plan["round"], f"counts_{half}")).values())).astype(int)
-                self.render_part(plan["round"], half, 0, plan["first"][half], counts, 0)
+                self.render_part(plan["round"], half, 0, plan["first"][half], counts, 0, plan["worth"] / 2)
         self.journal["plan"] = None
         self.journal.save()
 
-    def render_part(self, round_number, half, index, first, counts, samples):
+    def render_part(self, round_number, half, index, first, counts, samples, worth=None):
         name = f"part_{round_number}{half}{index}.exr"
         begin = time.monotonic()
         if counts is None:
@@ -143,9 +143,8 @@ class _Loop:
             samples = self.renderer.extra(first, counts, self.folder / name)
         seconds = time.monotonic() - begin
         taken = self.totals[half].add(self.folder / name)
-        cost = self.cost(self.totals[half])
         part = {"file": name, "half": half, "round": round_number, "first": first, "spp": float(taken.mean()), "seconds": seconds}
-        part["worth"] = float((cost * taken).mean() / cost.mean())  # samples of average cost
+        part["worth"] = worth or part["spp"]  # samples of average cost
         self.journal["parts"].append(part)
         self.journal["next"] = max(self.journal["next"], first + samples)
         self.save()
@@ -173,7 +172,7 @@ class _Loop:
         entry["extra"] = samples
         self.journal["rounds"].append(entry)
         if samples:
-            self.journal["plan"] = self.place_in_sequence(number + 1, counts)
+            self.journal["plan"] = {**self.place_in_sequence(number + 1, counts), "worth": samples}
         self.save()
         return self.journal["plan"]
 

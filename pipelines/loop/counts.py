@@ -46,9 +46,11 @@ def gaussian_blur(image, sigma):
 
 
 def cost_of_samples(seconds, counts):
-    """Seconds that a sample of each pixel costs, relative to the frame's mean, from what was measured: noisy, so smoothed
-    and kept within a factor of 16 of the mean. seconds, counts: sums over passes; None or nothing measured: 1 everywhere."""
+    """Seconds that a sample of each pixel costs, relative to the frame's mean, from what was measured: noisy (a thread that
+    had to wait in a pixel counts there), so smoothed and kept within a factor of 16 of the mean, before and after.
+    seconds, counts: sums over passes; None or nothing measured: 1 everywhere."""
     if seconds is None or not np.isfinite(seconds).all() or seconds.sum() <= 0 or counts.sum() <= 0:
         return np.ones(counts.shape)
+    seconds = np.minimum(seconds, 16 * counts * seconds.sum() / counts.sum())
     cost = gaussian_blur(seconds, 2 * COHERENCE) / np.maximum(gaussian_blur(counts, 2 * COHERENCE), 1e-9)
     return np.clip(cost / cost.mean(), 1 / 16, 16)

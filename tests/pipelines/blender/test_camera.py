@@ -7,7 +7,7 @@ import numpy as np
 from pipelines.blender import masks
 from pipelines.blender.renderer import BlenderRenderer
 from pipelines.loop import exr
-from pipelines.loop.renderer import SAMPLE_COUNT
+from pipelines.loop.renderer import RENDER_SECONDS, SAMPLE_COUNT
 from tests.pipelines.blender.support import SceneTest
 
 SAMPLES = 16
@@ -66,6 +66,10 @@ class Masks(SceneTest):
         self.assertEqual(renderer.extra(8, counts, self.folder / "extra.exr"), 8)
         part = exr.read(self.folder / "extra.exr")
         np.testing.assert_array_equal(part[f"ViewLayer.{SAMPLE_COUNT}"], counts)
+        # A sample takes as long whatever the count of its pixel, whether it was rendered in one pass or in several.
+        seconds = part[f"ViewLayer.{RENDER_SECONDS}"]
+        a_sample = [np.median(seconds[counts == n] / n) for n in (1, 8)]
+        self.assertLess(max(a_sample) / min(a_sample), 2)
         for samples in (1, 2, 8):
             renderer.uniform(8, samples, self.folder / "whole.exr")
             whole = exr.read(self.folder / "whole.exr")
