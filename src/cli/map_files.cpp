@@ -60,7 +60,8 @@ void write_error_map(const std::string& target, const ErrorMap& map, const Image
                                    {"mse.G", plane_of(map.mse, 1)},
                                    {"mse.B", plane_of(map.mse, 2)},
                                    {"relmse.Y", map.relative_mse},
-                                   {"relvariance.Y", map.relative_variance}};
+                                   {"relvariance.Y", map.relative_variance},
+                                   {"relnoise.Y", map.relative_noise}};
   if (!sample_count.empty()) channels.push_back({"samples.Y", sample_count});
   write_maps(target, channels, windows.data, windows.display);
 }
@@ -75,6 +76,7 @@ ErrorMapFile read_error_map(const std::string& path) {
   result.map.mse = read_channels(file, 0, {"mse.R", "mse.G", "mse.B"});
   result.map.relative_mse = read_channels(file, 0, {"relmse.Y"});
   result.map.relative_variance = read_channels(file, 0, {"relvariance.Y"});
+  if (has_channel(part, "relnoise.Y")) result.map.relative_noise = read_channels(file, 0, {"relnoise.Y"});
   if (has_channel(part, "samples.Y")) result.sample_count = read_channels(file, 0, {"samples.Y"});
   result.windows = {part.data_window, part.display_window};
   return result;

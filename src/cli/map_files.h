@@ -20,11 +20,11 @@ struct ErrorMapFile {
   MapWindows windows;
 };
 
-/// Channels mse.R/G/B, relmse.Y, relvariance.Y and, where known, samples.Y.
+/// Channels mse.R/G/B, relmse.Y, relvariance.Y, relnoise.Y and, where known, samples.Y.
 void write_error_map(const std::string& target, const ErrorMap& map, const Image& sample_count,
                      const MapWindows& windows);
 
-/// Throws Error{Missing} where the file or one of its channels is not there, Error{BadInput} where it is damaged.
+/// Throws Error{Missing} where the file or one of its channels but the last two is not there, Error{BadInput} where it is damaged.
 ErrorMapFile read_error_map(const std::string& path);
 
 /// Channel order.Y.

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
 
 #include "core/parallel.h"
 
@@ -12,6 +14,11 @@ constexpr double relative_floor = 0.01;  // of relMSE, radiance squared
 
 Real mean_half(const Candidate& result, int x, int y, int c) {
   return Real(0.5) * (result.half[0].at(x, y, c) + result.half[1].at(x, y, c));
+}
+
+double noise_of_mean(const HalfPair& pair, const Image& variance, int x, int y, int c) {
+  const double measured = variance.at(x, y, c);
+  return measured >= 0 && std::isfinite(measured) ? measured : 0.5 * static_cast<double>(pair.variance.at(x, y, c));
 }
 
 double mean_of(const Image& image) {
@@ -70,21 +77,24 @@ ErrorMap make_error_map(const HalfPair& pair, const Image& variance, const Candi
   ErrorMap map;
   map.mse = Image(pair.width(), pair.height(), 3);
   map.relative_mse = Image(pair.width(), pair.height(), 1);
-  map.relative_variance = map.relative_mse;
+  map.relative_variance = map.relative_noise = map.relative_mse;
   const auto [measured, claimed] = variances(result);
   if (claimed > 0) map.calibration = measured / claimed;
+  constexpr double most = std::numeric_limits<Real>::max();
   for (int y = 0; y < pair.height(); ++y)
     for (int x = 0; x < pair.width(); ++x) {
-      double error = 0, random = 0;
+      double error = 0, random = 0, noise = 0;
       for (int c = 0; c < 3; ++c) {
         const double f = mean_half(result, x, y, c), windows = result.variance.at(x, y, c);
         const double bias = std::max(static_cast<double>(result.error.at(x, y, c)) - windows, 0.0);
         map.mse.at(x, y, c) = static_cast<Real>(bias + map.calibration * windows);
         error += (bias + map.calibration * windows) / (f * f + relative_floor) / 3;
         random += map.calibration * windows / (f * f + relative_floor) / 3;
+        noise += noise_of_mean(pair, variance, x, y, c) / (f * f + relative_floor) / 3;
       }
       map.relative_mse.at(x, y, 0) = static_cast<Real>(error);
       map.relative_variance.at(x, y, 0) = static_cast<Real>(random);
+      map.relative_noise.at(x, y, 0) = static_cast<Real>(std::min(noise, most));
     }
   map.mean_relative_mse = mean_of(map.relative_mse);
   map.cross_validated = cross_validated_error(pair, variance, result);

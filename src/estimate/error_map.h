@@ -12,6 +12,8 @@ struct ErrorMap {
   Image relative_mse;       ///< 1 channel: mean over RGB of mse / (yhat^2 + 0.01).
   Image relative_variance;  ///< 1 channel: the part of relative_mse that falls as 1/n with n more samples; the rest is
                             ///< bias.
+  Image relative_noise;  ///< 1 channel: mean over RGB of the noise variance of the input's mean / (yhat^2 + 0.01); empty
+                         ///< where an error map from elsewhere does not tell.
   double mean_relative_mse = 0;  ///< Of the whole image.
   double cross_validated = 0;    ///< The same by cross-validation: see cross_validated_error.
   double calibration = 1;        ///< Measured variance of the blend over the variance that its windows claim.
@@ -26,7 +28,8 @@ double cross_validated_error(const HalfPair& pair, const Image& variance, const 
 
 /// The error map of a result: the windows' bias^2 (5), and their variance (6) scaled by one factor. A window does not
 /// know that its neighbours average its noise away; (f_A - f_B)^2 / 4 does, so the factor makes the two agree over the
-/// image. variance: of the mean's noise as it was measured (HalfPair's has a floor).
+/// image. variance: of the mean's noise as it was measured (HalfPair's has a floor); where it is
+/// negative or no number, HalfPair's stands in.
 ErrorMap make_error_map(const HalfPair& pair, const Image& variance, const Candidate& result);
 
 }  // namespace polyrecon

@@ -107,19 +107,20 @@ class Window {
   Plane weight_;
 };
 
-/// The two parts of the relative error, every value finite and not negative.
+/// The two parts of the relative error and the input's noise, every value finite and not negative.
 struct Parts {
-  Plane variance, bias2;
+  Plane variance, bias2, noise;
   std::size_t unknown = 0;
 };
 
 Parts split_error(const ErrorMap& error) {
   const Image& mse = error.relative_mse;
   const Image& variance = error.relative_variance;
-  Parts parts{Plane(mse.width(), mse.height()), Plane(mse.width(), mse.height())};
+  const Plane zeros(mse.width(), mse.height());
+  Parts parts{zeros, zeros, zeros};
   const std::size_t count = mse.pixels();
   std::vector<std::size_t> unknown;
-  double variance_sum = 0, bias2_sum = 0;
+  double variance_sum = 0, bias2_sum = 0, noise_sum = 0;
   for (std::size_t i = 0; i < count; ++i) {
     const double m = mse.plane(0)[i], v = variance.plane(0)[i];
     if (!std::isfinite(m) || !std::isfinite(v)) {
@@ -128,6 +129,9 @@ Parts split_error(const ErrorMap& error) {
     }
     parts.variance.v[i] = std::max(v, 0.0);
     parts.bias2.v[i] = std::max(m - parts.variance.v[i], 0.0);
+    if (!error.relative_noise.empty())
+      if (const double u = error.relative_noise.plane(0)[i]; std::isfinite(u)) parts.noise.v[i] = std::max(u, 0.0);
+    noise_sum += parts.noise.v[i];
     variance_sum += parts.variance.v[i];
     bias2_sum += parts.bias2.v[i];
   }
@@ -135,6 +139,7 @@ Parts split_error(const ErrorMap& error) {
   for (const std::size_t i : unknown) {
     parts.variance.v[i] = known > 0 ? variance_sum / known : 1.0;
     parts.bias2.v[i] = known > 0 ? bias2_sum / known : 0.0;
+    parts.noise.v[i] = known > 0 ? noise_sum / known : 0.0;
   }
   parts.unknown = unknown.size();
   return parts;
@@ -213,10 +218,24 @@ double lowest_level(Levels r, Reached reached, Progress& progress) {
   return r.hi;
 }
 
+/// V_i: what pixel i's noise does to the windows around it.
+Plane weight_of_samples(const Parts& parts, const Window& window, Progress& progress) {
+  Plane V = window.spread(parts.variance, progress);
+  const double total = sum_pixels(V, [&](std::size_t i) { return V.v[i]; });
+  Plane both = window.spread(parts.noise, progress);
+  for (std::size_t i = 0; i < both.v.size(); ++i) both.v[i] = std::sqrt(both.v[i]) * std::sqrt(V.v[i]);
+  const double sum = sum_pixels(both, [&](std::size_t i) { return both.v[i]; });
+  if (!(sum > 0)) return V;  // the noise is unknown, or zero where the error is not
+  for (double& value : both.v) value *= total / sum;
+  return both;
+}
+
 void check_shapes(const ErrorMap& error, const Image& sample_count, const Image& cost) {
   const Image& mse = error.relative_mse;
   if (mse.empty() || mse.channels() != 1 || !mse.same_shape(error.relative_variance))
     throw Error(ExitCode::BadInput, "the error map needs a relative MSE and a relative variance of one size");
+  if (!error.relative_noise.empty() && !error.relative_noise.same_shape(mse))
+    throw Error(ExitCode::BadInput, "the noise has another size than the error map");
   if (!sample_count.empty() && !sample_count.same_shape(mse))
     throw Error(ExitCode::BadInput, "the sample counts have another size than the error map");
   if (!cost.empty() && !cost.same_shape(mse))
@@ -266,7 +285,7 @@ SampleMap make_sample_map(const ErrorMap& error, const Image& sample_count, cons
 
   const Window window(width, height, params.radius, progress);
   Filling f{Plane(width, height), counts_or(sample_count, params.assumed_samples, width, height),
-            relative_cost(cost, window, width, height, progress), window.spread(parts.variance, progress),
+            relative_cost(cost, window, width, height, progress), weight_of_samples(parts, window, progress),
             params.max_samples};
   for (std::size_t i = 0; i < f.s.v.size(); ++i) f.s.v[i] = std::sqrt(f.V.v[i] * f.n.v[i] / f.c.v[i]);
 

@@ -14,7 +14,7 @@ struct SampleMapParams {
   double target = 0;           ///< Mean relative MSE to reach with as few samples (or as little cost) as possible.
   double max_samples = 1024;   ///< Most extra samples of one pixel.
   double assumed_samples = 8;  ///< Samples per pixel already taken, where sample_count is empty.
-  int radius = 3;  ///< Of the Gaussian K that a sample's help is spread with; pixels, standard deviation radius / 2.
+  int radius = 7;  ///< Of the Gaussian K that a sample's help is spread with; pixels, standard deviation radius / 2.
 };
 
 /// Throws Error{Usage} naming the first value out of its range.
@@ -37,7 +37,9 @@ struct SampleMap {
 ///     e_j = bias_j^2 + v_j sum_i K_ij r_i,    sum_i K_ij = 1,
 ///
 /// v_j = relative_variance, bias_j^2 = relative_mse - v_j: a sample helps every pixel of its window. The sum over j is
-/// separable, V_i = sum_j K_ij v_j, and its minimum under sum_i c_i dn_i = C is the water-filling
+/// separable, V_i = sum_j K_ij v_j. After few samples v is as noisy as they are; so is the noise u_j = relative_noise of
+/// the input, but its errors are others: where it is known, V_i is in proportion to sqrt(sum_j K_ij v_j sum_j K_ij u_j),
+/// with the same sum over the image (docs/adaptive.md has what this is worth). The minimum under sum_i c_i dn_i = C is the water-filling
 ///
 ///     dn_i = clamp(sqrt(V_i n_i / (lambda c_i)) - n_i, 0, max_samples),
 ///

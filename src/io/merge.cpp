@@ -162,21 +162,26 @@ std::string output_name(const Render& first, const Layer& layer, const std::stri
   return name + "." + suffix;
 }
 
-/// Weighted mean and spread of a stream of samples (West's form of Welford's recurrence).
+/// Weighted mean and spread of a stream of samples: sums of w, w^2, w^2 d and w^2 d^2, d being the distance to the first
+/// sample, so that little cancels.
 struct Accumulator {
-  double weight = 0, mean = 0, spread = 0;
+  double weight = 0, mean = 0, origin = 0, squares = 0, first = 0, second = 0;
   int renders = 0;
 
   void add(double x, double w) {
-    ++renders;
+    if (renders++ == 0) origin = x;
     weight += w;
-    const double delta = x - mean;
-    mean += delta * w / weight;
-    spread += w * delta * (x - mean);
+    mean += (x - mean) * w / weight;
+    const double d = x - origin;
+    squares += w * w;
+    first += w * w * d;
+    second += w * w * d * d;
   }
+  bool spreads() const { return second > 0; }
   double variance_of_mean() const {
     if (renders < 2) return std::numeric_limits<double>::quiet_NaN();
-    return spread / ((renders - 1) * weight);
+    const double m = mean - origin;
+    return std::max(0.0, second - 2 * m * first + m * m * squares) / (weight * weight - squares);
   }
 };
 
@@ -458,7 +463,7 @@ class Merger {
     NativeChannel& half_b = *band.find(output_name(first(), layer, name, " B"));
     for (std::size_t i = 0; i < sums.all.size(); ++i) {
       const Moments whole = moments(sums, i);
-      any_spread_ = any_spread_ || sums.all[i].spread > 0;
+      any_spread_ = any_spread_ || sums.all[i].spreads();
       put(mean, i, whole.mean);
       put(variance, i, whole.variance);
       put(half_a, i, sums.half_a[i].renders > 0 ? sums.half_a[i].mean : whole.mean);

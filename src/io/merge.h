@@ -30,7 +30,7 @@ struct MergeResult {
 /// Joins K independent renders x_k of one frame (subsets of one sequence, or different seeds) with n_k samples each. Of
 /// every noisy layer, per pixel and channel:
 ///     mean        m = sum n_k x_k / sum n_k
-///     ` Variance` of m: sum n_k (x_k - m)^2 / ((K - 1) sum n_k), NaN where only one render has samples
+///     ` Variance` of m: sum n_k^2 (x_k - m)^2 / ((sum n_k)^2 - sum n_k^2), NaN where only one render has samples
 ///     ` A`, ` B`  the same mean over the renders with even and odd index, m where a half has no samples
 /// With options.half_b the picture is the plain mean of its halves, m = (A + B) / 2, whatever their counts, and its
 /// variance (Var A + Var B) / 4, NaN where a half has samples of only one render. This is the merge of adaptive renders

@@ -91,13 +91,15 @@ TEST(ErrorMap, IsBiasOfTheWindowsAndVarianceOfTheHalves) {
   double sum = 0;
   for (int y = 0; y < 20; ++y)
     for (int x = 0; x < 24; ++x) {
-      double relative = 0;
+      double relative = 0, noise = 0;
       for (int c = 0; c < 3; ++c) {
+        noise += static_cast<double>(pair.variance.at(x, y, c)) / 2 / floor(x, y, c) / 3;
         const double mse = 0.1 + map.calibration * 0.1;
         EXPECT_NEAR(static_cast<double>(map.mse.at(x, y, c)), mse, 1e-6);
         relative += mse / floor(x, y, c) / 3;
       }
       EXPECT_NEAR(static_cast<double>(map.relative_mse.at(x, y, 0)), relative, 1e-6 * relative);
+      EXPECT_NEAR(static_cast<double>(map.relative_noise.at(x, y, 0)), noise, 1e-6 * noise);
       sum += relative;
     }
   EXPECT_NEAR(map.mean_relative_mse, sum / (24 * 20), 1e-6 * map.mean_relative_mse);
@@ -108,7 +110,7 @@ TEST(ErrorMap, IsFiniteAndNotNegative) {
   Candidate result = candidate_of(pair.color[0], pair.color[1], pair.variance);
   result.error.at(3, 3, 0) = 0;  // less than its variance
   const ErrorMap map = make_error_map(pair, times_half(pair.variance), result);
-  for (const Image* image : {&map.mse, &map.relative_mse, &map.relative_variance}) {
+  for (const Image* image : {&map.mse, &map.relative_mse, &map.relative_variance, &map.relative_noise}) {
     EXPECT_TRUE(test::all_finite(*image));
     for (int c = 0; c < image->channels(); ++c)
       for (std::size_t i = 0; i < image->pixels(); ++i) EXPECT_GE(image->plane(c)[i], Real(0));

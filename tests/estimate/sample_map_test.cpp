@@ -15,7 +15,9 @@ namespace {
 
 /// An error map of the given variances and squared biases.
 ErrorMap error_map(int width, int height, const std::vector<double>& variance, double bias2 = 0) {
-  ErrorMap map{Image(width, height, 3), Image(width, height, 1), Image(width, height, 1)};
+  ErrorMap map;
+  map.mse = Image(width, height, 3);
+  map.relative_mse = map.relative_variance = Image(width, height, 1);
   for (std::size_t i = 0; i < variance.size(); ++i) {
     map.relative_variance.plane(0)[i] = static_cast<Real>(variance[i]);
     map.relative_mse.plane(0)[i] = static_cast<Real>(variance[i] + bias2);
@@ -135,6 +137,20 @@ TEST(SampleMap, CountsSecondsWhereTheCostIsKnown) {
   EXPECT_GT(map.samples.at(0, 0, 0), map.samples.at(1, 0, 0));
 }
 
+TEST(SampleMap, GoesByTheGeometricMeanOfErrorAndNoise) {
+  // Radius 0, n = 4. sqrt(v u) = (2, 2) whatever v alone says; where the noise is unknown, v decides.
+  ErrorMap error = error_map(2, 1, {4, 1});
+  error.relative_noise = Image(2, 1, 1);
+  error.relative_noise.at(0, 0, 0) = 1;
+  error.relative_noise.at(1, 0, 0) = 4;
+  const SampleMap both = run(error, budget_of(5, 0), filled(2, 1, 4));
+  EXPECT_NEAR(both.samples.at(0, 0, 0), 5, 1e-5);
+  EXPECT_NEAR(both.samples.at(1, 0, 0), 5, 1e-5);
+  EXPECT_NEAR(both.error_before, 2.5, 1e-6);  // the sum of v is kept
+  error.relative_noise = Image(2, 1, 1);      // zero: nothing to go by
+  EXPECT_NEAR(run(error, budget_of(5, 0), filled(2, 1, 4)).samples.at(0, 0, 0), 8, 1e-5);
+}
+
 TEST(SampleMap, SpendsTheBudgetToOneInAMillion) {
   const ErrorMap error = random_map(61, 47, 3);
   for (const double budget : {0.01, 1.0, 32.0, 500.0}) {
@@ -151,6 +167,7 @@ TEST(SampleMap, ReachesTheTargetWithNoMoreThanItNeeds) {
   const ErrorMap error = random_map(40, 30, 5);
   SampleMapParams params;
   params.max_samples = 1e5;
+  params.radius = budget_of(1).radius;
   params.target = run(error, budget_of(1)).error_before / 3;
   const SampleMap map = run(error, params);
   EXPECT_TRUE(map.limit_met);

@@ -126,6 +126,16 @@ TEST(MergeRenders, MetadataWeighTheRenders) {
   EXPECT_EQ(find_attribute(describe_file(out).parts[0], "cycles.V.samples")->value, "16");
 }
 
+TEST(MergeRenders, LongRendersTellMoreOfTheVarianceThanShortOnes) {
+  // 1, 1 and 2 samples of 0, 4, 2: mean 2; (1 * 4 + 1 * 4 + 4 * 0) / (16 - 6) = 0.8, while all renders alike would say
+  // (1 * 4 + 1 * 4 + 2 * 0) / (2 * 4) = 1.
+  const TemporaryFolder folder;
+  const std::string out = folder / "out.exr";
+  merge(write_all(folder, {render(0, "1"), render(4, "1"), render(2, "2")}), out);
+  EXPECT_THAT(stored_floats(out, 0, "V.Combined.R"), Each(2.f));
+  EXPECT_THAT(stored_floats(out, 0, "V.Combined Variance.R"), Each(::testing::FloatEq(0.8f)));
+}
+
 TEST(MergeRenders, SamplesGivenByHandReplaceTheMetadata) {
   // Blender 5 writes 16 into each of 4 subsets of 4 samples, and a fraction of 1 of them into every pixel.
   const TemporaryFolder folder;
