@@ -17,7 +17,7 @@ import numpy as np
 
 from . import exr
 from .budget import Budget, Spent, next_slice, nothing_left
-from .counts import cost_of_samples, quantise
+from .counts import cost_of_samples, quantise, weight_of_samples
 from .errors import DriverError, ExitCode
 from .journal import Journal
 from .renderer import RENDER_SECONDS, SAMPLE_COUNT
@@ -144,7 +144,8 @@ class _Loop:
         seconds = time.monotonic() - begin
         taken = self.totals[half].add(self.folder / name)
         part = {"file": name, "half": half, "round": round_number, "first": first, "spp": float(taken.mean()), "seconds": seconds}
-        part["worth"] = worth or part["spp"]  # samples of average cost
+        part["masked"] = counts is not None and int(counts.min()) < int(counts.max())
+        part["worth"] = worth if part["masked"] else part["spp"]  # samples of average cost
         self.journal["parts"].append(part)
         self.journal["next"] = max(self.journal["next"], first + samples)
         self.save()
@@ -193,13 +194,13 @@ class _Loop:
 
     def spent(self):
         parts = self.journal["parts"]
-        extra = [part for part in parts if part["round"] > 0]
-        seconds, worth = (sum(part[key] for part in extra or parts) for key in ("seconds", "worth"))
+        whole = [part for part in parts if not part["masked"]]
+        seconds, worth = (sum(part[key] for part in whole) for key in ("seconds", "worth"))
         return Spent(
             samples=sum(p["spp"] for p in parts),
             seconds=self.seconds(),
             worth=sum(p["worth"] for p in parts),
-            seconds_per_sample=seconds / worth * (1 if extra else EXTRA_OVER_UNIFORM),
+            seconds_per_sample=seconds / worth * self.extra_over_uniform(),
             judging=self.judging,
             reserve=self.judging * LAST_OVER_ROUND[self.settings.quality],
         )
@@ -230,7 +231,32 @@ class _Loop:
         counts = {half: quantise(exr.read(map_file)["samples.Y"], costs[half]) for half, (_, map_file) in files.items()}
         for file in itertools.chain(*files.values()):
             file.unlink()
-        return counts
+        return counts if self.map_pays(number, counts, samples) else {half: self.even_counts(samples) for half in HALVES}
+
+    def map_pays(self, number, counts, samples):
+        """Whether the counts lower the error by more than as many seconds of uniform samples would. Each half's counts are
+        tried on its own error map, which they were not made from: the noise of a map promises no gain that way."""
+        left = {"map": 0.0, "even": 0.0}
+        for half in HALVES:
+            error = exr.read(self.file(number, f"error_{half}"))
+            weight = weight_of_samples(error["relvariance.Y"], error["relnoise.Y"])
+            taken = np.maximum(self.totals[half].counts, 1)
+            for way, extra in (("map", counts[half]), ("even", self.even_counts(samples))):
+                left[way] += float((weight * taken / (taken + extra)).sum())
+        return left["map"] <= left["even"]
+
+    def even_counts(self, samples):
+        """The counts that uniform samples would have for the seconds of a round's slice."""
+        each = samples / 2 * (1 if self.settings.budget.samples else self.extra_over_uniform())
+        return np.full(self.totals["a"].counts.shape, max(1, int(each)))
+
+    def extra_over_uniform(self):
+        """What a sample (of average cost) of a masked pass takes, over one of a whole pass."""
+        seconds = {masked: [p for p in self.journal["parts"] if p["masked"] is masked] for masked in (False, True)}
+        if not seconds[True]:
+            return EXTRA_OVER_UNIFORM
+        masked, whole = (sum(p["seconds"] for p in parts) / sum(p["worth"] for p in parts) for parts in (seconds[True], seconds[False]))
+        return max(1.0, masked / whole)
 
     def place_in_sequence(self, number, counts):
         """Each half's round begins at a multiple of its largest count, so that every count is a whole block of the

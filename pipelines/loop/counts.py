@@ -3,6 +3,7 @@
 import numpy as np
 
 MOST = 1 << 12  # samples of one pixel in one pass
+WINDOW = 3.5  # pixels, standard deviation: how far a sample helps
 COHERENCE = 2.0  # pixels, standard deviation of the blur
 
 
@@ -43,6 +44,13 @@ def gaussian_blur(image, sigma):
         length = image.shape[axis]
         image = sum(k * np.take(padded, range(i, i + length), axis) for i, k in enumerate(kernel))
     return image
+
+
+def weight_of_samples(variance, noise):
+    """What the noise of each pixel does to the result, in any unit: the geometric mean that sample maps go by
+    (estimate/sample_map.h), of a result's relative variance and its input's relative noise."""
+    spread = [gaussian_blur(np.maximum(np.nan_to_num(values.astype(float)), 0), WINDOW) for values in (variance, noise)]
+    return np.sqrt(spread[0] * spread[1])
 
 
 def cost_of_samples(seconds, counts):

@@ -29,8 +29,10 @@ def write(result, settings, polyrecon):
     """Writes report.html into the folder of passes; returns its path. One page, pictures inside, nothing loaded."""
     environment = jinja2.Environment(autoescape=True, trim_blocks=True, lstrip_blocks=True, undefined=jinja2.StrictUndefined)
     with tempfile.TemporaryDirectory() as folder:
-        rounds = [_round(entry, settings.passes, polyrecon, pathlib.Path(folder)) for entry in result.journal["rounds"]]
-        final = _picture(polyrecon, [result.merged, settings.output, result.error_map], pathlib.Path(folder))
+        entries = result.journal["rounds"]
+        files = [_files_of(entry["round"], settings.passes) for entry in entries] + [[result.merged, settings.output, result.error_map]]
+        *pictures, final = _pictures(polyrecon, files, pathlib.Path(folder))
+    rounds = [{**entry, "picture": picture} for entry, picture in zip(entries, pictures)]
     page = environment.from_string(TEMPLATE.read_text(encoding="utf-8")).render(
         result=result, settings=settings, rounds=rounds, final=final, curve=_curve(result), size=CURVE
     )
@@ -44,17 +46,19 @@ def write(result, settings, polyrecon):
     return path
 
 
-def _round(entry, passes, polyrecon, folder):
-    """A round's line with its pictures: input, result, error, and the samples that followed."""
-    place = passes / f"round_{entry['round']}"
-    following = passes / f"round_{entry['round'] + 1}" / "samples.exr"
-    files = [place / "noisy.exr", place / "clean.exr", place / "error.exr", *([following] if following.exists() else [])]
-    return {**entry, "picture": _picture(polyrecon, files, folder)}
+def _files_of(number, passes):
+    """What a round knew, and the samples that followed."""
+    place, following = passes / f"round_{number}", passes / f"round_{number + 1}" / "samples.exr"
+    return [place / "noisy.exr", place / "clean.exr", place / "error.exr", *([following] if following.exists() else [])]
 
 
-def _picture(polyrecon, files, folder):
-    polyrecon.run("preview", *files, "-o", folder / "look.png")
-    return base64.b64encode((folder / "look.png").read_bytes()).decode()
+def _pictures(polyrecon, several, folder):
+    """A PNG in base64 of each list of files; as many at a time as there are processors."""
+    targets = [folder / f"{number}.png" for number in range(len(several))]
+    words = [[*files, "-o", target] for files, target in zip(several, targets)]
+    for begin in range(0, len(words), step := os.cpu_count() or 1):
+        polyrecon.run_side_by_side("preview", words[begin : begin + step])
+    return [base64.b64encode(target.read_bytes()).decode() for target in targets]
 
 
 def _curve(result):

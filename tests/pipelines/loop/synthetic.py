@@ -54,9 +54,11 @@ class SyntheticRenderer(Renderer):
         return int(counts.max())
 
 
-def loop(folder, budget, resume=False, seed=1, quality="draft", renderer=None, **size):
+def loop(folder, budget, resume=False, seed=1, quality="draft", renderer=None, max_rounds=8, **size):
     folder = pathlib.Path(folder)
-    settings = adaptive.Settings(folder / "out.exr", folder / "passes", budget, resume=resume, quality=quality)
+    settings = adaptive.Settings(
+        folder / "out.exr", folder / "passes", budget, resume=resume, quality=quality, max_rounds=max_rounds
+    )
     renderer = renderer or SyntheticRenderer(seed=seed, **size)
     return renderer, adaptive.run(renderer, Polyrecon(), settings, Progress("none"))
 
