@@ -100,6 +100,8 @@ class BlenderRenderer(Renderer):
             prior.add(merged, self.opened["view_layer"], self.session)
 
     def _render_piece(self, first, piece):
+        if piece.inside.shape == self.shape and piece.inside.all():
+            return self._render(first=first + piece.skip, samples=piece.samples)[0]
         job = {"first": first + piece.skip, "samples": piece.samples, "crop": piece.box}
         if not self.masked:
             channels, seconds = self._render(**job)

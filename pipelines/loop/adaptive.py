@@ -25,6 +25,8 @@ from .renderer import RENDER_SECONDS, SAMPLE_COUNT
 HALVES = ("a", "b")
 OTHER = {"a": "b", "b": "a"}
 ROUND_QUALITY = "draft"
+EVEN_PARTS = 4  # of a half in an even round: what they differ by tells the variance
+EVEN_STEPS = 3  # slices that an even round takes at once: it is not as soon that another map pays
 EXTRA_OVER_UNIFORM = 1.5  # seconds of a sample in a masked pass over one in a whole pass, until they are measured
 # Time of the last reconstruction, of all samples, over that of a half at ROUND_QUALITY (docs/performance.md).
 LAST_OVER_ROUND = {"draft": 1.1, "standard": 4.0, "best": 16.0}
@@ -126,11 +128,12 @@ class _Loop:
         self.journal["next"] = max(self.journal["next"], self.settings.first_pass)
 
     def render_round(self, plan):
-        for half in HALVES:
-            if not self.journal.has(plan["round"], half):
+        for half, index in itertools.product(HALVES, range(plan["parts"])):
+            if not self.journal.has(plan["round"], half, index):
                 self.tell(f"round {plan['round']}, half {half.upper()}", round=plan["round"])
-                counts = next(iter(exr.read(self.file(plan["round"], f"counts_{half}")).values())).astype(int)
-                self.render_part(plan["round"], half, 0, plan["first"][half], counts, 0, plan["worth"] / 2)
+                counts = next(iter(exr.read(self.file(plan["round"], f"counts_{half}")).values())).astype(int) // plan["parts"]
+                first = plan["first"][half] + index * int(counts.max())
+                self.render_part(plan["round"], half, index, first, counts, 0, plan["worth"] / 2)
         self.journal["plan"] = None
         self.journal.save()
 
@@ -166,6 +169,9 @@ class _Loop:
         if samples and number >= self.settings.max_rounds:
             samples, self.why_ended = 0.0, f"{number} rounds are done (--max-rounds)"
         counts = self.counts_for(number, samples) if samples else {}
+        if samples and not counts:
+            samples, _ = next_slice(self.settings.budget, spent, EVEN_STEPS)
+            counts = {half: self.even_counts(samples) for half in HALVES}
         if samples and not any(c.any() for c in counts.values()):
             self.why_ended = "no error is left that more samples could lower"
             samples = 0.0
@@ -220,7 +226,8 @@ class _Loop:
         return {"error": float(np.nanmean(error)), "variance": float(np.nanmean(variance))}
 
     def counts_for(self, number, samples):
-        """Counts of each half's next samples, from the other half's error map and costs. Half of the slice goes to each."""
+        """Counts of each half's next samples, from the other half's error map and costs, half of the slice for each; none
+        where they would not pay."""
         costs = {half: self.cost(self.totals[OTHER[half]]) for half in HALVES}
         files = {half: [self.file(number, f"{kind}_{half}") for kind in ("cost", "map")] for half in HALVES}
         for half, (cost_file, _) in files.items():
@@ -231,7 +238,7 @@ class _Loop:
         counts = {half: quantise(exr.read(map_file)["samples.Y"], costs[half]) for half, (_, map_file) in files.items()}
         for file in itertools.chain(*files.values()):
             file.unlink()
-        return counts if self.map_pays(number, counts, samples) else {half: self.even_counts(samples) for half in HALVES}
+        return counts if self.map_pays(number, counts, samples) else {}
 
     def map_pays(self, number, counts, samples):
         """Whether the counts lower the error by more than as many seconds of uniform samples would. Each half's counts are
@@ -241,14 +248,17 @@ class _Loop:
             error = exr.read(self.file(number, f"error_{half}"))
             weight = weight_of_samples(error["relvariance.Y"], error["relnoise.Y"])
             taken = np.maximum(self.totals[half].counts, 1)
-            for way, extra in (("map", counts[half]), ("even", self.even_counts(samples))):
+            for way, extra in (("map", counts[half]), ("even", self.even_samples(samples))):
                 left[way] += float((weight * taken / (taken + extra)).sum())
         return left["map"] <= left["even"]
 
+    def even_samples(self, samples):
+        """Uniform samples of a half for the seconds of a round's slice."""
+        return samples / 2 * (1 if self.settings.budget.samples else self.extra_over_uniform())
+
     def even_counts(self, samples):
-        """The counts that uniform samples would have for the seconds of a round's slice."""
-        each = samples / 2 * (1 if self.settings.budget.samples else self.extra_over_uniform())
-        return np.full(self.totals["a"].counts.shape, max(1, int(each)))
+        each = EVEN_PARTS * max(1, round(self.even_samples(samples) / EVEN_PARTS))
+        return np.full(self.totals["a"].counts.shape, each)
 
     def extra_over_uniform(self):
         """What a sample (of average cost) of a masked pass takes, over one of a whole pass."""
@@ -261,7 +271,8 @@ class _Loop:
     def place_in_sequence(self, number, counts):
         """Each half's round begins at a multiple of its largest count, so that every count is a whole block of the
         sequence."""
-        plan, free = {"round": number, "first": {}}, self.journal["next"]
+        even = all(c.min() == c.max() and c.max() % EVEN_PARTS == 0 for c in counts.values())
+        plan, free = {"round": number, "first": {}, "parts": EVEN_PARTS if even else 1}, self.journal["next"]
         (self.folder / f"round_{number}").mkdir(exist_ok=True)
         for half in HALVES:
             most = max(1, int(counts[half].max()))

@@ -50,9 +50,9 @@ def nothing_left(budget, spent):
     return ""
 
 
-def next_slice(budget, spent):
+def next_slice(budget, spent, steps=1):
     """Samples per pixel of the next round, and why there is none (or ''). The slices grow geometrically; the last one takes
-    what is left, and one that would leave no more than half of itself takes that too."""
+    what is left, and one that would leave no more than half of itself takes that too. steps: so many slices at once."""
     step = GROWTH * spent.worth
     if budget.samples:
         left, reason = budget.samples - spent.samples, SAMPLES_SPENT
@@ -67,6 +67,7 @@ def next_slice(budget, spent):
         left, reason = _needed(budget.target, spent, step), ""
     if left < LEAST_SAMPLES:
         return 0.0, reason
+    step *= steps
     return (left if left <= 1.5 * step else step), ""
 
 

@@ -162,16 +162,26 @@ std::string output_name(const Render& first, const Layer& layer, const std::stri
   return name + "." + suffix;
 }
 
-/// Weighted mean and spread of a stream of samples: sums of w, w^2, w^2 d and w^2 d^2, d being the distance to the first
-/// sample, so that little cancels.
-struct Accumulator {
-  double weight = 0, mean = 0, origin = 0, squares = 0, first = 0, second = 0;
+/// Weighted mean of a stream of samples.
+struct MeanAccumulator {
+  double weight = 0, mean = 0;
   int renders = 0;
 
   void add(double x, double w) {
-    if (renders++ == 0) origin = x;
+    ++renders;
     weight += w;
     mean += (x - mean) * w / weight;
+  }
+};
+
+/// The same and their spread: sums of w^2, w^2 d and w^2 d^2, d being the distance to the first sample, so that little
+/// cancels.
+struct Accumulator : MeanAccumulator {
+  double origin = 0, squares = 0, first = 0, second = 0;
+
+  void add(double x, double w) {
+    if (renders == 0) origin = x;
+    MeanAccumulator::add(x, w);
     const double d = x - origin;
     squares += w * w;
     first += w * w * d;
@@ -187,7 +197,8 @@ struct Accumulator {
 
 /// Accumulators of one channel over a band.
 struct ChannelSums {
-  std::vector<Accumulator> all, half_a, half_b;
+  std::vector<Accumulator> all;
+  std::vector<MeanAccumulator> half_a, half_b;
 
   explicit ChannelSums(std::size_t pixels) : all(pixels), half_a(pixels), half_b(pixels) {}
 };
@@ -255,7 +266,7 @@ class Merger {
     const auto lines = static_cast<std::size_t>(std::min(window_.height(), lines_per_band()));
     std::size_t bytes = 0;  // of a pixel
     for (const std::size_t l : merged_)
-      bytes += all_channels(first().layers[l]).size() * (3 * sizeof(Accumulator) + 4 * sizeof(float));
+      bytes += all_channels(first().layers[l]).size() * (sizeof(Accumulator) + 2 * sizeof(MeanAccumulator) + 4 * sizeof(float));
     for (const PartInfo& part : first().file.parts) bytes += part.channels.size() * 3 * sizeof(float);
     if (static_cast<std::size_t>(window_.width()) * lines > max_bytes / std::max<std::size_t>(bytes, 1))
       throw Error(ExitCode::OutOfMemory, fmt::format("{}: {} lines of {} pixels need more than the limit of {} MB",
@@ -446,10 +457,12 @@ class Merger {
 
   /// By all renders alike, or as the plain mean of the halves.
   Moments moments(const ChannelSums& sums, std::size_t i) const {
-    const Accumulator &all = sums.all[i], &a = sums.half_a[i], &b = sums.half_b[i];
+    const Accumulator& all = sums.all[i];
+    const MeanAccumulator &a = sums.half_a[i], &b = sums.half_b[i];
     if (all.renders == 0) return {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
     if (first_b_ == 0 || a.renders == 0 || b.renders == 0) return {all.mean, all.variance_of_mean()};
-    return {(a.mean + b.mean) / 2, (a.variance_of_mean() + b.variance_of_mean()) / 4};
+    const double of_a_sample = all.variance_of_mean() * all.weight;
+    return {(a.mean + b.mean) / 2, of_a_sample * (1 / a.weight + 1 / b.weight) / 4};
   }
 
   void write_mean(NativeChannel& channel, const ChannelSums& sums) const {

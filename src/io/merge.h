@@ -32,8 +32,8 @@ struct MergeResult {
 ///     mean        m = sum n_k x_k / sum n_k
 ///     ` Variance` of m: sum n_k^2 (x_k - m)^2 / ((sum n_k)^2 - sum n_k^2), NaN where only one render has samples
 ///     ` A`, ` B`  the same mean over the renders with even and odd index, m where a half has no samples
-/// With options.half_b the picture is the plain mean of its halves, m = (A + B) / 2, whatever their counts, and its
-/// variance (Var A + Var B) / 4, NaN where a half has samples of only one render. This is the merge of adaptive renders
+/// With options.half_b the picture is the plain mean of its halves, (A + B) / 2, whatever their counts, and its
+/// variance s^2 (1 / n_A + 1 / n_B) / 4, s^2 being that of one sample: the variance above times sum n_k. This is the merge of adaptive renders
 /// where the values of each half chose the counts of the other: no weight depends on the values it multiplies, so m is
 /// unbiased. n_k comes from a sample-count pass, else from metadata or options, else all renders count alike. Samples
 /// that are not finite are left out and counted in a note. The sum of n_k is kept in `<view layer>.Sample Count.X`,

@@ -56,9 +56,9 @@ std::string samples_attribute(const std::string& path) {
 }
 
 TEST(MergeRenders, HalvesOfTheirOwnAreAveragedAlikeWhateverTheirCounts) {
-  // A: 1 (1 sample), 4 (2 samples): mean 3, spread 1 * 4 + 2 * 1 = 6, variance 6 / (1 * 3) = 2.
-  // B: 5 (10 samples), 8 (20 samples): mean 7, spread 10 * 4 + 20 * 1 = 60, variance 60 / (1 * 30) = 2.
-  // The picture is 5, not the 200 / 33 of all samples alike; its variance (2 + 2) / 4.
+  // A: 1 (1 sample), 4 (2 samples): mean 3. B: 5 (10 samples), 8 (20 samples): mean 7. The picture is 5, not the 73 / 11
+  // of all samples alike. One sample: (1 * 62^2 + 4 * 29^2 + 100 * 18^2 + 400 * 15^2) / 11^2 / (33 - 505 / 33); the
+  // picture's variance is that times (1 / 3 + 1 / 30) / 4.
   const TemporaryFolder folder;
   const std::string out = folder / "out.exr";
   std::vector<TestPart> renders;
@@ -73,7 +73,9 @@ TEST(MergeRenders, HalvesOfTheirOwnAreAveragedAlikeWhateverTheirCounts) {
   merge({paths[0], paths[1]}, out, options);
   EXPECT_THAT(stored_floats(out, 0, "V.Combined.R"), Each(5.0F));
   EXPECT_THAT(stored_floats(out, 0, "V.Combined.A"), Each(5.0F));
-  EXPECT_THAT(stored_floats(out, 0, "V.Combined Variance.R"), Each(1.0F));
+  const double of_a_sample = (62 * 62 + 4 * 29 * 29 + 100 * 18 * 18 + 400 * 15 * 15) / 121.0 / (33 - 505 / 33.0);
+  EXPECT_THAT(stored_floats(out, 0, "V.Combined Variance.R"),
+              Each(::testing::FloatEq(static_cast<float>(of_a_sample * (1 / 3.0 + 1 / 30.0) / 4))));
   EXPECT_THAT(stored_floats(out, 0, "V.Combined A.R"), Each(3.0F));
   EXPECT_THAT(stored_floats(out, 0, "V.Combined B.R"), Each(7.0F));
   EXPECT_THAT(stored_floats(out, 0, "V.Sample Count.X"), Each(33.0F));
