@@ -56,12 +56,9 @@ std::vector<MapChannel> channels_for(SampleMapFormat format, const SampleMap& ma
 
 void write_error_map(const std::string& target, const ErrorMap& map, const Image& sample_count,
                      const MapWindows& windows) {
-  std::vector<MapChannel> channels{{"mse.R", plane_of(map.mse, 0)},
-                                   {"mse.G", plane_of(map.mse, 1)},
-                                   {"mse.B", plane_of(map.mse, 2)},
-                                   {"relmse.Y", map.relative_mse},
-                                   {"relvariance.Y", map.relative_variance},
-                                   {"relnoise.Y", map.relative_noise}};
+  std::vector<MapChannel> channels{{"mse.R", plane_of(map.mse, 0)},          {"mse.G", plane_of(map.mse, 1)},
+                                   {"mse.B", plane_of(map.mse, 2)},          {"relmse.Y", map.relative_mse},
+                                   {"relvariance.Y", map.relative_variance}, {"relnoise.Y", map.relative_noise}};
   if (!sample_count.empty()) channels.push_back({"samples.Y", sample_count});
   write_maps(target, channels, windows.data, windows.display);
 }

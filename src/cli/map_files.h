@@ -24,7 +24,8 @@ struct ErrorMapFile {
 void write_error_map(const std::string& target, const ErrorMap& map, const Image& sample_count,
                      const MapWindows& windows);
 
-/// Throws Error{Missing} where the file or one of its channels but the last two is not there, Error{BadInput} where it is damaged.
+/// Throws Error{Missing} where the file or one of its channels but the last two is not there, Error{BadInput} where it
+/// is damaged.
 ErrorMapFile read_error_map(const std::string& path);
 
 /// Channel order.Y.

@@ -37,9 +37,10 @@ struct SampleMap {
 ///     e_j = bias_j^2 + v_j sum_i K_ij r_i,    sum_i K_ij = 1,
 ///
 /// v_j = relative_variance, bias_j^2 = relative_mse - v_j: a sample helps every pixel of its window. The sum over j is
-/// separable, V_i = sum_j K_ij v_j. After few samples v is as noisy as they are; so is the noise u_j = relative_noise of
-/// the input, but its errors are others: where it is known, V_i is in proportion to sqrt(sum_j K_ij v_j sum_j K_ij u_j),
-/// with the same sum over the image (docs/adaptive.md has what this is worth). The minimum under sum_i c_i dn_i = C is the water-filling
+/// separable, V_i = sum_j K_ij v_j. After few samples v is as noisy as they are; so is the noise u_j = relative_noise
+/// of the input, but its errors are others: where it is known, V_i is in proportion to sqrt(sum_j K_ij v_j sum_j K_ij
+/// u_j), with the same sum over the image (docs/adaptive.md has what this is worth). The minimum under sum_i c_i dn_i =
+/// C is the water-filling
 ///
 ///     dn_i = clamp(sqrt(V_i n_i / (lambda c_i)) - n_i, 0, max_samples),
 ///

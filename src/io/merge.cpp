@@ -266,7 +266,8 @@ class Merger {
     const auto lines = static_cast<std::size_t>(std::min(window_.height(), lines_per_band()));
     std::size_t bytes = 0;  // of a pixel
     for (const std::size_t l : merged_)
-      bytes += all_channels(first().layers[l]).size() * (sizeof(Accumulator) + 2 * sizeof(MeanAccumulator) + 4 * sizeof(float));
+      bytes += all_channels(first().layers[l]).size() *
+               (sizeof(Accumulator) + 2 * sizeof(MeanAccumulator) + 4 * sizeof(float));
     for (const PartInfo& part : first().file.parts) bytes += part.channels.size() * 3 * sizeof(float);
     if (static_cast<std::size_t>(window_.width()) * lines > max_bytes / std::max<std::size_t>(bytes, 1))
       throw Error(ExitCode::OutOfMemory, fmt::format("{}: {} lines of {} pixels need more than the limit of {} MB",
@@ -550,7 +551,7 @@ class Merger {
   }
 
   std::vector<Render> renders_;
-  double samples_;       ///< Of each render, 0 where the files tell.
+  double samples_;  ///< Of each render, 0 where the files tell.
   bool compress_;
   std::size_t first_b_;  ///< First render of half B, 0: even and odd index.
   Rect window_;

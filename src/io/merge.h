@@ -33,15 +33,15 @@ struct MergeResult {
 ///     ` Variance` of m: sum n_k^2 (x_k - m)^2 / ((sum n_k)^2 - sum n_k^2), NaN where only one render has samples
 ///     ` A`, ` B`  the same mean over the renders with even and odd index, m where a half has no samples
 /// With options.half_b the picture is the plain mean of its halves, (A + B) / 2, whatever their counts, and its
-/// variance s^2 (1 / n_A + 1 / n_B) / 4, s^2 being that of one sample: the variance above times sum n_k. This is the merge of adaptive renders
-/// where the values of each half chose the counts of the other: no weight depends on the values it multiplies, so m is
-/// unbiased. n_k comes from a sample-count pass, else from metadata or options, else all renders count alike. Samples
-/// that are not finite are left out and counted in a note. The sum of n_k is kept in `<view layer>.Sample Count.X`,
-/// other layers come from the first file, bit for bit, as do further ones that only it has. Writes one part of
-/// scanlines, merged layers as float; memory is bounded by one band of lines, Error{OutOfMemory} where that
-/// needs more than options.limits.max_bytes. Throws Error{Usage} for fewer than two files or one given twice,
-/// Error{BadInput} naming the first file that does not fit the first one, Error{Missing}, and what write_atomically
-/// throws.
+/// variance s^2 (1 / n_A + 1 / n_B) / 4, s^2 being that of one sample: the variance above times sum n_k. This is the
+/// merge of adaptive renders where the values of each half chose the counts of the other: no weight depends on the
+/// values it multiplies, so m is unbiased. n_k comes from a sample-count pass, else from metadata or options, else all
+/// renders count alike. Samples that are not finite are left out and counted in a note. The sum of n_k is kept in
+/// `<view layer>.Sample Count.X`, other layers come from the first file, bit for bit, as do further ones that only it
+/// has. Writes one part of scanlines, merged layers as float; memory is bounded by one band of lines,
+/// Error{OutOfMemory} where that needs more than options.limits.max_bytes. Throws Error{Usage} for fewer than two files
+/// or one given twice, Error{BadInput} naming the first file that does not fit the first one, Error{Missing}, and what
+/// write_atomically throws.
 MergeResult merge(const std::vector<std::string>& paths, const std::string& target, const MergeOptions& options = {});
 
 }  // namespace polyrecon

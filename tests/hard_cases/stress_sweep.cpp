@@ -133,8 +133,12 @@ Answer answer(const Frame& frame, const Params& params, int threads) {
 }
 
 std::vector<const Image*> images_of(const Result& result, bool with_alpha) {
-  std::vector<const Image*> images{&result.beauty, &result.order, &result.error.mse, &result.error.relative_mse,
-                                   &result.error.relative_variance, &result.error.relative_noise};
+  std::vector<const Image*> images{&result.beauty,
+                                   &result.order,
+                                   &result.error.mse,
+                                   &result.error.relative_mse,
+                                   &result.error.relative_variance,
+                                   &result.error.relative_noise};
   for (const Image& aov : result.aovs) images.push_back(&aov);
   if (with_alpha) images.push_back(&result.alpha);
   return images;

@@ -56,8 +56,8 @@ std::string samples_attribute(const std::string& path) {
 }
 
 TEST(MergeRenders, HalvesOfTheirOwnAreAveragedAlikeWhateverTheirCounts) {
-  // A: 1 (1 sample), 4 (2 samples): mean 3. B: 5 (10 samples), 8 (20 samples): mean 7. The picture is 5, not the 73 / 11
-  // of all samples alike. One sample: (1 * 62^2 + 4 * 29^2 + 100 * 18^2 + 400 * 15^2) / 11^2 / (33 - 505 / 33); the
+  // A: 1 (1 sample), 4 (2 samples): mean 3. B: 5 (10 samples), 8 (20 samples): mean 7. The picture is 5, not the 73 /
+  // 11 of all samples alike. One sample: (1 * 62^2 + 4 * 29^2 + 100 * 18^2 + 400 * 15^2) / 11^2 / (33 - 505 / 33); the
   // picture's variance is that times (1 / 3 + 1 / 30) / 4.
   const TemporaryFolder folder;
   const std::string out = folder / "out.exr";

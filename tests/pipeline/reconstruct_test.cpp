@@ -68,8 +68,8 @@ TEST(Reconstruct, RunsEveryStageAndOrder) {
 
 TEST(Reconstruct, TheErrorMapIsNotNegative) {
   const Result result = run(make_scene(48, 40, 0.4, 5).frame);
-  for (const Image* image : {&result.error.mse, &result.error.relative_mse, &result.error.relative_variance,
-                             &result.error.relative_noise})
+  for (const Image* image :
+       {&result.error.mse, &result.error.relative_mse, &result.error.relative_variance, &result.error.relative_noise})
     for (int c = 0; c < image->channels(); ++c)
       for (std::size_t i = 0; i < image->pixels(); ++i) ASSERT_GE(image->plane(c)[i], Real(0));
 }
