@@ -13,7 +13,7 @@ struct ErrorMap {
   Image relative_variance;  ///< 1 channel: the part of relative_mse that falls as 1/n with n more samples; the rest is
                             ///< bias.
   Image relative_noise;     ///< 1 channel: mean over RGB of the noise variance of the input's mean / (yhat^2 + 0.01);
-                         ///< empty where an error map from elsewhere does not tell.
+                            ///< empty where an error map from elsewhere does not tell.
   double mean_relative_mse = 0;  ///< Of the whole image.
   double cross_validated = 0;    ///< The same by cross-validation: see cross_validated_error.
   double calibration = 1;        ///< Measured variance of the blend over the variance that its windows claim.
