@@ -238,7 +238,7 @@ class _Loop:
         counts = {half: quantise(exr.read(map_file)["samples.Y"], costs[half]) for half, (_, map_file) in files.items()}
         for file in itertools.chain(*files.values()):
             file.unlink()
-        return counts if self.map_pays(number, counts, samples) else {}
+        return counts if self.even_samples(samples) < 1 or self.map_pays(number, counts, samples) else {}
 
     def map_pays(self, number, counts, samples):
         """Whether the counts lower the error by more than as many seconds of uniform samples would. Each half's counts are
@@ -257,7 +257,9 @@ class _Loop:
         return samples / 2 * (1 if self.settings.budget.samples else self.extra_over_uniform())
 
     def even_counts(self, samples):
-        each = EVEN_PARTS * max(1, round(self.even_samples(samples) / EVEN_PARTS))
+        each = int(self.even_samples(samples))
+        if each > EVEN_PARTS:
+            each -= each % EVEN_PARTS
         return np.full(self.totals["a"].counts.shape, each)
 
     def extra_over_uniform(self):

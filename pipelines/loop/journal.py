@@ -6,7 +6,7 @@ import pathlib
 
 from .errors import DriverError, ExitCode
 
-VERSION = 1
+VERSION = 2
 
 
 class Journal:
