@@ -3,7 +3,7 @@
 import numpy as np
 
 MOST = 1 << 12  # samples of one pixel in one pass
-WINDOW = 3.5  # pixels, standard deviation: how far a sample helps
+WINDOW = 3.5  # pixels, standard deviation: how far a sample helps (SampleMapParams::radius / 2)
 COHERENCE = 2.0  # pixels, standard deviation of the blur
 
 

@@ -19,8 +19,8 @@ mkdir -p build/fuzz/corpus build/fuzz/findings
 # allocator_may_return_null: an allocation beyond all reason is std::bad_alloc, as it is for a user.
 export ASAN_OPTIONS=allocator_may_return_null=1:detect_leaks=1 UBSAN_OPTIONS=print_stacktrace=1
 fuzz() {
-  "$build/exr_fuzzer" -dict=tests/fuzz/exr.dict -timeout=600 -report_slow_units=600 -rss_limit_mb=2048 -max_len=16384 -print_final_stats=1 \
-    -artifact_prefix=build/fuzz/findings/ "$@" build/fuzz/corpus build/fuzz/seeds tests/fuzz/corpus 2>&1 |
+  "$build/exr_fuzzer" -dict=tests/fuzz/exr.dict -timeout=600 -report_slow_units=600 -rss_limit_mb=2048 \
+    -max_len=16384 -print_final_stats=1 -artifact_prefix=build/fuzz/findings/ "$@" build/fuzz/corpus build/fuzz/seeds tests/fuzz/corpus 2>&1 |
     tee -a build/fuzz/log
 }
 : >build/fuzz/log

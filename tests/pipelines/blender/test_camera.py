@@ -92,6 +92,22 @@ class Masks(SceneTest):
         self.assertEqual(passes, [(0, 1, (1, 0, 3, 2), [[True, True], [False, True]]), (1, 3, (1, 0, 3, 1), [[True, True]])])
         self.assertEqual(masks.plan(np.zeros((2, 2))), [])
 
+    def test_passes_are_cut_where_what_lies_between_costs_more_than_another_pass(self):
+        counts = np.zeros((360, 640), int)
+        counts[10:20, 10:30] = counts[340:350, 600:630] = 64
+        self.assertEqual([p.box for p in masks.plan(counts)], [(10, 10, 30, 20), (600, 340, 630, 350)])
+        near = np.zeros((360, 640), int)
+        near[10:20, 10:30] = near[10:20, 100:120] = 64  # 45,000 samples in between, less than a pass
+        self.assertEqual([p.box for p in masks.plan(near)], [(10, 10, 120, 20)])
+        random = np.random.default_rng(8)
+        counts = np.kron(random.choice([0, 0, 1, 4, 128], size=(18, 32)), np.ones((20, 20), int))
+        taken = np.zeros_like(counts)
+        for piece in masks.plan(counts):
+            x0, y0, x1, y1 = piece.box
+            self.assertTrue((taken[y0:y1, x0:x1][piece.inside] == piece.skip).all())
+            taken[y0:y1, x0:x1] += piece.samples * piece.inside
+        np.testing.assert_array_equal(taken, counts)
+
 
 if __name__ == "__main__":
     unittest.main()
