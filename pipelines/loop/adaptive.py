@@ -16,7 +16,7 @@ from typing import Optional
 import numpy as np
 
 from . import exr
-from .budget import Budget, Spent, next_slice, nothing_left
+from .budget import CONVERGENCE_RATE, Budget, Spent, next_slice, nothing_left
 from .counts import cost_of_samples, quantise, weight_of_samples
 from .errors import DriverError, ExitCode
 from .journal import Journal
@@ -164,7 +164,7 @@ class _Loop:
                 return None
         (self.folder / f"round_{number}").mkdir(exist_ok=True)
         self.reconstruct_halves(number)
-        spent = dataclasses.replace(self.spent(), **self.error_of_mean(number))
+        spent = dataclasses.replace(self.spent(), error=self.error_of_mean(number))
         samples, self.why_ended = next_slice(self.settings.budget, spent)
         if samples and number >= self.settings.max_rounds:
             samples, self.why_ended = 0.0, f"{number} rounds are done (--max-rounds)"
@@ -212,18 +212,17 @@ class _Loop:
         )
 
     def error_of_mean(self, number):
-        """Joins what the halves tell: pictures for the report, and the error of (A + B) / 2, whose variance is half of
-        each half's while its bias stays."""
+        """Joins what the halves tell: pictures for the report, and the error of a reconstruction of both halves, which
+        have twice the samples of one."""
         halves = [exr.read(self.file(number, f"error_{half}")) for half in HALVES]
-        variance = sum(h["relvariance.Y"] for h in halves) / 4
-        error = variance + sum(h["relmse.Y"] - h["relvariance.Y"] for h in halves) / 2
-        exr.write(self.file(number, "error"), {"relmse.Y": error, "relvariance.Y": variance})
+        error = sum(h["relmse.Y"] for h in halves) / 2 * 2**-CONVERGENCE_RATE
+        exr.write(self.file(number, "error"), {"relmse.Y": error})
         for kind, name in (("merged", "noisy"), ("clean", "clean")):
             files = [self.picture(self.file(number, f"{kind}_{half}")) for half in HALVES]
             exr.write(self.file(number, name), {c: (files[0][c] + files[1][c]) / 2 for c in files[0]})
             for half in HALVES:
                 self.file(number, f"{kind}_{half}").unlink()
-        return {"error": float(np.nanmean(error)), "variance": float(np.nanmean(variance))}
+        return float(np.nanmean(error))
 
     def counts_for(self, number, samples):
         """Counts of each half's next samples, from the other half's error map and costs, half of the slice for each; none
@@ -249,7 +248,7 @@ class _Loop:
             weight = weight_of_samples(error["relvariance.Y"], error["relnoise.Y"])
             taken = np.maximum(self.totals[half].counts, 1)
             for way, extra in (("map", counts[half]), ("even", self.even_samples(samples))):
-                left[way] += float((weight * taken / (taken + extra)).sum())
+                left[way] += float((weight * (taken / (taken + extra)) ** CONVERGENCE_RATE).sum())
         return left["map"] <= left["even"]
 
     def even_samples(self, samples):

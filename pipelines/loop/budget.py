@@ -7,6 +7,7 @@ from typing import Optional
 GROWTH = 1.0  # a round takes as much as was spent before it, so the slices double
 LEAST_SAMPLES = 0.25  # per pixel: a smaller round does not pay its overhead
 MOST_JUDGING = 0.1  # of a round's seconds, where seconds are the budget: fewer and larger rounds where judging is dear
+CONVERGENCE_RATE = 0.75  # the error falls with n^-this: src/estimate/sample_map.h
 SAMPLES_SPENT, SECONDS_SPENT = "the samples are spent", "the seconds are spent"
 
 
@@ -28,7 +29,7 @@ class Budget:
 class Spent:
     """samples: per pixel. worth: the same in samples of average cost. seconds: of everything. seconds_per_sample: of the next
     ones, of average cost. judging: seconds of the last reconstruction of both halves. reserve: seconds that the result
-    still needs. error, variance: estimated mean relative MSE of the result and the part of it that falls as 1/n."""
+    still needs. error: estimated mean relative MSE of the result."""
 
     samples: float
     seconds: float
@@ -37,7 +38,6 @@ class Spent:
     judging: float
     reserve: float
     error: float = math.nan
-    variance: float = math.nan
 
 
 def nothing_left(budget, spent):
@@ -64,16 +64,13 @@ def next_slice(budget, spent, steps=1):
     elif spent.error <= budget.target:
         return 0.0, f"the target is reached: {spent.error:.3g}"
     else:
-        left, reason = _needed(budget.target, spent, step), ""
+        left, reason = _needed(budget.target, spent), ""
     if left < LEAST_SAMPLES:
         return 0.0, reason
     step *= steps
     return (left if left <= 1.5 * step else step), ""
 
 
-def _needed(target, spent, step):
-    """More samples per pixel until bias^2 + variance n / (n + dn) is the target."""
-    bias = spent.error - spent.variance
-    if spent.variance <= 0 or bias >= target:
-        return step
-    return max(LEAST_SAMPLES, spent.worth * (spent.variance / (target - bias) - 1))
+def _needed(target, spent):
+    """More samples per pixel until error (n / (n + dn))^CONVERGENCE_RATE is the target."""
+    return max(LEAST_SAMPLES, spent.worth * ((spent.error / target) ** (1 / CONVERGENCE_RATE) - 1))

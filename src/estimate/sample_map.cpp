@@ -107,9 +107,10 @@ class Window {
   Plane weight_;
 };
 
-/// The two parts of the relative error and the input's noise, every value finite and not negative.
+/// Of the error map, every value finite and not negative.
 struct Parts {
-  Plane variance, bias2, noise;
+  Plane variance, noise;
+  double relative_mse = 0;  ///< Mean over the pixels where it is known.
   std::size_t unknown = 0;
 };
 
@@ -117,10 +118,10 @@ Parts split_error(const ErrorMap& error) {
   const Image& mse = error.relative_mse;
   const Image& variance = error.relative_variance;
   const Plane zeros(mse.width(), mse.height());
-  Parts parts{zeros, zeros, zeros};
+  Parts parts{zeros, zeros};
   const std::size_t count = mse.pixels();
   std::vector<std::size_t> unknown;
-  double variance_sum = 0, bias2_sum = 0, noise_sum = 0;
+  double variance_sum = 0, mse_sum = 0, noise_sum = 0;
   for (std::size_t i = 0; i < count; ++i) {
     const double m = mse.plane(0)[i], v = variance.plane(0)[i];
     if (!std::isfinite(m) || !std::isfinite(v)) {
@@ -128,19 +129,18 @@ Parts split_error(const ErrorMap& error) {
       continue;
     }
     parts.variance.v[i] = std::max(v, 0.0);
-    parts.bias2.v[i] = std::max(m - parts.variance.v[i], 0.0);
     if (!error.relative_noise.empty())
       if (const double u = error.relative_noise.plane(0)[i]; std::isfinite(u)) parts.noise.v[i] = std::max(u, 0.0);
     noise_sum += parts.noise.v[i];
     variance_sum += parts.variance.v[i];
-    bias2_sum += parts.bias2.v[i];
+    mse_sum += std::max(m, parts.variance.v[i]);
   }
   const auto known = static_cast<double>(count - unknown.size());
   for (const std::size_t i : unknown) {
     parts.variance.v[i] = known > 0 ? variance_sum / known : 1.0;
-    parts.bias2.v[i] = known > 0 ? bias2_sum / known : 0.0;
     parts.noise.v[i] = known > 0 ? noise_sum / known : 0.0;
   }
+  parts.relative_mse = known > 0 ? mse_sum / known : 1.0;
   parts.unknown = unknown.size();
   return parts;
 }
@@ -182,8 +182,13 @@ struct Filling {
   double spent(double t) const {
     return sum_pixels(s, [&](std::size_t i) { return c.v[i] * extra(i, t); });
   }
-  double variance_left(double t) const {
-    return sum_pixels(s, [&](std::size_t i) { return V.v[i] * n.v[i] / (n.v[i] + extra(i, t)); });
+  /// The share of the error that is left; 1 where no sample helps.
+  double left(double t) const {
+    const double all = sum_pixels(s, [&](std::size_t i) { return V.v[i]; });
+    if (!(all > 0)) return 1;
+    return sum_pixels(s, [&](std::size_t i) {
+             return V.v[i] * std::pow(n.v[i] / (n.v[i] + extra(i, t)), convergence_rate);
+           }) / all;
   }
 };
 
@@ -218,16 +223,13 @@ double lowest_level(Levels r, Reached reached, Progress& progress) {
   return r.hi;
 }
 
-/// V_i: what pixel i's noise does to the windows around it.
+/// V_i: what pixel i's noise does to the windows around it, up to a common factor.
 Plane weight_of_samples(const Parts& parts, const Window& window, Progress& progress) {
   Plane V = window.spread(parts.variance, progress);
-  const double total = sum_pixels(V, [&](std::size_t i) { return V.v[i]; });
   Plane both = window.spread(parts.noise, progress);
   for (std::size_t i = 0; i < both.v.size(); ++i) both.v[i] = std::sqrt(both.v[i]) * std::sqrt(V.v[i]);
-  const double sum = sum_pixels(both, [&](std::size_t i) { return both.v[i]; });
-  if (!(sum > 0)) return V;  // the noise is unknown, or zero where the error is not
-  for (double& value : both.v) value *= total / sum;
-  return both;
+  // The noise may be unknown, or zero where the error is not.
+  return sum_pixels(both, [&](std::size_t i) { return both.v[i]; }) > 0 ? both : V;
 }
 
 void check_shapes(const ErrorMap& error, const Image& sample_count, const Image& cost) {
@@ -281,7 +283,6 @@ SampleMap make_sample_map(const ErrorMap& error, const Image& sample_count, cons
   map.unknown_pixels = parts.unknown;
   if (params.target > 0 && parts.unknown == error.relative_mse.pixels())
     throw Error(ExitCode::BadInput, "no pixel of the error map is finite: a target cannot be judged, give a budget");
-  const double bias2 = sum_pixels(parts.bias2, [&](std::size_t i) { return parts.bias2.v[i]; });
 
   const Window window(width, height, params.radius, progress);
   Filling f{Plane(width, height), counts_or(sample_count, params.assumed_samples, width, height),
@@ -289,16 +290,16 @@ SampleMap make_sample_map(const ErrorMap& error, const Image& sample_count, cons
             params.max_samples};
   for (std::size_t i = 0; i < f.s.v.size(); ++i) f.s.v[i] = std::sqrt(f.V.v[i] * f.n.v[i] / f.c.v[i]);
 
-  map.error_before = (bias2 + f.variance_left(0)) / pixels;
+  map.error_before = parts.relative_mse;
   const Levels levels = range_of(f);
   const auto enough = [&](double t) {
     return params.budget > 0 ? f.spent(t) >= params.budget * pixels
-                             : (bias2 + f.variance_left(t)) / pixels <= params.target;
+                             : map.error_before * f.left(t) <= params.target;
   };
   double t = 0;
   if (levels.hi > 0 && !enough(0)) t = enough(levels.hi) ? lowest_level(levels, enough, progress) : levels.hi;
   map.limit_met = enough(t);
-  map.error_after = (bias2 + f.variance_left(t)) / pixels;
+  map.error_after = map.error_before * f.left(t);
   store(f, t, map);
   return map;
 }

@@ -61,9 +61,9 @@ TEST(SampleMap, TwoPixelsAreFilledAsWorkedOutByHand) {
   EXPECT_NEAR(large.samples.at(1, 0, 0), 2, 1e-6);
   EXPECT_NEAR(large.importance.at(0, 0, 0), 1, 1e-7);
   EXPECT_NEAR(large.importance.at(1, 0, 0), 0.25, 1e-6);
-  // e = V n / (n + dn): (4 * 4 / 12 + 1 * 4 / 6) / 2 = 1 after, (4 + 1) / 2 before.
+  // (4 + 1) / 2 before; a pixel's share of it falls with n^-3/4.
   EXPECT_NEAR(large.error_before, 2.5, 1e-9);
-  EXPECT_NEAR(large.error_after, 1, 1e-6);
+  EXPECT_NEAR(large.error_after, (4 * std::pow(4. / 12, 0.75) + 1 * std::pow(4. / 6, 0.75)) / 2, 1e-6);
 }
 
 /// The report's greedy, taken literally: quantum by quantum to the pixel that lowers the total error of all windows
@@ -146,7 +146,8 @@ TEST(SampleMap, GoesByTheGeometricMeanOfErrorAndNoise) {
   const SampleMap both = run(error, budget_of(5, 0), filled(2, 1, 4));
   EXPECT_NEAR(both.samples.at(0, 0, 0), 5, 1e-5);
   EXPECT_NEAR(both.samples.at(1, 0, 0), 5, 1e-5);
-  EXPECT_NEAR(both.error_before, 2.5, 1e-6);  // the sum of v is kept
+  EXPECT_NEAR(both.error_before, 2.5, 1e-6);  // whatever the weights are
+  EXPECT_NEAR(both.error_after, 2.5 * std::pow(4. / 9, 0.75), 1e-5);
   error.relative_noise = Image(2, 1, 1);      // zero: nothing to go by
   EXPECT_NEAR(run(error, budget_of(5, 0), filled(2, 1, 4)).samples.at(0, 0, 0), 8, 1e-5);
 }
@@ -185,13 +186,20 @@ TEST(SampleMap, ATargetAlreadyReachedAsksForNothing) {
   EXPECT_EQ(map.total, 0);
 }
 
-TEST(SampleMap, ATargetBelowTheBiasIsSaidToBeOutOfReach) {
+TEST(SampleMap, TheBiasFallsAsTheVarianceDoes) {
+  // Four times the samples everywhere, half of the error is bias: (1/4)^(3/4) of all of it is left.
+  const SampleMap map = run(error_map(9, 5, std::vector<double>(45, 0.2), 0.2), budget_of(24, 0), filled(9, 5, 8));
+  EXPECT_NEAR(map.error_before, 0.4, 1e-6);
+  EXPECT_NEAR(map.error_after, 0.4 * std::pow(0.25, 0.75), 1e-6);
+}
+
+TEST(SampleMap, ATargetBeyondTheMostSamplesIsSaidToBeOutOfReach) {
   SampleMapParams params;
   params.target = 0.1;
   params.max_samples = 50;
   const SampleMap map = run(error_map(3, 3, std::vector<double>(9, 0.5), 0.2), params);
   EXPECT_FALSE(map.limit_met);
-  EXPECT_GT(map.error_after, 0.2);
+  EXPECT_NEAR(map.error_after, 0.7 * std::pow(8. / 58, 0.75), 1e-6);
   EXPECT_EQ(map.max, 50);  // still capped: a loop goes on with a finite pass
 }
 

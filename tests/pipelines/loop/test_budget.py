@@ -6,9 +6,9 @@ from pipelines.loop.errors import DriverError
 from pipelines.loop.frames import frame_path, parse_frames
 
 
-def spent(samples, seconds=10.0, error=0.1, variance=0.08, judging=0.5):
+def spent(samples, seconds=10.0, error=0.1, judging=0.5):
     """10 seconds were spent; a sample takes one, the result 2 more."""
-    return Spent(samples, seconds, samples, 1.0, judging, 2.0, error, variance)
+    return Spent(samples, seconds, samples, 1.0, judging, 2.0, error)
 
 
 class Slices(unittest.TestCase):
@@ -44,10 +44,10 @@ class Slices(unittest.TestCase):
 
     def test_a_target_takes_what_it_needs(self):
         self.assertEqual(next_slice(Budget(target=0.2), spent(8.0))[0], 0)
-        # 0.02 + 0.08 * 8 / (8 + n) = 0.06 at n = 8
-        self.assertAlmostEqual(next_slice(Budget(target=0.06), spent(8.0))[0], 8)
-        self.assertAlmostEqual(next_slice(Budget(target=0.09), spent(8.0))[0], 8 / 7)
-        self.assertEqual(next_slice(Budget(target=0.001), spent(8.0))[0], 8)  # below what is held for bias: one step
+        # 0.1 (8 / (8 + n))^0.75 = 0.1 * 2^-0.75 at n = 8, and 0.1 / 8 at n = 15 * 8.
+        self.assertAlmostEqual(next_slice(Budget(target=0.1 * 2**-0.75), spent(8.0))[0], 8)
+        self.assertAlmostEqual(next_slice(Budget(target=0.1 * (8 / 9) ** 0.75), spent(8.0))[0], 1)
+        self.assertEqual(next_slice(Budget(target=0.1 / 8), spent(8.0))[0], 8)  # far: one step, then it is judged again
 
 
 class Frames(unittest.TestCase):
