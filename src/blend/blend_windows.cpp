@@ -105,14 +105,14 @@ std::array<ColumnStatistics, 3> column_statistics(Scratch& s, bool first_stage) 
   return channels;
 }
 
-/// yhat of every response channel at every pixel of the window: sum_a g_a z_a q_a.
+/// yhat of every response channel at every pixel of the window: sum_a g_a z_a q_a and the value that gather took away.
 void evaluate(Scratch& s, const OrderChoice& choice, int columns, std::size_t responses,
               const std::array<ColumnStatistics, 3>& beauty) {
   const auto stride = static_cast<std::size_t>(s.window.stride);
   std::array<double, BasisLayout::max_columns> z{};
   for (std::size_t c = 0; c < responses; ++c) {
     Real* fit = s.fit.data() + c * stride;
-    std::fill(fit, fit + s.window.padded, Real(0));
+    std::fill(fit, fit + s.window.padded, s.window.origin[c]);
     if (c < 3)
       z = beauty[c].z;
     else

@@ -186,9 +186,9 @@ struct Filling {
   double left(double t) const {
     const double all = sum_pixels(s, [&](std::size_t i) { return V.v[i]; });
     if (!(all > 0)) return 1;
-    return sum_pixels(s, [&](std::size_t i) {
-             return V.v[i] * std::pow(n.v[i] / (n.v[i] + extra(i, t)), convergence_rate);
-           }) / all;
+    return sum_pixels(
+               s, [&](std::size_t i) { return V.v[i] * std::pow(n.v[i] / (n.v[i] + extra(i, t)), convergence_rate); }) /
+           all;
   }
 };
 
@@ -293,8 +293,7 @@ SampleMap make_sample_map(const ErrorMap& error, const Image& sample_count, cons
   map.error_before = parts.relative_mse;
   const Levels levels = range_of(f);
   const auto enough = [&](double t) {
-    return params.budget > 0 ? f.spent(t) >= params.budget * pixels
-                             : map.error_before * f.left(t) <= params.target;
+    return params.budget > 0 ? f.spent(t) >= params.budget * pixels : map.error_before * f.left(t) <= params.target;
   };
   double t = 0;
   if (levels.hi > 0 && !enough(0)) t = enough(levels.hi) ? lowest_level(levels, enough, progress) : levels.hi;

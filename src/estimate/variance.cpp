@@ -36,11 +36,15 @@ void residual_variance(const Image& y, const Image& features, int cx, int cy, Wi
   for (int c = 0; c < 3; ++c) {
     const Real* values = window.response.data() + static_cast<std::size_t>(c) * static_cast<std::size_t>(window.stride);
     project(factor, window, weight.data(), values, z.data());
+    // Summed pixel by pixel: |y|^2 - sum z^2 cancels to the rounding of q where the noise is small beside the light.
     double residual = 0;
-    for (int j = 0; j < window.count; ++j) residual += static_cast<double>(values[j]) * static_cast<double>(values[j]);
-    for (int a = 0; a < factor.columns; ++a)
-      residual -= z[static_cast<std::size_t>(a)] * z[static_cast<std::size_t>(a)];
-    out[c] = freedom > 0 ? static_cast<Real>(std::max(residual, 0.0) / freedom) : Real(-1);
+    for (std::size_t j = 0; j < static_cast<std::size_t>(window.count); ++j) {
+      double rest = static_cast<double>(values[j]);
+      for (std::size_t a = 0; a < static_cast<std::size_t>(factor.columns); ++a)
+        rest -= z[a] * static_cast<double>(factor.q[a * static_cast<std::size_t>(window.stride) + j]);
+      residual += rest * rest;
+    }
+    out[c] = freedom > 0 ? static_cast<Real>(residual / freedom) : Real(-1);
   }
 }
 

@@ -132,7 +132,8 @@ std::uint64_t side(int low, int high) { return static_cast<std::uint64_t>(std::i
 
 /// No encoder packs pixels more than this to one: deflate reaches 1032, and PXR24 takes a quarter off before; RLE makes
 /// 2 bytes of 128; PIZ's Huffman code 10 bits of 261 words; B44A 3 bytes of 32; DWA 1 zero-run symbol of a block of 64,
-/// deflated.
+/// deflated. What later releases of OpenEXR add (HTJ2K and ZSTD in 3.4 and 3.5) makes tens of bytes of a chunk of one
+/// value, whatever its size.
 std::uint64_t packing_limit(Imf::Compression compression) {
   switch (compression) {
     case Imf::NO_COMPRESSION:
@@ -148,8 +149,11 @@ std::uint64_t packing_limit(Imf::Compression compression) {
     case Imf::B44_COMPRESSION:
     case Imf::B44A_COMPRESSION:
       return 16;
-    default:
+    case Imf::DWAA_COMPRESSION:
+    case Imf::DWAB_COMPRESSION:
       return 65536;
+    default:
+      return std::uint64_t{1} << 24;
   }
 }
 

@@ -8,8 +8,10 @@
 namespace polyrecon {
 namespace {
 
-Real brightness(const Image& color, std::size_t i) {
-  return (color.plane(0)[i] + color.plane(1)[i] + color.plane(2)[i]) * Real(1.0 / 3);
+double brightness(const Image& color, std::size_t i) {
+  double sum = 0;
+  for (int c = 0; c < 3; ++c) sum += static_cast<double>(color.plane(c)[i]);
+  return sum / 3;
 }
 
 /// Where the value of an outlier comes from; index -1 where the pixel is none.
@@ -20,7 +22,7 @@ struct Replacement {
 
 /// True if fewer than three pixels of the half around (x, y) are as bright as it: a cheap test that all but a few fail.
 bool stands_out(const Image& own, int x, int y, int radius) {
-  const Real value = brightness(own, own.index(x, y));
+  const double value = brightness(own, own.index(x, y));
   const Rect around = intersect(grow({x, y, x + 1, y + 1}, radius), own.bounds());
   int as_bright = -1;  // itself
   for (int v = around.y0; v < around.y1; ++v)
@@ -29,7 +31,7 @@ bool stands_out(const Image& own, int x, int y, int radius) {
   return true;
 }
 
-std::ptrdiff_t neighbour_of_median(std::vector<std::pair<Real, std::ptrdiff_t>>& neighbours) {
+std::ptrdiff_t neighbour_of_median(std::vector<std::pair<double, std::ptrdiff_t>>& neighbours) {
   const auto middle = neighbours.begin() + static_cast<std::ptrdiff_t>(neighbours.size() / 2);
   std::nth_element(neighbours.begin(), middle, neighbours.end());
   return middle->second;
@@ -41,10 +43,10 @@ std::ptrdiff_t replacement_of(const HalfPair& pair, std::size_t h, int x, int y,
   const Image &own = pair.color[h], &other = pair.color[1 - h];
   if (!stands_out(own, x, y, p.neighbourhood)) return -1;
   const std::size_t center = own.index(x, y);
-  const Real value = brightness(own, center);
+  const double value = brightness(own, center);
   const Rect around = intersect(grow({x, y, x + 1, y + 1}, p.neighbourhood), own.bounds());
-  std::vector<Real> witnesses;
-  std::vector<std::pair<Real, std::ptrdiff_t>> neighbours;
+  std::vector<double> witnesses;
+  std::vector<std::pair<double, std::ptrdiff_t>> neighbours;
   for (int v = around.y0; v < around.y1; ++v)
     for (int u = around.x0; u < around.x1; ++u) {
       const std::size_t i = own.index(u, v);
@@ -57,14 +59,14 @@ std::ptrdiff_t replacement_of(const HalfPair& pair, std::size_t h, int x, int y,
   // The third brightest witness: one spike beside this one, in either half, must not hide it.
   const std::size_t third = witnesses.size() - 3;
   std::nth_element(witnesses.begin(), witnesses.begin() + static_cast<std::ptrdiff_t>(third), witnesses.end());
-  const Real top = witnesses[third];
+  const double top = witnesses[third];
   if (!(value > top)) return -1;
   const auto middle = witnesses.begin() + static_cast<std::ptrdiff_t>(witnesses.size() / 2);
   std::nth_element(witnesses.begin(), middle, witnesses.end());
-  const Real median = *middle;
-  const double excess = static_cast<double>(value) - static_cast<double>(median);
+  const double median = *middle;
+  const double excess = value - median;
   const double height = independent ? p.height : 2 * p.height;
-  if (!(excess > height * (static_cast<double>(top) - static_cast<double>(median)))) return -1;
+  if (!(excess > height * (top - median))) return -1;
   if (!p.variance_is_measured) return neighbour_of_median(neighbours);
   double variance = 0;
   for (int c = 0; c < 3; ++c) variance += static_cast<double>(pair.variance.plane(c)[center]) / 3;

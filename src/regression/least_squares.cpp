@@ -80,20 +80,18 @@ POLYRECON_SIMD void scale(Real* y, Real factor, int rows) {
   for (int j = 0; j < rows; ++j) y[j] *= factor;
 }
 
-/// What is left of column a beside those before it.
-struct Remainder {
-  double inverse;  ///< 1 / length.
-  bool keep, again;
-};
-
-Remainder remainder_of(const Matrix& gram, const Matrix& l, int a, const DependenceLimits& limits) {
+/// 1 / the length of what is left of column a beside those before it; 0 where it depends on them.
+double inverse_remainder(const Matrix& gram, const Matrix& l, int a, const BasisLayout& layout,
+                         const DependenceLimits& limits) {
   double rest = gram[a][a];
   for (int b = 0; b < a; ++b) rest -= l[a][b] * l[a][b];
-  const double ratio = gram[a][a] > 0 ? rest / gram[a][a] : 0;
+  const bool is_feature = a >= 1 && a <= layout.features();
+  const double weight_sum = gram[0][0];  // column 0 is 1 everywhere
+  const double least = std::max(limits.remainder * limits.remainder * gram[a][a],
+                                is_feature ? limits.variation * limits.variation * weight_sum : 0.0);
   // The length and its inverse must be values of the storage type, or q overflows.
-  const bool keep =
-      ratio > limits.drop * limits.drop && std::isnormal(rest) && std::isnormal(static_cast<Real>(std::sqrt(rest)));
-  return {keep ? 1 / std::sqrt(rest) : 0, keep, ratio < limits.repeat * limits.repeat};
+  const bool keep = rest > least && std::isnormal(rest) && std::isnormal(static_cast<Real>(std::sqrt(rest)));
+  return keep ? 1 / std::sqrt(rest) : 0;
 }
 
 /// The inner product of column b > a with the part of column a that is orthogonal to those before it.
@@ -118,20 +116,6 @@ void normalised_remainder(const Window& window, const Matrix& l, int a, double i
   }
   for (; b < a; ++b) subtract_scaled(qa, q(b), static_cast<Real>(l[a][b]), window.padded);
   scale(qa, static_cast<Real>(inverse), window.padded);
-}
-
-/// A second sweep for a column that lost digits to cancellation; false if nothing is left of it.
-bool orthogonalise_again(NestedFactor& factor, const Window& window, const Real* weight, int a) {
-  Real* qa = factor.q.data() + static_cast<std::size_t>(a) * static_cast<std::size_t>(window.stride);
-  for (int b = 0; b < a; ++b) {
-    if (!factor.kept[static_cast<std::size_t>(b)]) continue;
-    const Real* qb = factor.q.data() + static_cast<std::size_t>(b) * static_cast<std::size_t>(window.stride);
-    subtract_scaled(qa, qb, static_cast<Real>(weighted_dot(weight, qa, qb, window.padded)), window.padded);
-  }
-  const double length = weighted_dot(weight, qa, qa, window.padded);
-  if (!(length > 0.25)) return false;  // it was 1 before the sweep: what went was rounding, not signal
-  scale(qa, static_cast<Real>(1 / std::sqrt(length)), window.padded);
-  return true;
 }
 
 /// sums[c][k] = sum_j q_k(j) y_c(j) for two columns q and three y, or of the squares of q.
@@ -188,21 +172,16 @@ void factorise(const Window& window, int columns, const Real* weight, NestedFact
   Matrix gram, l;
   gram_matrix(factor.scratch.data(), columns, window.padded, stride, gram);
   for (int a = 0; a < columns; ++a) {
-    const Remainder remainder = remainder_of(gram, l, a, limits);
+    const double inverse = inverse_remainder(gram, l, a, window.layout, limits);
+    const bool keep = inverse > 0;
     Real* const qa = factor.q.data() + static_cast<std::size_t>(a) * stride;
-    const bool again = remainder.again;
-    if (remainder.keep) normalised_remainder(window, l, a, remainder.inverse, factor);
-    const bool keep = remainder.keep && (!again || orthogonalise_again(factor, window, weight, a));
-    if (!keep) std::fill(qa, qa + window.padded, Real(0));
+    if (keep)
+      normalised_remainder(window, l, a, inverse, factor);
+    else
+      std::fill(qa, qa + window.padded, Real(0));
     factor.kept[static_cast<std::size_t>(a)] = keep;
     factor.rank += keep;
-    for (int b = a + 1; b < columns; ++b) {
-      const Real* const xb = window.design.data() + static_cast<std::size_t>(b) * stride;
-      // A column that lost digits points elsewhere than the Gram matrix says: ask the column itself.
-      l[b][a] = !keep   ? 0
-                : again ? weighted_dot(weight, qa, xb, window.padded)
-                        : cholesky_entry(gram, l, a, b) * remainder.inverse;
-    }
+    for (int b = a + 1; b < columns; ++b) l[b][a] = keep ? cholesky_entry(gram, l, a, b) * inverse : 0;
   }
 }
 

@@ -21,11 +21,10 @@ struct NestedFactor {
   std::vector<double> scratch;                        ///< Weighted columns.
 };
 
-/// What is left of a column beside those before it, as a part of its own length: below `drop` the column depends on
-/// them and goes, below `repeat` cancellation has cost it digits and it is orthogonalised a second time ("twice is
-/// enough", Giraud and Langou 2002). What speaks for these values: docs/stability.md.
+/// When a column depends on those before it and goes: docs/stability.md has what speaks for these values.
 struct DependenceLimits {
-  double drop = 1e-4, repeat = 1e-2;
+  double remainder = 0.05;             ///< Of its length less than this part is left beside them, or,
+  double variation = least_variation;  ///< if a feature's, of its weighted root mean square over the window.
 };
 
 /// Factorises the window's design under the weights w (window.padded of them, >= 0, zero beyond window.count). The Gram

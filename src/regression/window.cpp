@@ -17,12 +17,8 @@ void gather_channel(const Image& image, int channel, const Window& window, Real 
   gather_plane(image.plane(channel), window.offset.data(), minus, column, window.padded);
 }
 
-// Of features, whose values are of order 1. What varies by less is rounding, of cleaned features above all: even where
-// they are flat, every pixel is a quotient of other sums. As a column of its own it would be fitted to the noise.
-constexpr Real least_variation = Real(1e-5);
-
 bool is_flat(const Real* column, int n) {
-  return std::all_of(column, column + n, [](Real x) { return std::abs(x) < least_variation; });
+  return std::all_of(column, column + n, [](Real x) { return std::abs(x) < Real(least_variation); });
 }
 
 POLYRECON_SIMD void first_order_columns(const int* x, const int* y, int center_x, int center_y, Real scale, Real* dx,
@@ -68,6 +64,7 @@ void Window::reserve(int radius, int columns, int channels) {
   distance.resize(rows);
   design.resize(rows * static_cast<std::size_t>(columns));
   response.resize(rows * static_cast<std::size_t>(channels));
+  origin.resize(static_cast<std::size_t>(channels));
   noise_variance.resize(rows * 3);
   guess.resize(rows * 3);
 }
@@ -96,12 +93,16 @@ void gather(const WindowSource& source, const BasisLayout& layout, int center_x,
   }
   window.layout = BasisLayout(varying, layout.order());
   taylor_columns(layout.order(), center_x, center_y, radius, window, column);
-  for (int c = 0; c < source.response->channels(); ++c)
-    gather_channel(*source.response, c, window, 0, window.response.data() + static_cast<std::size_t>(c) * stride);
+  for (int c = 0; c < source.response->channels(); ++c) {
+    const Real origin = source.response->at(center_x, center_y, c);
+    window.origin[static_cast<std::size_t>(c)] = origin;
+    gather_channel(*source.response, c, window, origin, window.response.data() + static_cast<std::size_t>(c) * stride);
+  }
   for (int c = 0; c < 3; ++c) {
     const std::size_t offset = static_cast<std::size_t>(c) * stride;
     gather_channel(*source.noise_variance, c, window, 0, window.noise_variance.data() + offset);
-    if (source.guess) gather_channel(*source.guess, c, window, 0, window.guess.data() + offset);
+    if (source.guess)
+      gather_channel(*source.guess, c, window, source.guess->at(center_x, center_y, c), window.guess.data() + offset);
   }
 }
 

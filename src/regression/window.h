@@ -7,6 +7,11 @@
 
 namespace polyrecon {
 
+/// Weighted root mean square over a window that a feature, whose values are of order 1, must have beside the columns
+/// before it. What varies by less is rounding, of cleaned features above all: even where they are flat, every pixel is
+/// a quotient of other sums. As a column of its own it would be fitted to the noise (docs/reliability.md).
+inline constexpr double least_variation = 2e-4;
+
 /// The pixels of one window Omega_c that may carry weight, gathered from the images into contiguous columns. Reused
 /// from centre to centre, so that the inner loops neither allocate nor jump through memory. Rows beyond count (up to
 /// padded) repeat the centre and always have weight 0.
@@ -23,9 +28,11 @@ struct Window {
   std::vector<int> offset;           ///< Its index in a plane of the image.
   std::vector<Real> distance;        ///< Patch distance of each pixel to the centre, >= 0.
   std::vector<Real> design;          ///< Columns of the model at each pixel, layout.columns() x stride.
-  std::vector<Real> response;        ///< y at each pixel, channels x stride.
+  std::vector<Real> response;        ///< y at each pixel minus y at the centre, channels x stride.
+  std::vector<Real> origin;          ///< y at the centre, channels.
   std::vector<Real> noise_variance;  ///< sigma^2 at each pixel, 3 x stride.
-  std::vector<Real> guess;           ///< The guess of mu of the stage before, 3 x stride; unused in stage 1.
+  std::vector<Real> guess;           ///< The guess of mu of the stage before minus that at the centre, 3 x stride;
+                                     ///< unused in stage 1.
 
   /// Makes room for windows of the given radius.
   void reserve(int radius, int columns, int channels);
@@ -42,7 +49,9 @@ struct WindowSource {
 /// Fills design, response, noise_variance and guess for the pixels already listed in window.x, window.y (count of
 /// them), and sets window.layout: that of `layout` without the features that do not vary over the window but by
 /// rounding. Features enter minus their value at the centre, positions as (i - c) / radius, both of order 1 or below:
-/// the columns of equation (2) but for scale.
+/// the columns of equation (2) but for scale. y and the guess enter minus their values at the centre as well, which
+/// changes nothing but the coefficient of the constant: else the errors of bright, quiet windows, differences of
+/// energies, would drown in the rounding of q.
 void gather(const WindowSource& source, const BasisLayout& layout, int center_x, int center_y, int radius,
             Window& window);
 

@@ -25,10 +25,11 @@ def read(file, channel):
     return picked.get_pixels(oiio.FLOAT).astype(float)
 
 
-def run(program, file, folder, options):
-    """The result and its error map."""
+def run(program, file, folder, effects):
+    """The result and its error map, in files of their own: OpenImageIO remembers what it has read."""
+    folder = pathlib.Path(tempfile.mkdtemp(dir=folder))
     clean, error = folder / "clean.exr", folder / "error.exr"
-    subprocess.run([program, "denoise", "-i", file, "-o", clean, "--error-map", error, "--quiet", *options], check=True)
+    subprocess.run([program, "denoise", "-i", file, "-o", clean, "--error-map", error, "--quiet", "--effects", effects], check=True)
     return read(clean, "ViewLayer.Combined"), read(error, "mse")
 
 
@@ -37,7 +38,7 @@ def main():
     parser.add_argument("programs", nargs=2, metavar="POLYRECON", help="the float build and the double build")
     parser.add_argument("--samples", nargs="+", default=SAMPLES)
     parser.add_argument("--pixels", type=int, default=0, metavar="N", help="also print the N pixels that differ most")
-    parser.add_argument("options", nargs="*", help="after --: for denoise")
+    parser.add_argument("--effects", default="auto", help="of denoise")
     args = parser.parse_args()
     print("| sample | largest | root mean square | over 1e-3 | over 1e-4 | sum of the error map |\n|---|---|---|---|---|---|")
     for sample in args.samples:
@@ -45,7 +46,7 @@ def main():
             folder = pathlib.Path(folder)
             # A result has the type of its input: float here, as rounding to half alone differs by up to 5e-4.
             subprocess.run(["oiiotool", "-a", ROOT / f"samples/{sample}.exr", "-d", "float", "-o", folder / "in.exr"], check=True)
-            (a, ea), (b, eb) = (run(p, folder / "in.exr", folder, args.options) for p in args.programs)
+            (a, ea), (b, eb) = (run(p, folder / "in.exr", folder, args.effects) for p in args.programs)
         difference = (np.abs(a - b) / np.maximum(np.abs(b), b.mean())).max(axis=2)
         over = [f"{100 * (difference > limit).mean():.2g} %" for limit in (1e-3, 1e-4)]
         print(f"| {sample} | {difference.max():.2g} | {np.sqrt((difference**2).mean()):.2g} | {over[0]} | {over[1]} "

@@ -85,9 +85,9 @@ double condition_of(const MatrixXd& sx) {
 }
 
 /// LAPACK's ratio for a least squares solution (xQRT17): below 30 is as good as the arithmetic allows.
-double residual_ratio(const Weighed& w, const VectorXd& residual) {
-  const double scale = w.sx.norm() * w.sy.norm() * static_cast<double>(w.sx.rows()) * eps;
-  return scale > 0 ? (w.sx.transpose() * residual).norm() / scale : 0;
+double residual_ratio(const Weighed& w, const MatrixXd& sx, const VectorXd& residual) {
+  const double scale = sx.norm() * w.sy.norm() * static_cast<double>(sx.rows()) * eps;
+  return scale > 0 ? (sx.transpose() * residual).norm() / scale : 0;
 }
 
 double ours(const Weighed& w, const DependenceLimits& limits, NestedFactor& factor) {
@@ -95,7 +95,10 @@ double ours(const Weighed& w, const DependenceLimits& limits, NestedFactor& fact
   factorise(w.window, columns, w.weight.data(), factor, limits);
   VectorXd z(columns);
   project(factor, w.window, w.weight.data(), w.window.response.data() + w.window.stride, z.data());
-  return residual_ratio(w, w.sy - w.s.asDiagonal() * (columns_of(factor.q, columns, w.window) * z));
+  MatrixXd kept = w.sx;  // what was dropped is no part of the model
+  for (int a = 0; a < columns; ++a)
+    if (!factor.kept[static_cast<std::size_t>(a)]) kept.col(a).setZero();
+  return residual_ratio(w, kept, w.sy - w.s.asDiagonal() * (columns_of(factor.q, columns, w.window) * z));
 }
 
 template <typename Scalar>
@@ -103,13 +106,13 @@ double normal_equations(const Weighed& w) {
   using Matrix = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>;
   const Matrix sx = w.sx.cast<Scalar>(), gram = sx.transpose() * sx, right = sx.transpose() * w.sy.cast<Scalar>();
   const VectorXd c = gram.llt().solve(right).template cast<double>();
-  return residual_ratio(w, w.sy - w.sx * c);
+  return residual_ratio(w, w.sx, w.sy - w.sx * c);
 }
 
 double householder(const Weighed& w) {
   const MatrixXf sx = w.sx.cast<float>(), sy = w.sy.cast<float>();
   const VectorXd c = sx.householderQr().solve(sy).cast<double>();
-  return residual_ratio(w, w.sy - w.sx * c);
+  return residual_ratio(w, w.sx, w.sy - w.sx * c);
 }
 
 /// Largest inner product of a column of S^-1 Q with those before it.
@@ -152,10 +155,12 @@ struct LimitSums {
     dropped += static_cast<std::size_t>(factor.columns - factor.rank);
     overlap = std::max(overlap, overlaps(w, factor).maxCoeff());
     const MatrixXd fit = fit_of(w, factor);
+    const auto origin = [&](int c) { return static_cast<double>(w.window.origin[static_cast<std::size_t>(c)]); };
     for (int j = 0; j < w.window.count; ++j)
       for (int c = 0; c < 3; ++c) {
         const std::size_t at = static_cast<std::size_t>(w.window.offset[static_cast<std::size_t>(j)]);
-        const double r = reference.mean.plane(c)[at], v = reference.variance.plane(c)[at], d = fit(j, c) - r;
+        const double r = reference.mean.plane(c)[at], v = reference.variance.plane(c)[at],
+                     d = fit(j, c) + origin(c) - r;
         const double weight_j = static_cast<double>(w.weight[static_cast<std::size_t>(j)]) / 3;
         error += weight_j * (d * d - v) / (r * r + 0.01);
         weight += weight_j;
@@ -164,10 +169,11 @@ struct LimitSums {
 };
 
 std::vector<LimitSums> all_limits() {
+  const DependenceLimits chosen;
   std::vector<LimitSums> out;
-  for (const double drop : {1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 3e-2, 1e-1})
-    out.push_back({{drop, std::max(drop, 1e-2)}});
-  for (const double repeat : {0.0, 1e-3, 1e-1, 1.0}) out.push_back({{1e-4, repeat}});
+  for (const double remainder : {1e-7, 1e-4, 1e-3, 1e-2, 2e-2, 5e-2, 1e-1, 2e-1})
+    out.push_back({{remainder, chosen.variation}});
+  for (const double variation : {0.0, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2}) out.push_back({{chosen.remainder, variation}});
   return out;
 }
 
@@ -176,17 +182,16 @@ struct Tables {
 };
 
 void tell_window(const std::string& name, const Weighed& w, Tables& tables) {
-  NestedFactor once, twice;
-  const double one_sweep = ours(w, {1e-7, 0}, once), two_sweeps = ours(w, {1e-7, 1e-2}, twice);
-  NestedFactor chosen;
+  NestedFactor chosen, all;
+  const double nothing_dropped = ours(w, {1e-7, 0}, all);
   tables.windows << name << ',' << w.sx.rows() << ',' << w.sx.cols() << ',' << condition_of(w.sx) << ','
-                 << ours(w, {}, chosen) << ',' << two_sweeps << ',' << one_sweep << ',' << householder(w) << ','
+                 << ours(w, {}, chosen) << ',' << nothing_dropped << ',' << householder(w) << ','
                  << normal_equations<double>(w) << ',' << normal_equations<float>(w) << ',' << chosen.rank << '\n';
-  const VectorXd single = overlaps(w, once), both = overlaps(w, twice);
+  const VectorXd of_all = overlaps(w, all), of_chosen = overlaps(w, chosen);
   const MatrixXd r = w.sx.householderQr().matrixQR();
   for (int a = 1; a < std::min(w.sx.rows(), w.sx.cols()); ++a)
-    tables.columns << name << ',' << a << ',' << std::abs(r(a, a)) / w.sx.col(a).norm() << ',' << single(a) << ','
-                   << both(a) << '\n';
+    tables.columns << name << ',' << a << ',' << std::abs(r(a, a)) / w.sx.col(a).norm() << ',' << of_all(a) << ','
+                   << of_chosen(a) << '\n';
 }
 
 void look_at_sample(const std::string& render, const std::string& reference_path, Tables& tables) {
@@ -203,7 +208,7 @@ void look_at_sample(const std::string& render, const std::string& reference_path
     for (LimitSums& s : sums) s.add(w, reference.beauty, factor);
   });
   for (const LimitSums& s : sums)
-    tables.limits << name << ',' << s.limits.drop << ',' << s.limits.repeat << ',' << s.error / s.weight << ','
+    tables.limits << name << ',' << s.limits.remainder << ',' << s.limits.variation << ',' << s.error / s.weight << ','
                   << s.overlap << ',' << static_cast<double>(s.dropped) / static_cast<double>(s.columns) << '\n';
 }
 
@@ -219,11 +224,10 @@ int main(int argc, char** argv) {
     const std::string folder = argv[1];
     polyrecon::Tables tables{std::ofstream(folder + "/windows.csv"), std::ofstream(folder + "/columns.csv"),
                              std::ofstream(folder + "/limits.csv")};
-    tables.windows
-        << "sample,rows,columns,condition,chosen,two sweeps,one sweep,QR in float,normal equations in double,"
-           "normal equations in float,rank\n";
-    tables.columns << "sample,column,left,one sweep,two sweeps\n";
-    tables.limits << "sample,drop,repeat,error,overlap,dropped\n";
+    tables.windows << "sample,rows,columns,condition,chosen,nothing dropped,QR in float,normal equations in double,"
+                      "normal equations in float,rank\n";
+    tables.columns << "sample,column,left,nothing dropped,limits in use\n";
+    tables.limits << "sample,remainder,variation,error,overlap,dropped\n";
     for (int k = 2; k < argc; k += 2) polyrecon::look_at_sample(argv[k], argv[k + 1], tables);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());

@@ -148,7 +148,7 @@ TEST(SampleMap, GoesByTheGeometricMeanOfErrorAndNoise) {
   EXPECT_NEAR(both.samples.at(1, 0, 0), 5, 1e-5);
   EXPECT_NEAR(both.error_before, 2.5, 1e-6);  // whatever the weights are
   EXPECT_NEAR(both.error_after, 2.5 * std::pow(4. / 9, 0.75), 1e-5);
-  error.relative_noise = Image(2, 1, 1);      // zero: nothing to go by
+  error.relative_noise = Image(2, 1, 1);  // zero: nothing to go by
   EXPECT_NEAR(run(error, budget_of(5, 0), filled(2, 1, 4)).samples.at(0, 0, 0), 8, 1e-5);
 }
 
