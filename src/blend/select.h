@@ -17,7 +17,7 @@ struct Candidate {
 };
 
 struct SelectParams {
-  double risk_sigma = 4;   ///< Gaussian over which cross-validated errors are averaged, pixels.
+  double risk_sigma = 3;   ///< Gaussian over which cross-validated errors are averaged, pixels.
   double map_sigma = 1.5;  ///< Gaussian by which the choice itself is smoothed.
 };
 

@@ -1,7 +1,9 @@
 #include "io/exr_chunks.h"
 
+#include <OpenEXR/ImfCompression.h>
 #include <OpenEXR/ImfPartType.h>
 #include <OpenEXR/ImfTileDescription.h>
+#include <OpenEXR/OpenEXRConfig.h>
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
@@ -35,8 +37,13 @@ std::uint64_t lines_per_chunk(Imf::Compression compression) {
     case Imf::DWAB_COMPRESSION:
       return 256;
     default:
-      return 1;
+      break;
   }
+#if OPENEXR_VERSION_MAJOR > 3 || OPENEXR_VERSION_MINOR >= 3
+  return static_cast<std::uint64_t>(Imf::getCompressionNumScanlines(compression));  // what came later
+#else
+  return 1;
+#endif
 }
 
 /// Sizes of all levels of one side of a mip- or rip-map.

@@ -28,7 +28,6 @@ Params params_for(Quality quality) {
     params.coverage = 6;
     params.first_bandwidths = {Real(0.35), Real(0.5), Real(0.7), Real(1)};
     params.later_bandwidths = {Real(0.35), Real(0.5), Real(0.7), Real(1)};
-    params.guided_bandwidths = {Real(0.5), Real(1)};
   }
   return params;
 }

@@ -32,7 +32,7 @@ struct Params {
   int max_order = 2;     ///< Highest Taylor order offered to the selection, 0..4.
   std::vector<Real> first_bandwidths{Real(0.7)};              ///< Stage 1.
   std::vector<Real> later_bandwidths{Real(0.35), Real(0.7)};  ///< Later stages, weights from the noisy half.
-  std::vector<Real> guided_bandwidths{Real(0.7)};             ///< Later stages, weights from the stage before.
+  std::vector<Real> guided_bandwidths{Real(0.5), Real(1)};    ///< Later stages, weights from the stage before.
   double order_tolerance = 0.01;  ///< A lower order is taken when its estimated error is within this of the least.
   double coverage = 2;            ///< Sum of weights below which finer centres are added; 0: none.
   PrefilterParams cleaning;       ///< Of noisy feature passes.

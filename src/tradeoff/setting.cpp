@@ -61,9 +61,7 @@ void add_bandwidths(Settings& list) {
   list.vary("bandwidths", "four bandwidths", [](Setting& s) {
     s.params.first_bandwidths = s.params.later_bandwidths = {Real(0.35), Real(0.5), Real(0.7), Real(1)};
   });
-  list.vary("bandwidths", "two guided bandwidths", [](Setting& s) {
-    s.params.guided_bandwidths = {Real(0.5), Real(1)};
-  });
+  list.vary("bandwidths", "one guided bandwidth", [](Setting& s) { s.params.guided_bandwidths = {Real(0.7)}; });
   list.vary("bandwidths", "no guided windows", [](Setting& s) { s.params.guided_bandwidths.clear(); });
 }
 
