@@ -5,14 +5,14 @@ namespace polyrecon {
 
 const std::array<StepFigures, step_count>& measured_steps() {
   static const std::array<StepFigures, step_count> figures{{
-      {0.136, 1.359},  // draft, order 0
-      {0.152, 1.311},  // draft
-      {0.344, 1.108},  // draft, stages 2
-      {0.349, 1.18},   // stages 1
+      {0.125, 1.307},  // draft, order 0
+      {0.136, 1.282},  // draft
+      {0.334, 1.097},  // draft, stages 2
+      {0.303, 1.196},  // stages 1
       {1, 1},          // standard
-      {1.7, 1.005},    // stages 3
-      {3.76, 0.9219},  // best, stages 2
-      {5.96, 0.9238},  // best
+      {1.71, 1.001},   // stages 3
+      {2.91, 0.9623},  // best, stages 2
+      {4.83, 0.9649},  // best
   }};
   return figures;
 }
