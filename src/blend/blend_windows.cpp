@@ -303,6 +303,8 @@ std::vector<BlendedFit> fit_and_blend(const FitSource& source, const std::vector
   for (std::size_t h = 0; h < params.bandwidths.size(); ++h)
     b.planes.emplace_back(width, height, source.response->channels());
   const auto needed = reached(active, width, height, params.radius);
+  // Like patches weigh 1, so sums at the limit itself are common: they count as covered, whatever their rounding.
+  const double least_coverage = params.coverage * (1 - 1e-4);
   const std::size_t widest = static_cast<std::size_t>(
       std::max_element(params.bandwidths.begin(), params.bandwidths.end()) - params.bandwidths.begin());
   // A coarse lattice of centres first; then, on ever finer ones, pixels that only unlike centres cover so far: they
@@ -315,7 +317,7 @@ std::vector<BlendedFit> fit_and_blend(const FitSource& source, const std::vector
         const std::size_t i = source.response->index(x, y);
         // Lattices begin anew in each block, so that a crop sees the same ones whatever the stride.
         const bool on_lattice = x % block_size % step == 0 && y % block_size % step == 0;
-        const bool lonely = static_cast<double>(plane.sums[(i + 1) * plane.channels - 1]) < params.coverage;
+        const bool lonely = static_cast<double>(plane.sums[(i + 1) * plane.channels - 1]) < least_coverage;
         is_center[i] = on_lattice && !done[i] && (step == params.stride ? needed[i] : active[i] && lonely);
         done[i] |= is_center[i];
       }
