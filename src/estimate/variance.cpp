@@ -69,6 +69,13 @@ Image mended_features(const Frame& frame) {
   return out;
 }
 
+/// The noise that remains where rounding to half floats, whose error is at most 2^-11 of the value, explains none of
+/// it.
+Real beyond_rounding(Real variance, Real value) {
+  const Real rounding = value * Real(0x1p-11);
+  return variance > rounding * rounding ? variance : 0;
+}
+
 /// Median over the fits within vote_radius (in fits) of pixel (x, y).
 Real vote(const Image& fits, int x, int y, int c) {
   const int fx = x / fit_stride, fy = y / fit_stride;
@@ -122,7 +129,8 @@ Image estimate_variance(const Frame& frame, Progress& progress) {
   parallel_for(static_cast<std::size_t>(out.height()), progress, [&](std::size_t row) {
     for (int c = 0; c < 3; ++c)
       for (int x = 0; x < out.width(); ++x)
-        out.at(x, static_cast<int>(row), c) = vote(fits, x, static_cast<int>(row), c);
+        out.at(x, static_cast<int>(row), c) =
+            beyond_rounding(vote(fits, x, static_cast<int>(row), c), y.at(x, static_cast<int>(row), c));
   });
   return out;
 }

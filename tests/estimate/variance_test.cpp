@@ -74,6 +74,25 @@ TEST(NoiseVariance, FromTheImageOnAPlaneIsThatOfTheNoise) {
   EXPECT_NEAR(mean_ratio(out.variance, Image(width, height, 3, Real(sigma * sigma))), 1, 0.05);
 }
 
+TEST(NoiseVariance, FromTheImageDoesNotTakeRoundingToHalfFloatsForNoise) {
+  // A half float holds 11 binary digits.
+  const auto to_half = [](double v) {
+    int exponent;
+    const double mantissa = std::frexp(v, &exponent);
+    return std::ldexp(std::round(mantissa * 2048) / 2048, exponent);
+  };
+  test::Random random(12);
+  const auto sky = [](int x, int y, int c) { return 0.3 + 0.003 * x - 0.001 * y + c; };
+  Frame frame;
+  frame.beauty.mean = test::image_of(width, height, 3, [&](int x, int y, int c) { return to_half(sky(x, y, c)); });
+  EXPECT_TRUE(test::same_bits(variance_of(frame).variance, Image(width, height, 3)));
+  // Noise of a thousandth of the light is seen as such.
+  frame.beauty.mean = test::image_of(
+      width, height, 3, [&](int x, int y, int c) { return to_half(sky(x, y, c) * (1 + 0.001 * random.normal())); });
+  const Image noisy = variance_of(frame).variance;
+  for (int c = 0; c < 3; ++c) EXPECT_GT(noisy.at(width / 2, height / 2, c), 0);
+}
+
 TEST(NoiseVariance, FromTheImageDoesNotTakeAnEdgeForNoise) {
   const double sigma = 0.05;
   test::Random random(5);
