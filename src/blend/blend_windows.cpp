@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/parallel.h"
+#include "core/real.h"
 #include "core/simd.h"
 #include "regression/least_squares.h"
 #include "regression/order_selection.h"
@@ -15,7 +16,7 @@ namespace polyrecon {
 namespace {
 
 /// Sums of equation (3) for one bandwidth, interleaved: a window touches all of them at each of its pixels.
-/// Channels: response | error 3 | variance 3 | order 1 | weight.
+/// Channels: response | relative bias 3 | variance 3 | order 1 | weight.
 class BlendSums {
  public:
   BlendSums(const Rect& area, int responses)
@@ -134,11 +135,24 @@ bool all_finite(const Scratch& s, std::size_t responses) {
   return true;
 }
 
-void blend(const Scratch& s, const OrderChoice& choice, std::size_t responses, BlendSums& sums) {
+POLYRECON_SIMD double energy_of(const Real* weight, const Real* fit, int n) {
+  double sum = 0;
+#pragma omp simd reduction(+ : sum)
+  for (int j = 0; j < n; ++j) {
+    const double f = fit[j];
+    sum += static_cast<double>(weight[j]) * f * f;
+  }
+  return sum;
+}
+
+/// weight_sum: of the window's weights; epsilon as in FitSource.
+void blend(const Scratch& s, const OrderChoice& choice, double weight_sum, double epsilon, std::size_t responses,
+           BlendSums& sums) {
   const auto stride = static_cast<std::size_t>(s.window.stride);
   double constant[8];
   for (std::size_t c = 0; c < 3; ++c) {
-    constant[c] = choice.error[c];
+    const double energy = energy_of(s.weight.data(), s.fit.data() + c * stride, s.window.padded) / weight_sum + epsilon;
+    constant[c] = std::sqrt((choice.error[c] - choice.variance[c]) / energy);
     constant[3 + c] = choice.variance[c];
   }
   constant[6] = BasisLayout::order_of(choice.model);
@@ -181,7 +195,7 @@ void fit_window(Blending& b, Scratch& s, Real bandwidth, BlendSums& sums) {
     return;
   }
   ++b.counters.per_model[static_cast<std::size_t>(choice.model)];
-  blend(s, choice, b.responses(), sums);
+  blend(s, choice, weight_sum, b.source.epsilon, b.responses(), sums);
 }
 
 void work_block(Blending& b, const Rect& block, Scratch& s, std::vector<BlendSums>& sums) {
@@ -229,8 +243,9 @@ void sweep(Blending& b, Progress& progress, const IsCenter& is_center) {
   }
 }
 
-BlendedFit normalise(BlendPlane& plane, const Image& response, const Image& noise_variance,
-                     const std::vector<unsigned char>& active, FitCounters& counters) {
+BlendedFit normalise(BlendPlane& plane, const FitSource& source, const std::vector<unsigned char>& active,
+                     FitCounters& counters) {
+  const Image &response = *source.response, &noise_variance = *source.noise_variance;
   const int width = response.width(), height = response.height(), channels = response.channels();
   BlendedFit out{Image(width, height, channels), Image(width, height, 3), Image(width, height, 3),
                  Image(width, height, 1)};
@@ -244,13 +259,14 @@ BlendedFit normalise(BlendPlane& plane, const Image& response, const Image& nois
       const bool covered = weight > std::numeric_limits<Real>::min();
       for (int c = 0; c < channels; ++c) out.value.at(x, y, c) = covered ? sums[c] / weight : response.at(x, y, c);
       if (!covered) {  // the response itself, in which each of the two halves' mean has half the noise of one
-        for (int c = 0; c < 3; ++c)
-          out.error.at(x, y, c) = out.variance.at(x, y, c) = Real(0.5) * noise_variance.at(x, y, c);
+        for (int c = 0; c < 3; ++c) out.variance.at(x, y, c) = Real(0.5) * noise_variance.at(x, y, c);
         uncovered += active[response.index(x, y)];
         continue;
       }
       for (int c = 0; c < 3; ++c) {
-        out.error.at(x, y, c) = sums[channels + c] / weight;
+        const double f = out.value.at(x, y, c), energy = f * f + source.epsilon;
+        const double bias = sums[channels + c] / weight;
+        out.squared_bias.at(x, y, c) = storable(bias * bias * energy);
         out.variance.at(x, y, c) = sums[channels + 3 + c] / weight;
       }
       out.order.at(x, y, 0) = sums[channels + 6] / weight;
@@ -324,8 +340,7 @@ std::vector<BlendedFit> fit_and_blend(const FitSource& source, const std::vector
     sweep(b, progress, [&](int x, int y) { return is_center[source.response->index(x, y)] != 0; });
   }
   std::vector<BlendedFit> out;
-  for (BlendPlane& plane : b.planes)
-    out.push_back(normalise(plane, *source.response, *source.noise_variance, active, counters));
+  for (BlendPlane& plane : b.planes) out.push_back(normalise(plane, source, active, counters));
   return out;
 }
 

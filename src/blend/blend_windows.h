@@ -30,14 +30,18 @@ struct FitSource {
   const Image* guide = nullptr;  ///< Colours of the other half (or of the stage before), 3 channels: the weights.
   const Image* guide_variance = nullptr;  ///< Noise variance of guide.
   const Image* guess = nullptr;           ///< mu as the stage before saw it, 3 channels; null in stage 1.
+  double epsilon = 0;  ///< What is added to squared radiance where errors are relative to it; > 0. See BlendedFit.
 };
 
-/// The windows of one bandwidth, overlapped and blended by equation (3).
+/// The windows of one bandwidth, overlapped and blended by equation (3). Biases are blended as such, not their squares:
+/// Minkowski's inequality, the tightest bound there is without knowing their signs; and relative to the mean of
+/// fit^2 + epsilon over the window, so that what a window gets wrong in the light is not all put on the shade beside
+/// it.
 struct BlendedFit {
-  Image value;     ///< As FitSource::response.
-  Image error;     ///< Estimated error (4) of the windows, blended like the value, 3 channels; radiance squared.
-  Image variance;  ///< The variance part (6) of it, 3 channels.
-  Image order;     ///< Taylor order k, blended, 1 channel.
+  Image value;         ///< As FitSource::response.
+  Image squared_bias;  ///< Of the value, from the windows' (5), 3 channels; radiance squared.
+  Image variance;      ///< Of the windows, equation (6), blended like the value, 3 channels; radiance squared.
+  Image order;         ///< Taylor order k, blended, 1 channel.
 };
 
 /// Counted over all windows; plain sums, so the order of the threads does not matter.

@@ -10,7 +10,7 @@ HalfPair downsample(const HalfPair& pair);
 
 /// Adds the low-frequency remainder that a window of limited radius leaves where the noise is strong. With u =
 /// up(coarse - down(fine)), the candidates fine, fine + u/2 and fine + u are judged by cross-validation like any
-/// others. coarse: a result on downsample(pair). error, variance and order are those of fine.
+/// others. coarse: a result on downsample(pair). bias, variance and order are those of fine.
 Candidate add_coarse(const HalfPair& pair, Candidate fine, const Candidate& coarse, const SelectParams& params);
 
 }  // namespace polyrecon

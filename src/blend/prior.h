@@ -21,7 +21,7 @@ double noise_in_prior(const Image& prior, const HalfPair& pair, const Image& own
 ///     exp(-max(0, D / E - 3)),   D = its squared distance from own,   E = mse,
 /// both relative and averaged over risk_sigma: an image that contradicts the samples by far more than our own
 /// estimated error is wrong, whatever the noise of the validation lets it score. prior: 3 channels. mse: estimated
-/// squared error of own (ErrorMap::mse). Only the beauty changes; error, variance and order stay those of own.
+/// squared error of own (ErrorMap::mse). Only the beauty changes; bias, variance and order stay those of own.
 Candidate add_prior(const HalfPair& pair, const Image& prior, const Image& mse, Candidate own,
                     const SelectParams& params);
 

@@ -6,6 +6,7 @@
 
 #include "core/gaussian.h"
 #include "core/parallel.h"
+#include "core/real.h"
 
 namespace polyrecon {
 namespace {
@@ -112,12 +113,24 @@ std::vector<int> least_risk(const std::vector<Image>& risk) {
   return best;
 }
 
-void add_share(const Image& in, const Image& shares, const Image& total, Image& out) {
+/// Adds to out the share of a candidate's `in`, each value as `of` gives it.
+template <typename Of>
+void add_share(const Image& in, const Image& shares, const Image& total, const Of& of, Image& out) {
   if (in.empty()) return;
   for_rows(out.height(), [&](int y) {
     for (int c = 0; c < out.channels(); ++c)
       for (int x = 0; x < out.width(); ++x)
-        out.at(x, y, c) += in.at(x, y, c) * (shares.at(x, y, 0) / total.at(x, y, 0));
+        out.at(x, y, c) += of(in.at(x, y, c)) * (shares.at(x, y, 0) / total.at(x, y, 0));
+  });
+}
+
+void square(Image& image) {
+  for_rows(image.height(), [&](int y) {
+    for (int c = 0; c < image.channels(); ++c)
+      for (int x = 0; x < image.width(); ++x) {
+        const double v = image.at(x, y, c);
+        image.at(x, y, c) = storable(v * v);
+      }
   });
 }
 
@@ -152,12 +165,15 @@ Candidate select(const HalfPair& pair, const Image& brightness, const std::vecto
                 Image(width, height, 3),
                 Image(width, height, 3),
                 Image(width, height, 1)};
+  const auto value = [](Real v) { return v; };
+  const auto root = [](Real v) { return std::sqrt(v); };  // Minkowski, as in BlendedFit
   for (std::size_t k = 0; k < candidates.size(); ++k) {
-    for (std::size_t h = 0; h < 2; ++h) add_share(candidates[k].half[h], shares[k], total, out.half[h]);
-    add_share(candidates[k].error, shares[k], total, out.error);
-    add_share(candidates[k].variance, shares[k], total, out.variance);
-    add_share(candidates[k].order, shares[k], total, out.order);
+    for (std::size_t h = 0; h < 2; ++h) add_share(candidates[k].half[h], shares[k], total, value, out.half[h]);
+    add_share(candidates[k].squared_bias, shares[k], total, root, out.squared_bias);
+    add_share(candidates[k].variance, shares[k], total, value, out.variance);
+    add_share(candidates[k].order, shares[k], total, value, out.order);
   }
+  square(out.squared_bias);
   return out;
 }
 
@@ -174,7 +190,7 @@ Candidate select_correction(const HalfPair& pair, Candidate own, std::vector<Can
   const Image brightness = mean_of_halves(own);
   corrected.insert(corrected.begin(), Candidate{std::move(own.half), {}, {}, {}});
   Candidate out = select(pair, brightness, corrected, params);
-  out.error = std::move(own.error);
+  out.squared_bias = std::move(own.squared_bias);
   out.variance = std::move(own.variance);
   out.order = std::move(own.order);
   return out;

@@ -11,8 +11,8 @@ namespace polyrecon {
 /// One way to reconstruct the frame: what each half came to, made from data the other half's judgement does not share.
 struct Candidate {
   std::array<Image, 2> half;  ///< As HalfPair::color.
-  Image error;                ///< Estimated error by equation (4), 3 channels; empty if the candidate has none.
-  Image variance;             ///< Its variance part, 3 channels.
+  Image squared_bias;         ///< As the windows estimate it (5), 3 channels; empty if the candidate has none.
+  Image variance;             ///< Of the windows, equation (6), 3 channels; empty if the candidate has none.
   Image order;                ///< Taylor order, 1 channel.
 };
 
@@ -41,7 +41,7 @@ Candidate select(const HalfPair& pair, const Image& brightness, const std::vecto
 /// Beauty of the mean of a candidate's halves, 3 channels.
 Image mean_of_halves(const Candidate& candidate);
 
-/// The best of own and further images made from it, of which only the halves are given; error, variance and order are
+/// The best of own and further images made from it, of which only the halves are given; bias, variance and order are
 /// those of own. Without variances: they would be own's for all.
 Candidate select_correction(const HalfPair& pair, Candidate own, std::vector<Candidate> corrected,
                             const SelectParams& params);

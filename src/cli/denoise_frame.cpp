@@ -132,7 +132,6 @@ void denoise_frame(const FrameFiles& files, LoadedFrame loaded, const DenoiseOpt
   report.seconds = loaded.read_seconds + seconds_since(start);
   report.peak_memory = peak_memory();
   report.reconstruction = result.report;
-  report.calibration = result.error.calibration;
   if (!files.report.empty()) write_text_file(files.report, report_json(report, in.source).dump(2) + "\n");
   print(o.quiet, report_text(report));
 }

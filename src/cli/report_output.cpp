@@ -127,8 +127,7 @@ std::string report_text(const RunReport& run) {
                                                 rgb_text(r.energy_after), 100 * energy_change(r)));
   text += line("restored gain", fmt::format("{:+.3f} {:+.3f} {:+.3f} %", 100 * r.restored_gain[0],
                                             100 * r.restored_gain[1], 100 * r.restored_gain[2]));
-  text += line("estimated relMSE",
-               fmt::format("{:.5g} (the windows' variance times {:.3g})", r.estimated_relative_mse, run.calibration));
+  text += line("estimated relMSE", fmt::format("{:.5g}", r.estimated_relative_mse));
   for (const std::string& note : run.notes) text += line("note", note);
   return text;
 }
@@ -170,7 +169,6 @@ Json report_json(const RunReport& run, const FrameSource& source) {
             {"restored_gain", rgb(r.restored_gain)},
             {"relative_change", number(energy_change(r))}}},
           {"estimated_relmse", number(r.estimated_relative_mse)},
-          {"error_calibration", number(run.calibration)},
           {"notes", run.notes}};
 }
 

@@ -19,7 +19,6 @@ struct RunReport {
   double seconds = 0;              ///< From start to the last file written.
   double read_seconds = 0, write_seconds = 0;
   std::size_t peak_memory = 0;  ///< Bytes, of the process.
-  double calibration = 1;       ///< Of the error map: the factor that brought it to the cross-validated error.
   Report reconstruction;
   std::optional<FramePlan> plan;  ///< Where the settings were chosen for the frame.
 };

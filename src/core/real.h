@@ -1,8 +1,17 @@
 #pragma once
 
+#include <algorithm>
+#include <limits>
+
 namespace polyrecon {
 
 /// Type of stored samples, chosen when the project is configured (POLYRECON_REAL). Sums are always double.
 using Real = POLYRECON_REAL;
+
+/// A value as it is stored; what is greater than the greatest finite sample becomes that one.
+inline Real storable(double value) {
+  constexpr double most = std::numeric_limits<Real>::max();
+  return static_cast<Real>(std::min(value, most));
+}
 
 }  // namespace polyrecon

@@ -53,7 +53,8 @@ void add_candidates(const HalfPair& pair, const Guide& guide, const Candidate* b
   for (std::size_t h = 0; h < 2; ++h) {
     const std::size_t other = params.parts.cross_filter ? 1 - h : h;
     const FitSource source{&pair.color[h], &pair.variance, &pair.features[other],
-                           guide.color[h], guide.variance, before ? &before->half[other] : nullptr};
+                           guide.color[h], guide.variance, before ? &before->half[other] : nullptr,
+                           pair.epsilon};
     fits[h] = fit_and_blend(source, noisy, params.fit(*guide.bandwidths), counters, progress);
   }
   const auto mean = [](Image a, const Image& b) {
@@ -66,17 +67,20 @@ void add_candidates(const HalfPair& pair, const Guide& guide, const Candidate* b
   };
   for (std::size_t k = 0; k < guide.bandwidths->size(); ++k)
     candidates.push_back({{std::move(fits[0][k].value), std::move(fits[1][k].value)},
-                          mean(std::move(fits[0][k].error), fits[1][k].error),
+                          mean(std::move(fits[0][k].squared_bias), fits[1][k].squared_bias),
                           mean(std::move(fits[0][k].variance), fits[1][k].variance),
                           mean(std::move(fits[0][k].order), fits[1][k].order)});
 }
 
-/// The noisy halves themselves: what a pixel keeps where no fit does better. Their error is the noise.
+/// The noisy halves themselves: what a pixel keeps where no fit does better. They have no bias.
 Candidate take_as_it_is(const HalfPair& pair) {
   Image noise = pair.variance;
   for (int c = 0; c < 3; ++c)
     for (std::size_t i = 0; i < noise.pixels(); ++i) noise.plane(c)[i] *= Real(0.5);  // of the mean of the halves
-  return {{pair.color[0], pair.color[1]}, noise, noise, Image(pair.width(), pair.height(), 1)};
+  return {{pair.color[0], pair.color[1]},
+          Image(pair.width(), pair.height(), 3),
+          std::move(noise),
+          Image(pair.width(), pair.height(), 1)};
 }
 
 /// Noise left in a stage's result, from the difference of its halves.
@@ -114,7 +118,7 @@ Candidate stage_of_tile(const HalfPair& pair, const Candidate* before, const Par
 
 Candidate crop_candidate(const Candidate& candidate, const Rect& r) {
   return {{crop(candidate.half[0], r), crop(candidate.half[1], r)},
-          crop(candidate.error, r),
+          crop(candidate.squared_bias, r),
           crop(candidate.variance, r),
           crop(candidate.order, r)};
 }
@@ -124,7 +128,7 @@ void paste_candidate(const Candidate& part, const Tile& tile, Candidate& whole) 
   const Rect from{core.x0 - tile.padded.x0, core.y0 - tile.padded.y0, core.x1 - tile.padded.x0,
                   core.y1 - tile.padded.y0};
   for (std::size_t h = 0; h < 2; ++h) paste(part.half[h], from, whole.half[h], core.x0, core.y0);
-  paste(part.error, from, whole.error, core.x0, core.y0);
+  paste(part.squared_bias, from, whole.squared_bias, core.x0, core.y0);
   paste(part.variance, from, whole.variance, core.x0, core.y0);
   paste(part.order, from, whole.order, core.x0, core.y0);
 }

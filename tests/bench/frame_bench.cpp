@@ -24,7 +24,8 @@ void count_pixels(benchmark::State& state) {
 void fit_and_blend_frame(benchmark::State& state) {
   const Params params = params_for(static_cast<Quality>(state.range(0)));
   const HalfPair pair = synthetic_pair(side, side);
-  const FitSource source{&pair.color[0], &pair.variance, &pair.features[1], &pair.color[1], &pair.variance, nullptr};
+  const FitSource source{&pair.color[0], &pair.variance, &pair.features[1], &pair.color[1],
+                         &pair.variance, nullptr,        pair.epsilon};
   const std::vector<unsigned char> active(pair.variance.pixels(), 1);
   FitCounters counters;
   Progress silent;

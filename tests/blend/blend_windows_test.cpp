@@ -18,12 +18,14 @@ using Eigen::VectorXd;
 using test::image_of;
 using test::Random;
 
+constexpr double epsilon = 0.2;
+
 /// Images of one fit: three noisy colours, one AOV, two features.
 struct Pictures {
   Image response, variance, features, guide, guess;
 
   FitSource source(bool first_stage) const {
-    return {&response, &variance, &features, &guide, &variance, first_stage ? nullptr : &guess};
+    return {&response, &variance, &features, &guide, &variance, first_stage ? nullptr : &guess, epsilon};
   }
 };
 
@@ -80,10 +82,12 @@ class Reference {
     for (int y = 0; y < height_; y += params.stride)
       for (int x = 0; x < width_; x += params.stride) add_window(x, y);
   }
-  /// Response 6, error 3, variance 3, order 1 of a pixel.
+  /// Response 6, squared bias 3, variance 3, order 1 of a pixel.
   VectorXd at(int x, int y) const {
     const VectorXd& s = sums_[static_cast<std::size_t>(y * width_ + x)];
-    return s.head(13) / s(13);
+    VectorXd out = s.head(13) / s(13);
+    for (int c = 0; c < 3; ++c) out(6 + c) *= out(6 + c) * (out(c) * out(c) + epsilon);
+    return out;
   }
 
  private:
@@ -189,14 +193,16 @@ class Reference {
         best_order = std::max(model - 1, 0);
       }
     }
+    VectorXd brightness(3);  // squared, of the fit
     for (int c = 0; c < 6; ++c) {
       const VectorXd yhat = best_h * value(p_.response, c);
+      if (c < 3) brightness(c) = w.dot(yhat.cwiseAbs2()) / w.sum() + epsilon;
       for (Eigen::Index j = 0; j < n; ++j) sum_at(px, py, j)(c) += w(j) * yhat(j);
     }
     for (Eigen::Index j = 0; j < n; ++j) {
       VectorXd& s = sum_at(px, py, j);
       for (int c = 0; c < 3; ++c) {
-        s(6 + c) += w(j) * std::max(best_error(c), best_variance(c)) / w.sum();
+        s(6 + c) += w(j) * std::sqrt(std::max(best_error(c) - best_variance(c), 0.0) / w.sum() / brightness(c));
         s(9 + c) += w(j) * best_variance(c) / w.sum();
       }
       s(12) += w(j) * best_order;
@@ -231,7 +237,7 @@ TEST(FitAndBlend, IsEquation3OfExplicitWindowsAndFits) {
                        << "stage " << (first_stage ? 1 : 2) << ", bandwidth " << k << ", pixel " << x << " " << y);
           for (int c = 0; c < 6; ++c) EXPECT_NEAR(static_cast<double>(fits[k].value.at(x, y, c)), expected(c), 2e-5);
           for (int c = 0; c < 3; ++c) {
-            EXPECT_NEAR(static_cast<double>(fits[k].error.at(x, y, c)), expected(6 + c), 2e-5);
+            EXPECT_NEAR(static_cast<double>(fits[k].squared_bias.at(x, y, c)), expected(6 + c), 2e-5);
             EXPECT_NEAR(static_cast<double>(fits[k].variance.at(x, y, c)), expected(9 + c), 2e-5);
           }
           EXPECT_NEAR(static_cast<double>(fits[k].order.at(x, y, 0)), expected(12), 1e-4);
@@ -249,7 +255,7 @@ TEST(FitAndBlend, EndlessCoverageMakesEveryPixelACentre) {
   const auto a = fit(p, dense), b = fit(p, covered);
   for (std::size_t k = 0; k < 2; ++k) {
     EXPECT_LT(test::max_difference(a[k].value, b[k].value), 1e-5);
-    EXPECT_LT(test::max_difference(a[k].error, b[k].error), 1e-5);
+    EXPECT_LT(test::max_difference(a[k].squared_bias, b[k].squared_bias), 1e-5);
   }
 }
 
@@ -317,7 +323,7 @@ TEST(FitAndBlend, HasTheSameBitsForAnyNumberOfThreads) {
     const auto again = test::with_threads(threads, [&] { return fit(p, params); });
     for (std::size_t k = 0; k < 2; ++k) {
       EXPECT_TRUE(test::same_bits(again[k].value, once[k].value)) << threads;
-      EXPECT_TRUE(test::same_bits(again[k].error, once[k].error)) << threads;
+      EXPECT_TRUE(test::same_bits(again[k].squared_bias, once[k].squared_bias)) << threads;
       EXPECT_TRUE(test::same_bits(again[k].variance, once[k].variance)) << threads;
       EXPECT_TRUE(test::same_bits(again[k].order, once[k].order)) << threads;
     }
@@ -343,7 +349,8 @@ TEST(FitAndBlend, ACropAlignedToTwoBlocksHasTheSameBitsInside) {
       const Rect within{inside.x0 - r.x0, inside.y0 - r.y0, inside.x1 - r.x0, inside.y1 - r.y0};
       for (std::size_t k = 0; k < 2; ++k) {
         EXPECT_TRUE(test::same_bits(crop(whole[k].value, inside), crop(cropped[k].value, within))) << stride;
-        EXPECT_TRUE(test::same_bits(crop(whole[k].error, inside), crop(cropped[k].error, within))) << stride;
+        EXPECT_TRUE(test::same_bits(crop(whole[k].squared_bias, inside), crop(cropped[k].squared_bias, within)))
+            << stride;
         EXPECT_TRUE(test::same_bits(crop(whole[k].order, inside), crop(cropped[k].order, within))) << stride;
       }
     }

@@ -55,7 +55,7 @@ TEST(AddCoarse, RemovesALowFrequencyErrorAndKeepsTheDetail) {
                   coarse = exact(downsample(test::pair_of(truth, 0, 3)).color[0], Image(size / 2, size / 2, 3));
   const Candidate out = add_coarse(pair, fine, coarse, SelectParams{});
   EXPECT_LT(squared_error(out, truth), 0.05 * squared_error(fine, truth));
-  EXPECT_TRUE(test::same_bits(out.error, error));
+  EXPECT_TRUE(test::same_bits(out.squared_bias, error));
   EXPECT_TRUE(test::same_bits(out.order, fine.order));
 }
 

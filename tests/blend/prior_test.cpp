@@ -85,7 +85,7 @@ TEST(AddPrior, HalvesAreAveraged) {
 TEST(AddPrior, TheErrorStaysThatOfOurOwnResult) {
   const Case c;
   const Candidate out = add_prior(c.pair, truth(), c.mse, c.result(), SelectParams{});
-  EXPECT_TRUE(test::same_bits(out.error, c.mse));
+  EXPECT_TRUE(test::same_bits(out.squared_bias, c.mse));
   EXPECT_TRUE(test::same_bits(out.variance, c.mse));
 }
 

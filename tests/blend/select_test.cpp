@@ -64,7 +64,7 @@ TEST(Select, SharesSumToOne) {
     candidates.push_back(candidate_of(noisy.color[0], noisy.color[1], Real(0.7)));
   }
   const Candidate out = select(pair, truth, candidates, SelectParams{});
-  EXPECT_LT(test::max_difference(out.error, Image(30, 20, 3, Real(0.7))), 1e-6);
+  EXPECT_LT(test::max_difference(out.squared_bias, Image(30, 20, 3, Real(0.7))), 1e-6);
   EXPECT_LT(test::max_difference(out.variance, Image(30, 20, 3, Real(0.7))), 1e-6);
   EXPECT_LT(test::max_difference(out.order, Image(30, 20, 1, Real(0.7))), 1e-6);
 }
@@ -150,6 +150,8 @@ TEST(Select, RiskAndSharesOfThreePixelsByHand) {
                                params);
   for (int i = 0; i < 3; ++i) {
     const double s = smooth[1][i] / (smooth[0][i] + smooth[1][i]);
+    EXPECT_NEAR(static_cast<double>(out.variance.at(0, i, 1)), (1 - s) * variance[0] + s * variance[1], 1e-5) << i;
+    EXPECT_NEAR(static_cast<double>(out.squared_bias.at(0, i, 1)), s * s, 1e-4) << i;  // of biases 0 and 1
     EXPECT_NEAR(static_cast<double>(out.order.at(0, i, 0)), s, 1e-4) << i;
     for (std::size_t h = 0; h < 2; ++h)
       EXPECT_NEAR(static_cast<double>(out.half[h].at(0, i, 2)), (1 - s) * f[0][h][i] + s * f[1][h][i], 1e-4) << i;

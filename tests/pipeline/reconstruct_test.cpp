@@ -29,9 +29,9 @@ TEST(Reconstruct, TakesTheNoiseOutOfASceneOfKnownTruth) {
     const double after = test::relative_mse(result.beauty, scene.truth);
     EXPECT_LT(after, 0.2 * before) << noise;
     // The error that it states is on the safe side: blending cancels bias of opposite sign, and the coarser levels take
-    // some away, neither of which a window's own estimate knows. Measured 1.4 to 2.1 times the true one.
+    // some away, neither of which a window's own estimate knows. Measured 1.3 to 1.9 times the true one.
     EXPECT_GT(result.report.estimated_relative_mse, 0.7 * after) << noise;
-    EXPECT_LT(result.report.estimated_relative_mse, 3 * after) << noise;
+    EXPECT_LT(result.report.estimated_relative_mse, 2.5 * after) << noise;
   }
 }
 

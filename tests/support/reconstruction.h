@@ -26,7 +26,7 @@ inline Result run(const Frame& frame, const Params& params = quick()) {
 inline bool finite(const Result& result) {
   bool all = all_finite(result.beauty) && all_finite(result.order) && all_finite(result.error.mse) &&
              all_finite(result.error.relative_mse) && all_finite(result.error.relative_variance) &&
-             all_finite(result.error.relative_noise) && std::isfinite(result.error.cross_validated);
+             all_finite(result.error.relative_noise) && std::isfinite(result.error.mean_relative_mse);
   for (const Image& aov : result.aovs) all &= all_finite(aov);
   return all;
 }
