@@ -103,6 +103,8 @@ Image variance_from_halves(const Pass& beauty) {
 
 }  // namespace
 
+bool noise_is_measured(const Frame& frame) { return !frame.beauty.variance.empty() || frame.beauty.has_halves(); }
+
 NoiseVariance noise_variance(const Frame& frame, Progress& progress) {
   if (!frame.beauty.variance.empty()) return {frame.beauty.variance, "from the file", true};
   if (frame.beauty.has_halves()) return {variance_from_halves(frame.beauty), "from the half buffers", true};

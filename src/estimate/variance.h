@@ -13,6 +13,9 @@ struct NoiseVariance {
   bool measured = true;  ///< False where it was estimated from the image: then it knows regions, not single pixels.
 };
 
+/// Whether the frame itself tells the noise of its beauty, by a variance or by half buffers.
+bool noise_is_measured(const Frame& frame);
+
 /// The noise variance of the beauty: what the file says; else (A - B)^2 / 4 of the half buffers, smoothed; else
 /// estimated.
 NoiseVariance noise_variance(const Frame& frame, Progress& progress);

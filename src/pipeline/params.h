@@ -24,12 +24,13 @@ struct Parts {
 
 /// Everything that steers a reconstruction; the only home of its defaults.
 struct Params {
-  int stages = 2;        ///< Rounds of error estimation, equations (8) and (9); 1..4.
-  int levels = 3;        ///< Resolutions worked: the frame, its half, its quarter; 1..5.
-  int radius = 9;        ///< Of the windows, pixels; 1..20.
-  int stride = 4;        ///< Distance of the window centres where windows agree, pixels; 1..radius.
-  int patch_radius = 1;  ///< Of the patches that weigh a window; 0..4.
-  int max_order = 2;     ///< Highest Taylor order offered to the selection, 0..4.
+  int stages = 2;                  ///< Rounds of error estimation, equations (8) and (9); 1..4.
+  int levels = 3;                  ///< Resolutions worked: the frame, its half, its quarter; 1..5.
+  int radius = 9;                  ///< Of the windows, pixels; 1..20.
+  int stride = 4;                  ///< Distance of the window centres where windows agree, pixels; 1..radius.
+  int patch_radius = 1;            ///< Of the patches that weigh a window; 0..4.
+  int estimated_patch_radius = 2;  ///< The same where the noise is estimated from the image: it knows no single pixels.
+  int max_order = 2;               ///< Highest Taylor order offered to the selection, 0..4.
   std::vector<Real> first_bandwidths{Real(0.7)};              ///< Stage 1.
   std::vector<Real> later_bandwidths{Real(0.35), Real(0.7)};  ///< Later stages, weights from the noisy half.
   std::vector<Real> guided_bandwidths{Real(0.5), Real(1)};    ///< Later stages, weights from the stage before.

@@ -171,9 +171,11 @@ Result reconstruct(Frame& frame, const Params& params, Progress& progress) {
   return reconstruct(frame, {}, params, progress);
 }
 
-Result reconstruct(Frame& frame, const std::vector<TimedNeighbour>& neighbours, const Params& params,
+Result reconstruct(Frame& frame, const std::vector<TimedNeighbour>& neighbours, const Params& asked,
                    Progress& progress) {
-  validate(params);
+  validate(asked);
+  Params params = asked;
+  if (!noise_is_measured(frame)) params.patch_radius = params.estimated_patch_radius;
   FrameShape shape = shape_of(frame);
   shape.beside += neighbour_channels(shape, static_cast<int>(neighbours.size()));
   require_memory("layer '" + frame.beauty.name + "'", shape, params);

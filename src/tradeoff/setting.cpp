@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "estimate/variance.h"
+
 namespace polyrecon {
 namespace {
 
@@ -44,7 +46,7 @@ bool has_feature(const Frame& frame, FeatureKind kind) {
 
 bool is_noisy(const Feature& feature) { return !feature.pass.variance.empty() || feature.pass.has_halves(); }
 
-void add_numbers(Settings& list) {
+void add_numbers(const Frame& frame, Settings& list) {
   list.vary<int>("stages", &Params::stages, {1, 3});
   list.vary<int>("levels", &Params::levels, {1, 2, 4});
   list.vary<int>("stride", &Params::stride, {2, 3, 6, 8});
@@ -52,7 +54,11 @@ void add_numbers(Settings& list) {
   list.vary<int>("order", &Params::max_order, {0, 1, 3});
   list.vary("coverage", "coverage 0", [](Setting& s) { s.params.coverage = 0; });
   list.vary("coverage", "coverage 6", [](Setting& s) { s.params.coverage = 6; });
-  list.vary<int>("patch", &Params::patch_radius, {0, 2, 3});
+  const Params standard = params_for(Quality::Standard);
+  for (const int radius : {0, 1, 2, 3})
+    if (radius != (noise_is_measured(frame) ? standard.patch_radius : standard.estimated_patch_radius))
+      list.vary("patch", "patch " + std::to_string(radius),
+                [&](Setting& s) { s.params.patch_radius = s.params.estimated_patch_radius = radius; });
 }
 
 void add_bandwidths(Settings& list) {
@@ -119,7 +125,7 @@ std::vector<Setting> settings_for(const Frame& frame, const std::vector<std::str
   Settings list(groups);
   list.add({"draft", "quality", params_for(Quality::Draft)});
   list.add({"best", "quality", params_for(Quality::Best)});
-  add_numbers(list);
+  add_numbers(frame, list);
   add_bandwidths(list);
   add_inputs(frame, list);
   add_parts(frame, list);

@@ -5,14 +5,14 @@ namespace polyrecon {
 
 const std::array<StepFigures, step_count>& measured_steps() {
   static const std::array<StepFigures, step_count> figures{{
-      {0.125, 1.307},  // draft, order 0
-      {0.136, 1.282},  // draft
-      {0.334, 1.097},  // draft, stages 2
-      {0.303, 1.196},  // stages 1
+      {0.13, 1.314},   // draft, order 0
+      {0.135, 1.289},  // draft
+      {0.328, 1.098},  // draft, stages 2
+      {0.265, 1.207},  // stages 1
       {1, 1},          // standard
-      {1.71, 1.001},   // stages 3
-      {2.91, 0.9623},  // best, stages 2
-      {4.83, 0.9649},  // best
+      {1.53, 1.001},   // stages 3
+      {2.87, 0.9616},  // best, stages 2
+      {4.74, 0.9644},  // best
   }};
   return figures;
 }

@@ -24,6 +24,7 @@ TEST(Params, ValuesOutOfRangeAreErrorsOfUse) {
       [](Params& p) { p.stride = 10; },
       [](Params& p) { p.patch_radius = -1; },
       [](Params& p) { p.patch_radius = 5; },
+      [](Params& p) { p.estimated_patch_radius = 5; },
       [](Params& p) { p.max_order = -1; },
       [](Params& p) { p.max_order = 5; },
       [](Params& p) { p.first_bandwidths.clear(); },

@@ -51,6 +51,20 @@ TEST(Reconstruct, WorksWithoutHalvesAndWithoutVariance) {
     }
 }
 
+TEST(Reconstruct, TakesWiderPatchesWhereTheNoiseIsEstimated) {
+  Scene scene = make_scene(48, 40, 0.4, 9);
+  const auto with = [&](int measured, int estimated) {
+    Params params = quick();
+    params.patch_radius = measured;
+    params.estimated_patch_radius = estimated;
+    return run(scene.frame, params).beauty;
+  };
+  EXPECT_TRUE(test::same_bits(with(1, 2), with(1, 1)));
+  scene.frame.beauty.variance = scene.frame.beauty.half_a = scene.frame.beauty.half_b = Image();
+  EXPECT_TRUE(test::same_bits(with(1, 2), with(2, 2)));
+  EXPECT_FALSE(test::same_bits(with(1, 2), with(1, 1)));
+}
+
 TEST(Reconstruct, RunsEveryStageAndOrder) {
   const Scene scene = make_scene(40, 36, 0.4, 4);
   const double before = test::relative_mse(scene.frame.beauty.mean, scene.truth);
