@@ -5,14 +5,14 @@ namespace polyrecon {
 
 const std::array<StepFigures, step_count>& measured_steps() {
   static const std::array<StepFigures, step_count> figures{{
-      {0.13, 1.314},   // draft, order 0
-      {0.135, 1.289},  // draft
-      {0.328, 1.098},  // draft, stages 2
-      {0.265, 1.207},  // stages 1
+      {0.121, 1.344},  // draft, order 0
+      {0.156, 1.307},  // draft
+      {0.339, 1.08},   // draft, stages 2
+      {0.291, 1.246},  // stages 1
       {1, 1},          // standard
-      {1.53, 1.001},   // stages 3
-      {2.87, 0.9616},  // best, stages 2
-      {4.74, 0.9644},  // best
+      {1.66, 1.004},   // stages 3
+      {2.7, 0.9909},   // best, stages 2
+      {4.69, 0.9982},  // best
   }};
   return figures;
 }
