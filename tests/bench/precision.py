@@ -14,7 +14,7 @@ import numpy as np
 import OpenImageIO as oiio
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-SAMPLES = ["study_16", "glass_16", "lighthouse_16", "study_denoised_16", "study_small_0"]
+SAMPLES = ["study_16", "glass_16", "lighthouse_16", "study_denoised_16", *(f"study_small_{k}" for k in range(4))]
 
 
 def read(file, channel):
