@@ -76,7 +76,7 @@ def plot(found, path):
         axis.set(xscale="log", yscale="log", xlim=ends, ylim=ends, title=name, xlabel="estimated", aspect="equal")
     axes[0].set_ylabel("true")
     axes[0].legend(frameon=False, loc="upper left")
-    figure.savefig(path, dpi=80)
+    figure.savefig(path, dpi=80, bbox_inches="tight")
 
 
 def write_between(path, text):
