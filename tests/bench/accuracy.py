@@ -120,9 +120,9 @@ def effects_table(found):
     return table(["sample", "time, auto / all", "error, auto / all"], rows)
 
 
-def write_between(path, name, text):
+def write_between(path, name, text, script="accuracy.py"):
     """Replaces what stands between the marks of that name."""
-    begin, end = f"<!-- {name}: made by tests/bench/accuracy.py -->", f"<!-- end of {name} -->"
+    begin, end = f"<!-- {name}: made by tests/bench/{script} -->", f"<!-- end of {name} -->"
     before, rest = path.read_text(encoding="utf-8").split(begin)
     path.write_text(f"{before}{begin}\n\n{text}\n\n{end}{rest.split(end)[1]}", encoding="utf-8")
 

@@ -11,12 +11,11 @@ import tempfile
 import matplotlib
 import numpy as np
 import OpenImageIO as oiio
+from accuracy import ROOT, SAMPLES, table, write_between
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-SAMPLES = {"study": "study", "glass": "glass", "lighthouse": "lighthouse", "study_denoised": "study"}  # : reference
 DECILES = 10
 FLOOR = 0.01  # of relMSE
 
@@ -53,36 +52,27 @@ def deciles(estimated, true):
 
 
 def row(name, estimated, true):
-    table = deciles(estimated, true)
-    ratios = [f"{t / e:.2f}" if e > 0 else "-" for e, t in table]
+    ratios = [f"{t / e:.2f}" if e > 0 else "-" for e, t in deciles(estimated, true)]
     return [name, f"{true.mean():.5f}", f"{estimated.mean() / true.mean():.2f}", *ratios]
 
 
 def markdown(rows):
-    head = ["render", "true relMSE", "estimated / true"] + [f"{d}" for d in range(1, DECILES + 1)]
-    lines = [head, ["---"] + ["---:"] * (len(head) - 1), *rows]
-    return "\n".join("| " + " | ".join(line) + " |" for line in lines)
+    return table(["render", "true relMSE", "estimated / true"] + [f"{d}" for d in range(1, DECILES + 1)], rows)
 
 
 def plot(found, path):
     figure, axes = plt.subplots(1, len(found), figsize=(3.4 * len(found), 3.4), layout="constrained")
     for axis, (name, (estimated, true)) in zip(axes, found.items()):
-        table = deciles(estimated, true)
-        table = table[(table > 0).all(axis=1)]
-        ends = np.array([table.min() / 2, table.max() * 2])
+        points = deciles(estimated, true)
+        points = points[(points > 0).all(axis=1)]
+        ends = np.array([points.min() / 2, points.max() * 2])
         axis.fill_between(ends, ends / 1.5, ends * 1.5, color="0.9", label="within 1.5")
         axis.plot(ends, ends, color="0.6", linewidth=1)
-        axis.plot(table[:, 0], table[:, 1], "o-", markersize=4)
+        axis.plot(points[:, 0], points[:, 1], "o-", markersize=4)
         axis.set(xscale="log", yscale="log", xlim=ends, ylim=ends, title=name, xlabel="estimated", aspect="equal")
     axes[0].set_ylabel("true")
     axes[0].legend(frameon=False, loc="upper left")
     figure.savefig(path, dpi=80, bbox_inches="tight")
-
-
-def write_between(path, text):
-    begin, end = "<!-- reliability: made by tests/bench/reliability.py -->", "<!-- end of reliability -->"
-    before, rest = path.read_text(encoding="utf-8").split(begin)
-    path.write_text(f"{before}{begin}\n\n{text}\n\n{end}{rest.split(end)[1]}", encoding="utf-8")
 
 
 def main():
@@ -98,7 +88,8 @@ def main():
     for name, reference in SAMPLES.items():
         files = ROOT / "samples" / f"{name}_16.exr", ROOT / "samples" / f"{reference}_ref.exr"
         found[name] = errors(options.polyrecon, *files)
-    write_between(ROOT / "docs/accuracy.md", markdown([row(name, *f) for name, f in found.items()]))
+    text = markdown([row(name, *f) for name, f in found.items()])
+    write_between(ROOT / "docs/accuracy.md", "reliability", text, "reliability.py")
     plot(found, ROOT / "docs/error_map.png")
 
 
