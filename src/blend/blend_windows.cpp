@@ -107,7 +107,7 @@ std::array<ColumnStatistics, 3> column_statistics(Scratch& s, bool first_stage) 
 }
 
 /// yhat of every response channel at every pixel of the window: sum_a g_a z_a q_a and the value that gather took away.
-void evaluate(Scratch& s, const OrderChoice& choice, int columns, std::size_t responses,
+void evaluate(Scratch& s, const OrderChoice& choice, std::size_t responses,
               const std::array<ColumnStatistics, 3>& beauty) {
   const auto stride = static_cast<std::size_t>(s.window.stride);
   std::array<double, BasisLayout::max_columns> z{};
@@ -118,7 +118,7 @@ void evaluate(Scratch& s, const OrderChoice& choice, int columns, std::size_t re
       z = beauty[c].z;
     else
       project(s.factor, s.window, s.weight.data(), s.window.response.data() + c * stride, z.data());
-    for (std::size_t a = 0; a < static_cast<std::size_t>(columns); ++a)
+    for (std::size_t a = 0; a < static_cast<std::size_t>(s.factor.columns); ++a)
       if (choice.factor[a] * z[a] != 0)
         add_scaled(fit, s.factor.q.data() + a * stride, static_cast<Real>(choice.factor[a] * z[a]), s.window.padded);
   }
@@ -155,7 +155,7 @@ void blend(const Scratch& s, const OrderChoice& choice, double weight_sum, doubl
     constant[c] = std::sqrt((choice.error[c] - choice.variance[c]) / energy);
     constant[3 + c] = choice.variance[c];
   }
-  constant[6] = BasisLayout::order_of(choice.model);
+  constant[6] = choice.order;
   constant[7] = 1;
   for (std::size_t j = 0; j < static_cast<std::size_t>(s.window.count); ++j) {
     const double w = static_cast<double>(s.weight[j]);
@@ -186,7 +186,7 @@ void fit_window(Blending& b, Scratch& s, Real bandwidth, BlendSums& sums) {
   const auto statistics = column_statistics(s, first_stage);
   OrderChoice choice =
       select_order(statistics, layout, weight_sum, first_stage, b.params.order_tolerance, b.params.shrinkage);
-  evaluate(s, choice, layout.columns(choice.model), b.responses(), statistics);
+  evaluate(s, choice, b.responses(), statistics);
   ++b.counters.windows;
   if (s.factor.rank < layout.columns()) ++b.counters.rank_deficient;
   if (!all_finite(s, b.responses())) {

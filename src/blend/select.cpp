@@ -1,5 +1,6 @@
 #include "blend/select.h"
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <utility>
@@ -12,6 +13,7 @@ namespace polyrecon {
 namespace {
 
 constexpr double brightness_sigma = 1;
+constexpr double tie = 1e-3;  ///< Relative difference of risks.
 // Relative noise variance below and above which candidates count alike: keeps shares finite and above zero.
 constexpr Real least_relative_variance = Real(1e-12), most_relative_variance = Real(1e12);
 constexpr double pi = 3.14159265358979323846;
@@ -50,15 +52,19 @@ Image raw_risk(const HalfPair& pair, const Candidate& candidate, const Image& sc
   return out;
 }
 
-/// exp(-z^2 / 2), z = D / SE, of a candidate against the best one of each pixel.
-Image likelihood(const std::vector<Image>& raw, const std::vector<Image>& risk, const std::vector<int>& best,
-                 std::size_t k, const SelectParams& params) {
-  const int width = raw[k].width(), height = raw[k].height();
+/// What the candidates are compared with at each pixel.
+struct Best {
+  Image raw;   ///< Unsmoothed risk of the best candidate, the mean over those that are as good.
+  Image risk;  ///< The least one.
+};
+
+/// exp(-z^2 / 2), z = D / SE, of a candidate against the best of each pixel.
+Image likelihood(const Image& raw, const Image& risk, const Best& best, const SelectParams& params) {
+  const int width = raw.width(), height = raw.height();
   Image moments(width, height, 2);
-  const auto best_at = [&](int x, int y) { return static_cast<std::size_t>(best[raw[k].index(x, y)]); };
   for_rows(height, [&](int y) {
     for (int x = 0; x < width; ++x) {
-      const Real difference = raw[k].at(x, y, 0) - raw[best_at(x, y)].at(x, y, 0);
+      const Real difference = raw.at(x, y, 0) - best.raw.at(x, y, 0);
       moments.at(x, y, 0) = difference;
       moments.at(x, y, 1) = difference * difference;
     }
@@ -68,14 +74,9 @@ Image likelihood(const std::vector<Image>& raw, const std::vector<Image>& risk, 
   Image out(width, height, 1);
   for_rows(height, [&](int y) {
     for (int x = 0; x < width; ++x) {
-      if (best_at(x, y) == k) {
-        out.at(x, y, 0) = 1;
-        continue;
-      }
       const double mean = moments.at(x, y, 0), square = moments.at(x, y, 1);
       const double error = std::sqrt(std::max(0.0, square - mean * mean) / independent);
-      const double above =
-          static_cast<double>(risk[k].at(x, y, 0)) - static_cast<double>(risk[best_at(x, y)].at(x, y, 0));
+      const double above = static_cast<double>(risk.at(x, y, 0)) - static_cast<double>(best.risk.at(x, y, 0));
       const double z = above / (error + 1e-30);
       out.at(x, y, 0) = static_cast<Real>(above > 0 ? std::exp(-0.5 * z * z) : 1.0);
     }
@@ -101,16 +102,26 @@ void favour_little_noise(const Image& variance, const Image& scale, double sigma
   });
 }
 
-std::vector<int> least_risk(const std::vector<Image>& risk) {
-  std::vector<int> best(risk[0].pixels(), 0);
-  for_rows(risk[0].height(), [&](int y) {
-    for (int x = 0; x < risk[0].width(); ++x) {
-      int& b = best[risk[0].index(x, y)];
-      for (int k = 1; k < static_cast<int>(risk.size()); ++k)
-        if (risk[static_cast<std::size_t>(k)].at(x, y, 0) < risk[static_cast<std::size_t>(b)].at(x, y, 0)) b = k;
+/// Candidates count as the best from 1 at the least risk falling to 0 at `tie` above it: rounding does not decide
+/// which.
+Best best_of(const std::vector<Image>& raw, const std::vector<Image>& risk) {
+  Best out{Image(raw[0].width(), raw[0].height(), 1), risk[0]};
+  for_rows(out.raw.height(), [&](int y) {
+    for (int x = 0; x < out.raw.width(); ++x) {
+      Real& least = out.risk.at(x, y, 0);
+      for (const Image& r : risk) least = std::min(least, r.at(x, y, 0));
+      const double scale = tie * std::abs(static_cast<double>(least));
+      double sum = 0, total = 0;
+      for (std::size_t k = 0; k < raw.size(); ++k) {
+        const double above = static_cast<double>(risk[k].at(x, y, 0)) - static_cast<double>(least);
+        const double share = above < scale ? 1 - above / scale : above > 0 ? 0 : 1;
+        sum += share * static_cast<double>(raw[k].at(x, y, 0));
+        total += share;
+      }
+      out.raw.at(x, y, 0) = static_cast<Real>(sum / total);
     }
   });
-  return best;
+  return out;
 }
 
 /// Adds to out the share of a candidate's `in`, each value as `of` gives it.
@@ -150,10 +161,10 @@ Candidate select(const HalfPair& pair, const Image& brightness, const std::vecto
     raw.push_back(raw_risk(pair, candidate, scale));
     risk.push_back(gaussian_blur(raw.back(), params.risk_sigma));
   }
-  const std::vector<int> best = least_risk(risk);
+  const Best best = best_of(raw, risk);
   Image total(width, height, 1);
   for (std::size_t k = 0; k < candidates.size(); ++k) {
-    Image share = likelihood(raw, risk, best, k, params);
+    Image share = likelihood(raw[k], risk[k], best, params);
     favour_little_noise(candidates[k].variance, scale, params.risk_sigma, share);
     shares.push_back(gaussian_blur(share, params.map_sigma));
     for_rows(height, [&](int y) {

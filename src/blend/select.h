@@ -30,7 +30,8 @@ int select_halo(const SelectParams& params);
 /// is, but for the noise of A and B that all candidates share, an unbiased estimate of the relative squared error of
 /// (f_A + f_B) / 2. Averaged over risk_sigma; a candidate's share is
 ///     exp(-z^2 / 2) / s,   z = D / SE,
-/// with D its risk above the best's and SE the standard error of D (how likely the difference is chance), and s the
+/// with D its risk above the best's (the mean of several that are equally good: no rounding decides which the others
+/// are compared with) and SE the standard error of D (how likely the difference is chance), and s the
 /// standard deviation of its own noise, from the windows' variance averaged alike: of candidates that cannot be told
 /// apart by their risk the less noisy ones count for more. Candidates without a variance have s = 1. Shares are
 /// smoothed by map_sigma. brightness: 3 channels, a guess of the result. All images of one size; at least one

@@ -14,6 +14,17 @@ constexpr int fit_radius = 3, fit_stride = 2, vote_radius = 2;
 constexpr double half_difference_sigma =
     1.5;  // pixels over which (A - B)^2 is averaged: one of them alone has one degree of freedom
 
+/// Of a fit whose weights are 1: the trace of H, which is the rank but for columns that count in part.
+double degrees_of_freedom(const NestedFactor& factor, const Window& window) {
+  double trace = 0;
+  for (std::size_t a = 0; a < static_cast<std::size_t>(factor.columns); ++a)
+    for (std::size_t j = 0; j < static_cast<std::size_t>(window.count); ++j) {
+      const double q = factor.q[a * static_cast<std::size_t>(window.stride) + j];
+      trace += q * q;
+    }
+  return trace;
+}
+
 /// Residual variance per channel of the fit around a centre; -1 where there are too few pixels for the columns.
 void residual_variance(const Image& y, const Image& features, int cx, int cy, Window& window, NestedFactor& factor,
                        std::vector<Real>& weight, Real* out) {
@@ -31,7 +42,7 @@ void residual_variance(const Image& y, const Image& features, int cx, int cy, Wi
     }
   gather({&y, &y, &features, nullptr}, layout, cx, cy, fit_radius, window);
   factorise(window, window.layout.columns(), weight.data(), factor);
-  const int freedom = window.count - factor.rank;
+  const double freedom = window.count - degrees_of_freedom(factor, window);
   std::array<double, BasisLayout::max_columns> z{};
   for (int c = 0; c < 3; ++c) {
     const Real* values = window.response.data() + static_cast<std::size_t>(c) * static_cast<std::size_t>(window.stride);
@@ -44,7 +55,7 @@ void residual_variance(const Image& y, const Image& features, int cx, int cy, Wi
         rest -= z[a] * static_cast<double>(factor.q[a * static_cast<std::size_t>(window.stride) + j]);
       residual += rest * rest;
     }
-    out[c] = freedom > 0 ? static_cast<Real>(residual / freedom) : Real(-1);
+    out[c] = freedom > 0.5 ? static_cast<Real>(residual / freedom) : Real(-1);
   }
 }
 

@@ -20,7 +20,7 @@ bool noise_is_measured(const Frame& frame);
 /// estimated.
 NoiseVariance noise_variance(const Frame& frame, Progress& progress);
 
-/// Estimates the noise variance of an image that comes without any: the residual variance sum r^2 / (n - rank) of local
+/// Estimates the noise variance of an image that comes without any: the residual variance sum r^2 / (n - tr H) of local
 /// fits (constant, features, plane over 7 x 7 pixels, every second pixel), of which each pixel takes the median of the
 /// fits around it: the few windows that straddle an edge, which call the edge noise, lose the vote. What rounding to
 /// half floats explains (a deviation of at most 2^-11 of the value) is no noise: 0.

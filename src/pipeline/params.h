@@ -34,7 +34,7 @@ struct Params {
   std::vector<Real> first_bandwidths{Real(0.7)};              ///< Stage 1.
   std::vector<Real> later_bandwidths{Real(0.35), Real(0.7)};  ///< Later stages, weights from the noisy half.
   std::vector<Real> guided_bandwidths{Real(0.5), Real(1)};    ///< Later stages, weights from the stage before.
-  double order_tolerance = 0.01;  ///< A lower order is taken when its estimated error is within this of the least.
+  double order_tolerance = 0.02;  ///< Orders are averaged whose estimated errors are within this of the least.
   double coverage = 2;            ///< Sum of weights below which finer centres are added; 0: none.
   PrefilterParams cleaning;       ///< Of noisy feature passes.
   SelectParams selection;

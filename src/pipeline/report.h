@@ -24,7 +24,7 @@ struct Report {
 
   std::size_t windows = 0;                         ///< Local fits made.
   std::array<std::size_t, 6> windows_per_order{};  ///< [0]: constant only; [k]: order k - 1 with features, k = 1..5.
-  std::size_t rank_deficient_windows = 0;          ///< Fits in which a dependent column was dropped.
+  std::size_t rank_deficient_windows = 0;          ///< Fits in which a column depends on others: counts for half at most.
   std::size_t dropped_windows = 0;                 ///< Fits that were not finite and left out.
   std::size_t pixels_fallen_back_to_input = 0;     ///< Pixels that no finite fit covered.
   std::size_t raised_pixels = 0;    ///< Pixels raised to the least input around them (blend/undershoot.h).

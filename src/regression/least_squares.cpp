@@ -9,6 +9,8 @@ namespace polyrecon {
 namespace {
 
 constexpr int max_columns = BasisLayout::max_columns;
+/// Part of the limit (of squares) below which a column goes: with its penalty it would count for 1e-5 of itself.
+constexpr double as_good_as_nothing = 3e-3;
 using Matrix = double[max_columns][max_columns];
 
 POLYRECON_SIMD void multiply(const Real* a, const Real* b, double* product, int rows) {
@@ -80,18 +82,25 @@ POLYRECON_SIMD void scale(Real* y, Real factor, int rows) {
   for (int j = 0; j < rows; ++j) y[j] *= factor;
 }
 
-/// 1 / the length of what is left of column a beside those before it; 0 where it depends on them.
-double inverse_remainder(const Matrix& gram, const Matrix& l, int a, const BasisLayout& layout,
-                         const DependenceLimits& limits) {
+/// What is left of a column beside those before it.
+struct Remainder {
+  double inverse_length = 0;  ///< 1 / (length with the penalty); 0 where the column is as good as dependent.
+  bool independent = false;   ///< More is left than the limits ask for.
+};
+
+Remainder remainder_of(const Matrix& gram, const Matrix& l, int a, const BasisLayout& layout,
+                       const DependenceLimits& limits) {
   double rest = gram[a][a];
   for (int b = 0; b < a; ++b) rest -= l[a][b] * l[a][b];
   const bool is_feature = a >= 1 && a <= layout.features();
   const double weight_sum = gram[0][0];  // column 0 is 1 everywhere
-  const double least = std::max(limits.remainder * limits.remainder * gram[a][a],
-                                is_feature ? limits.variation * limits.variation * weight_sum : 0.0);
+  const double little = std::max(limits.remainder * limits.remainder * gram[a][a],
+                                 is_feature ? limits.variation * limits.variation * weight_sum : 0.0);
+  const double square = rest + little * (little / rest);
   // The length and its inverse must be values of the storage type, or q overflows.
-  const bool keep = rest > least && std::isnormal(rest) && std::isnormal(static_cast<Real>(std::sqrt(rest)));
-  return keep ? 1 / std::sqrt(rest) : 0;
+  const bool keep =
+      rest > as_good_as_nothing * little && std::isnormal(rest) && std::isnormal(static_cast<Real>(std::sqrt(square)));
+  return {keep ? 1 / std::sqrt(square) : 0, keep && rest > little};
 }
 
 /// The inner product of column b > a with the part of column a that is orthogonal to those before it.
@@ -172,16 +181,16 @@ void factorise(const Window& window, int columns, const Real* weight, NestedFact
   Matrix gram, l;
   gram_matrix(factor.scratch.data(), columns, window.padded, stride, gram);
   for (int a = 0; a < columns; ++a) {
-    const double inverse = inverse_remainder(gram, l, a, window.layout, limits);
-    const bool keep = inverse > 0;
+    const Remainder left = remainder_of(gram, l, a, window.layout, limits);
+    const bool keep = left.inverse_length > 0;
     Real* const qa = factor.q.data() + static_cast<std::size_t>(a) * stride;
     if (keep)
-      normalised_remainder(window, l, a, inverse, factor);
+      normalised_remainder(window, l, a, left.inverse_length, factor);
     else
       std::fill(qa, qa + window.padded, Real(0));
     factor.kept[static_cast<std::size_t>(a)] = keep;
-    factor.rank += keep;
-    for (int b = a + 1; b < columns; ++b) l[b][a] = keep ? cholesky_entry(gram, l, a, b) * inverse : 0;
+    factor.rank += left.independent;
+    for (int b = a + 1; b < columns; ++b) l[b][a] = keep ? cholesky_entry(gram, l, a, b) * left.inverse_length : 0;
   }
 }
 

@@ -12,19 +12,25 @@ namespace polyrecon {
 ///     S X = Q R,   q_a = column a of S^-1 Q,   so that   sum_i w_i q_a(i) q_b(i) = (a == b).
 /// The fit of any prefix of columns is yhat = sum_a z_a q_a with z_a = sum_i w_i q_a(i) y(i), and the projection matrix
 /// of equations (5) and (6) is H_ij = sum_a q_a(i) q_a(j) w_j. H itself is never formed.
+///
+/// Where columns depend on each other this is the fit of a generalised ridge regression (Hoerl and Kennard 1970),
+///     R^T R = X^T W X + diag(D),   D_a = little_a^2 / rest_a,
+/// with rest_a the square of what is left of column a beside those before it and little_a that of DependenceLimits: a
+/// column of which enough is left counts whole, to (little / rest)^2, and fades out below, so that no rounding decides
+/// whether it is there. q_a is shorter then: sum_i w_i q_a(i)^2 = 1 / (1 + (little_a / rest_a)^2) at most.
 struct NestedFactor {
   int columns = 0;
-  int rank = 0;                                       ///< Columns kept.
-  std::array<bool, BasisLayout::max_columns> kept{};  ///< False where a column depends on those before it.
+  int rank = 0;                                       ///< Columns that count for more than half of themselves.
+  std::array<bool, BasisLayout::max_columns> kept{};  ///< False where nothing is left to speak of.
   std::vector<Real> q;                                ///< columns x window.stride; dropped columns are zero.
   std::vector<Real> root;                             ///< sqrt(w), the diagonal of S.
   std::vector<double> scratch;                        ///< Weighted columns.
 };
 
-/// When a column depends on those before it and goes: docs/stability.md has what speaks for these values.
+/// Where a column, depending on those before it, counts for half: docs/stability.md has what speaks for these values.
 struct DependenceLimits {
-  double remainder = 0.05;             ///< Of its length less than this part is left beside them, or,
-  double variation = least_variation;  ///< if a feature's, of its weighted root mean square over the window.
+  double remainder = 0.03;             ///< This part of its length is left beside them, or,
+  double variation = least_variation;  ///< if a feature's, this weighted root mean square over the window.
 };
 
 /// Factorises the window's design under the weights w (window.padded of them, >= 0, zero beyond window.count). The Gram

@@ -66,6 +66,52 @@ std::array<double, BasisLayout::max_columns> shrinkage_factors(const Channels& c
   return factors;
 }
 
+/// How much each model counts: 1 at the least error, falling to 0 where the error is above it by tolerance times itself
+/// and the noise of the constant.
+std::array<double, BasisLayout::max_models> model_shares(const std::array<double, BasisLayout::max_models>& errors,
+                                                         const Channels& channels, int models, double tolerance) {
+  const double least = *std::min_element(errors.begin(), errors.begin() + models);
+  double scale = std::max(least, 0.0);
+  for (const ColumnStatistics& channel : channels) scale += channel.variance[0];
+  scale *= tolerance;
+  std::array<double, BasisLayout::max_models> shares{};
+  double total = 0;
+  for (std::size_t m = 0; m < static_cast<std::size_t>(models); ++m) {
+    const double above = errors[m] - least;
+    shares[m] = above < scale ? 1 - above / scale : above > 0 ? 0 : 1;
+    total += shares[m];
+  }
+  for (double& share : shares) share /= total;
+  return shares;
+}
+
+/// A column is in every model from the one it comes with on: its factor times what those count for.
+void weigh_columns(const std::array<double, BasisLayout::max_models>& shares, const BasisLayout& layout,
+                   std::array<double, BasisLayout::max_columns>& factor) {
+  double with_column = 0;
+  for (int model = layout.models() - 1; model >= 0; --model) {
+    with_column = std::min(with_column + shares[static_cast<std::size_t>(model)], 1.0);
+    for (int a = model > 0 ? layout.columns(model - 1) : 1; a < layout.columns(model); ++a)
+      factor[static_cast<std::size_t>(a)] *= with_column;
+  }
+}
+
+/// Sets model and order. A model all of whose own columns have the factor 0 is the one below.
+void tell_order(const std::array<double, BasisLayout::max_models>& shares, const BasisLayout& layout,
+                OrderChoice& choice) {
+  double most = 0;
+  int same = 0;
+  for (int model = 0; model < layout.models(); ++model) {
+    const double share = shares[static_cast<std::size_t>(model)];
+    const auto begin = choice.factor.begin() + (model > 0 ? layout.columns(model - 1) : 0);
+    if (std::any_of(begin, choice.factor.begin() + layout.columns(model), [](double g) { return g > 0; })) same = model;
+    choice.order += share * BasisLayout::order_of(same);
+    if (share <= most) continue;
+    most = share;
+    choice.model = same;
+  }
+}
+
 }  // namespace
 
 OrderChoice select_order(const Channels& channels, const BasisLayout& layout, double weight_sum, bool first_stage,
@@ -77,14 +123,13 @@ OrderChoice select_order(const Channels& channels, const BasisLayout& layout, do
   else
     choice.factor.fill(1);
   const auto errors = nested_errors(channels, layout, choice.factor.data(), first_stage);
-  const double least = *std::min_element(errors.begin(), errors.begin() + layout.models());
-  while (errors[static_cast<std::size_t>(choice.model)] > least + tolerance * std::max(least, 0.0)) ++choice.model;
-
-  const int columns = layout.columns(choice.model);
-  std::fill(choice.factor.begin() + columns, choice.factor.end(), 0.0);
+  std::fill(choice.factor.begin() + layout.columns(), choice.factor.end(), 0.0);
+  const auto shares = model_shares(errors, channels, layout.models(), tolerance);
+  weigh_columns(shares, layout, choice.factor);
+  tell_order(shares, layout, choice);
   for (std::size_t c = 0; c < channels.size(); ++c) {
     double error = error_of_nothing(channels[c], first_stage), variance = 0;
-    for (int a = 0; a < columns; ++a) {
+    for (int a = 0; a < layout.columns(); ++a) {
       const double g = choice.factor[static_cast<std::size_t>(a)];
       error += error_change(channels[c], a, g, first_stage);
       variance += g * g * channels[c].variance[static_cast<std::size_t>(a)];

@@ -16,9 +16,10 @@ struct ColumnStatistics {
   double noise_energy = 0;  ///< sum_i w_i sigma^2(i).
 };
 
-/// The model that a window settles on, and its estimated error.
+/// The models that a window settles on, and their estimated error.
 struct OrderChoice {
-  int model = 0;                                          ///< Index into BasisLayout's models.
+  int model = 0;     ///< The one that counts most: index into BasisLayout's models, the lowest of equals.
+  double order = 0;  ///< Taylor order, mean over the models.
   std::array<double, BasisLayout::max_columns> factor{};  ///< g_a: column a enters the fit as g_a z_a q_a.
   std::array<double, 3> error{};     ///< Equation (4) per channel: weighted mean of bias^2 + variance; >= 0.
   std::array<double, 3> variance{};  ///< Equation (6) per channel, its part of error.
@@ -39,7 +40,9 @@ double shrinkage_factor(const std::array<ColumnStatistics, 3>& channels, int beg
 /// span them, so that a turned or transposed image gives a turned result.
 ///
 /// Equation (7), k_opt = argmin_k of bias^2 + variance, over the nested models of layout, the error summed over
-/// channels. Of models whose error differs by less than tolerance (relative) the one of lowest order is taken.
+/// channels. Models as good as the best are averaged: each counts
+///     max(0, 1 - (error - least) / (tolerance (max(least, 0) + s_0^2)))
+/// with s_0^2 the variance of the constant, so that no rounding decides between two. tolerance 0: the best alone.
 /// weight_sum is sum_i w_i > 0. shrinkage: false lets every column in whole, as the paper does.
 OrderChoice select_order(const std::array<ColumnStatistics, 3>& channels, const BasisLayout& layout, double weight_sum,
                          bool first_stage, double tolerance, bool shrinkage = true);

@@ -20,6 +20,7 @@
 #include "regression/least_squares.h"
 #include "regression/order_selection.h"
 #include "regression/weights.h"
+#include "support/regression.h"
 
 namespace polyrecon {
 namespace {
@@ -90,15 +91,22 @@ double residual_ratio(const Weighed& w, const MatrixXd& sx, const VectorXd& resi
   return scale > 0 ? (sx.transpose() * residual).norm() / scale : 0;
 }
 
+/// The problem that factorise solves, with the rows of its penalties.
+test::Penalised problem_of(const Weighed& w, const DependenceLimits& limits) {
+  const auto columns = static_cast<int>(w.sx.cols());
+  return test::penalised(columns_of(w.window.design, columns, w.window), w.s.cwiseAbs2(), limits,
+                         w.window.layout.features());
+}
+
 double ours(const Weighed& w, const DependenceLimits& limits, NestedFactor& factor) {
   const int columns = static_cast<int>(w.sx.cols());
   factorise(w.window, columns, w.weight.data(), factor, limits);
   VectorXd z(columns);
   project(factor, w.window, w.weight.data(), w.window.response.data() + w.window.stride, z.data());
-  MatrixXd kept = w.sx;  // what was dropped is no part of the model
-  for (int a = 0; a < columns; ++a)
-    if (!factor.kept[static_cast<std::size_t>(a)]) kept.col(a).setZero();
-  return residual_ratio(w, kept, w.sy - w.s.asDiagonal() * (columns_of(factor.q, columns, w.window) * z));
+  const test::Penalised problem = problem_of(w, limits);
+  VectorXd residual(problem.augmented.rows());
+  residual << w.sy - w.s.asDiagonal() * (columns_of(factor.q, columns, w.window) * z), -problem.tail * z;
+  return residual_ratio(w, problem.augmented, residual);
 }
 
 template <typename Scalar>
@@ -115,9 +123,11 @@ double householder(const Weighed& w) {
   return residual_ratio(w, w.sx, w.sy - w.sx * c);
 }
 
-/// Largest inner product of a column of S^-1 Q with those before it.
-VectorXd overlaps(const Weighed& w, const NestedFactor& factor) {
-  const MatrixXd q = w.s.asDiagonal() * columns_of(factor.q, factor.columns, w.window), gram = q.transpose() * q;
+/// Largest inner product of a column of Q, with the rows of the penalties, with those before it.
+VectorXd overlaps(const Weighed& w, const NestedFactor& factor, const DependenceLimits& limits) {
+  const MatrixXd q = w.s.asDiagonal() * columns_of(factor.q, factor.columns, w.window),
+                 tail = problem_of(w, limits).tail;
+  const MatrixXd gram = q.transpose() * q + tail.transpose() * tail;
   VectorXd out = VectorXd::Zero(factor.columns);
   for (int a = 1; a < factor.columns; ++a) out(a) = gram.row(a).head(a).cwiseAbs().maxCoeff();
   return out;
@@ -153,7 +163,7 @@ struct LimitSums {
     factorise(w.window, static_cast<int>(w.sx.cols()), w.weight.data(), factor, limits);
     columns += static_cast<std::size_t>(factor.columns);
     dropped += static_cast<std::size_t>(factor.columns - factor.rank);
-    overlap = std::max(overlap, overlaps(w, factor).maxCoeff());
+    overlap = std::max(overlap, overlaps(w, factor, limits).maxCoeff());
     const MatrixXd fit = fit_of(w, factor);
     const auto origin = [&](int c) { return static_cast<double>(w.window.origin[static_cast<std::size_t>(c)]); };
     for (int j = 0; j < w.window.count; ++j)
@@ -171,7 +181,7 @@ struct LimitSums {
 std::vector<LimitSums> all_limits() {
   const DependenceLimits chosen;
   std::vector<LimitSums> out;
-  for (const double remainder : {1e-7, 1e-4, 1e-3, 1e-2, 2e-2, 5e-2, 1e-1, 2e-1})
+  for (const double remainder : {1e-7, 1e-4, 1e-3, 1e-2, 2e-2, 3e-2, 5e-2, 1e-1, 2e-1})
     out.push_back({{remainder, chosen.variation}});
   for (const double variation : {0.0, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2}) out.push_back({{chosen.remainder, variation}});
   return out;
@@ -183,11 +193,12 @@ struct Tables {
 
 void tell_window(const std::string& name, const Weighed& w, Tables& tables) {
   NestedFactor chosen, all;
-  const double nothing_dropped = ours(w, {1e-7, 0}, all);
+  const DependenceLimits none{1e-7, 0};
+  const double nothing_dropped = ours(w, none, all);
   tables.windows << name << ',' << w.sx.rows() << ',' << w.sx.cols() << ',' << condition_of(w.sx) << ','
                  << ours(w, {}, chosen) << ',' << nothing_dropped << ',' << householder(w) << ','
                  << normal_equations<double>(w) << ',' << normal_equations<float>(w) << ',' << chosen.rank << '\n';
-  const VectorXd of_all = overlaps(w, all), of_chosen = overlaps(w, chosen);
+  const VectorXd of_all = overlaps(w, all, none), of_chosen = overlaps(w, chosen, {});
   const MatrixXd r = w.sx.householderQr().matrixQR();
   for (int a = 1; a < std::min(w.sx.rows(), w.sx.cols()); ++a)
     tables.columns << name << ',' << a << ',' << std::abs(r(a, a)) / w.sx.col(a).norm() << ',' << of_all(a) << ','

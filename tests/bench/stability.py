@@ -18,7 +18,7 @@ SAMPLES = {"study_16": "study", "glass_16": "glass", "lighthouse_16": "lighthous
 SOLVERS = ("chosen", "nothing dropped", "QR in float", "normal equations in double", "normal equations in float")
 LABELS = {"chosen": "ours", "nothing dropped": "ours, nothing dropped"}
 LAPACK_LIMIT = 30
-REMAINDER, VARIATION = 0.05, 2e-4  # DependenceLimits
+REMAINDER, VARIATION = 0.03, 2e-4  # DependenceLimits
 
 
 def table(folder, name):
@@ -77,7 +77,7 @@ def draw_columns(columns):
         worst = np.array([field(columns, name)[place == k].max() for k in bins])
         axes.plot(np.sqrt(edges[bins - 1] * edges[bins])[worst > 0], worst[worst > 0], ".-", label=name)
     axes.axvline(REMAINDER, color="grey", linestyle=":")
-    axes.text(REMAINDER, 2e-7, " dropped below", rotation=90, va="bottom", ha="right", color="grey")
+    axes.text(REMAINDER, 2e-7, " counts for half", rotation=90, va="bottom", ha="right", color="grey")
     axes.set(xscale="log", yscale="log", xlabel="what is left of a column, as a part of its length")
     axes.set(ylabel="largest overlap with the columns before it")
     axes.legend()
@@ -87,7 +87,7 @@ def draw_columns(columns):
 
 
 def print_limits(limits):
-    print("\n| remainder | variation | error of the fits, geometric mean | columns dropped | largest overlap |\n|---:|---:|---:|---:|---:|")
+    print("\n| remainder | variation | error of the fits, geometric mean | columns below | largest overlap |\n|---:|---:|---:|---:|---:|")
     settings = list(dict.fromkeys(zip(limits["remainder"], limits["variation"])))
     rows = {s: limits[(limits["remainder"] == s[0]) & (limits["variation"] == s[1])] for s in settings}
     for setting in settings:

@@ -8,6 +8,7 @@
 
 #include "support/images.h"
 #include "support/random.h"
+#include "support/regression.h"
 #include "support/threads.h"
 
 namespace polyrecon {
@@ -143,19 +144,10 @@ class Reference {
         v(j) = static_cast<double>(image.at(px[static_cast<std::size_t>(j)], py[static_cast<std::size_t>(j)], c));
       return v;
     };
-    MatrixXd q(n, columns_at(cx, cy, cx, cy).size());
+    MatrixXd x(n, columns_at(cx, cy, cx, cy).size());
     for (Eigen::Index j = 0; j < n; ++j)
-      q.row(j) = columns_at(cx, cy, px[static_cast<std::size_t>(j)], py[static_cast<std::size_t>(j)]).transpose();
-    for (Eigen::Index a = 0; a < q.cols(); ++a) {
-      const double own = std::sqrt(w.dot(q.col(a).cwiseAbs2()));
-      for (int sweep = 0; sweep < 2; ++sweep)
-        for (Eigen::Index b = 0; b < a; ++b) q.col(a) -= w.dot(q.col(a).cwiseProduct(q.col(b))) * q.col(b);
-      const double length = std::sqrt(w.dot(q.col(a).cwiseAbs2()));
-      if (length > 1e-4 * own)
-        q.col(a) /= length;
-      else
-        q.col(a).setZero();
-    }
+      x.row(j) = columns_at(cx, cy, px[static_cast<std::size_t>(j)], py[static_cast<std::size_t>(j)]).transpose();
+    const MatrixXd q = test::penalised(x, w, {}, 2).q;
     // Factors: columns of the beauty's three channels together.
     const MatrixXd wq = w.asDiagonal() * q;
     VectorXd energy = VectorXd::Zero(q.cols()), noise = energy, g = energy;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -453,25 +454,30 @@ TEST(Case24, LapackSixKindsOfMatricesHaveResidualRatiosBelow30) {
     const Problem p(x, random_weights(rows, 0.1, random));
     SCOPED_TRACE("seed " + std::to_string(seed) + ", instance " + std::to_string(instance));
     const VectorXd s = p.w.cwiseSqrt(), y = stored(normal_matrix(rows, 1, random)), z = p.coefficients(y);
-    const MatrixXd q = p.q(), sx = s.asDiagonal() * p.x, sq = s.asDiagonal() * q;
+    const MatrixXd q = p.q(), sx = s.asDiagonal() * p.x;
     ASSERT_TRUE(q.allFinite());
+    // The problem that is solved: with the rows of the penalties.
+    const test::Penalised reference = test::penalised(p.x / scale, p.w, {}, 0);
+    const MatrixXd& a = reference.augmented;
+    MatrixXd aq(a.rows(), columns);
+    aq << s.asDiagonal() * q, reference.tail;
     const double n = rows;
-    // Rounding of the stored samples, amplified by the condition of the leading columns, has to stay clear of the 1e-4
-    // at which a column is dropped; else a dependent column may rightly be taken for one of its own.
-    const Eigen::JacobiSVD<MatrixXd> svd(sx.leftCols(rank) / scale);
-    if (svd.singularValues()(0) * eps < 0.1 * 1e-4 * svd.singularValues()(rank - 1)) {
+    // Columns that are partly there leave as much of what depends on them, which may be more than the limit: where
+    // hardly any is, the rank is clear.
+    if (reference.tail.squaredNorm() < 0.03 * 0.03) {
       ++clear_ranks;
       EXPECT_EQ(p.factor.rank, rank);
     }
     EXPECT_LT(orthonormality_error(p) / (n * eps), 30);
-    EXPECT_LT((sx / scale - sq * (sq.transpose() * sx / scale)).norm() / (sx.norm() / scale * n * eps), 30);
-    const VectorXd residual = s.asDiagonal() * (y - q * z);
-    EXPECT_LT((residual.transpose() * sx / scale).norm() / (sx.norm() / scale * (s.asDiagonal() * y).norm() * n * eps),
-              30);
+    EXPECT_LT((a - aq * (aq.transpose() * a)).norm() / (a.norm() * n * eps), 30);
+    VectorXd residual(a.rows());
+    residual << s.asDiagonal() * (y - q * z), -reference.tail * z;
+    EXPECT_LT((residual.transpose() * a).norm() / (a.norm() * (s.asDiagonal() * y).norm() * n * eps), 30);
   }
-  EXPECT_GT(clear_ranks, 0.8 * instances);
+  EXPECT_GT(clear_ranks, 0.5 * instances);
 }
 
+/// To the rank but for what the penalties take: a column of which little is left counts for less than 1.
 TEST(Case25, LeverageLiesBetweenZeroAndOneAndSumsToTheRank) {
   const std::uint64_t seed = 4;
   SCOPED_TRACE("seed " + std::to_string(seed));
@@ -488,8 +494,11 @@ TEST(Case25, LeverageLiesBetweenZeroAndOneAndSumsToTheRank) {
       EXPECT_LE(leverage, 1 + 1000 * eps) << rows << " x " << columns;
       sum += leverage;
     }
-    EXPECT_NEAR(sum, p.factor.rank, 1000 * eps * std::max(p.factor.rank, 1));
-    EXPECT_LE(p.factor.rank, (p.w.array() > 0).count());
+    const auto kept = std::count(p.factor.kept.begin(), p.factor.kept.begin() + columns, true);
+    const double taken = test::penalised(p.x, p.w, {}, 0).tail.squaredNorm();
+    EXPECT_NEAR(sum, static_cast<double>(kept) - taken, 1000 * eps * std::max(p.factor.rank, 1));
+    EXPECT_LE(p.factor.rank, kept);
+    EXPECT_LE(sum, static_cast<double>((p.w.array() > 0).count()) * (1 + 100 * eps));
   }
 }
 

@@ -178,15 +178,50 @@ TEST(Factorise, DenormalColumnsAreFinite) {
   }
 }
 
-/// Departs from orthogonality most just above the threshold at which a column is dropped.
+/// Departs from the ridge regression most where little is left of a column.
 TEST(Factorise, NearlyDependentColumnsStayOrthogonal) {
-  for (const double part : {0.3, 0.2, 0.15, 0.12}) {
+  for (const double part : {0.3, 0.1, 0.03, 0.02}) {
     Random random(11);
     MatrixXd x = design_with_constant(81, 6, random);
     x.col(4) = x.col(2) + x.col(3) + part * normal_matrix(81, 1, random);
     const Problem p(x, random_weights(81, 0.2, random));
     EXPECT_TRUE(p.factor.kept[4]) << part;
     EXPECT_LT(orthonormality_error(p), 1000 * eps) << part;
+  }
+}
+
+/// A feature becomes another one's duplicate: it goes without a jump, and so do those that follow it.
+TEST(Factorise, AColumnFadesOutContinuously) {
+  Random random(13);
+  const MatrixXd sound = design_with_constant(49, 6, random), own = normal_matrix(49, 1, random);
+  const VectorXd w = random_weights(49, 0, random), y = stored(normal_matrix(49, 1, random));
+  const auto fit = [&](double part) -> VectorXd {
+    MatrixXd x = sound;
+    x.col(3) = x.col(2) + part * own;
+    const Problem p(x, w);
+    return p.q() * p.coefficients(y);
+  };
+  const double largest = fit(1).cwiseAbs().maxCoeff();
+  VectorXd before = fit(1);
+  double path = 0;
+  for (double part = 1; part > 1e-6; part *= 0.98) {
+    const VectorXd now = fit(part);
+    const double step = (now - before).cwiseAbs().maxCoeff();
+    EXPECT_LT(step, 0.03 * largest) << part;
+    path += step;
+    before = now;
+  }
+  EXPECT_GT(path, 0.01 * largest);  // it is not that nothing happens
+}
+
+TEST(Factorise, IsTheRidgeRegressionOfItsPenalties) {
+  Random random(14);
+  for (int round = 0; round < 20; ++round) {
+    MatrixXd x = design_with_constant(49, 7, random);
+    x.col(4) = x.col(1) + random.uniform(0.01, 0.2) * normal_matrix(49, 1, random);
+    const Problem p(x, random_weights(49, 0.3, random));
+    const MatrixXd expected = test::penalised(p.x, p.w, {}, 0).q;
+    EXPECT_LT((p.q() - expected).cwiseAbs().maxCoeff(), 2000 * eps * expected.cwiseAbs().maxCoeff());
   }
 }
 

@@ -259,22 +259,56 @@ TEST(SelectOrder, TakesTheModelOfLeastEstimatedErrorAndSaysHowLargeThatIs) {
 }
 
 /// One column a model: layout of no features; the later-stage error change at g* is -e^2/(e + n) per channel.
-TEST(SelectOrder, TakesTheLowestOrderWithinTheTolerance) {
+TEST(SelectOrder, AveragesModelsThatAreAsGoodWithinTheTolerance) {
   const BasisLayout layout(0, 2);
   Channels channels;
   for (ColumnStatistics& channel : channels) {
     channel.guess_energy = 100;
-    channel.guess[0] = std::sqrt(50.0);  // the constant leaves 50
+    channel.guess[0] = std::sqrt(50.0);  // the constant, also order 0, leaves 50
     channel.guess[1] = std::sqrt(10.0);  // order 1 leaves 40
     channel.guess[3] = std::sqrt(1.0);   // order 2 leaves 39
   }
-  EXPECT_EQ(select_order(channels, layout, 1, false, 0).model, 3);
-  EXPECT_EQ(select_order(channels, layout, 1, false, 0.02).model, 3);  // 39 x 1.02 = 39.78 < 40
-  EXPECT_EQ(select_order(channels, layout, 1, false, 0.03).model, 2);  // 39 x 1.03 = 40.17 > 40
-  EXPECT_EQ(select_order(channels, layout, 1, false, 0.3).model, 0);   // 39 x 1.3 = 50.7 > 50, also above model 1's 50
-  const OrderChoice all = select_order(channels, layout, 2, false, 0);
-  EXPECT_DOUBLE_EQ(all.error[0], 39.0 / 2);
-  EXPECT_EQ(all.variance[0], 0);
+  const auto select = [&](double within) { return select_order(channels, layout, 2, false, within); };
+  const OrderChoice best = select(0), near = select(0.02), both = select(0.05), all = select(0.5);
+  EXPECT_EQ(best.model, 3);
+  EXPECT_EQ(best.order, 2);
+  EXPECT_DOUBLE_EQ(best.error[0], 39.0 / 2);
+  EXPECT_EQ(best.variance[0], 0);
+  EXPECT_EQ(near.factor, best.factor);  // 39 x 1.02 = 39.78 < 40
+  // 39 x 0.05 = 1.95: order 1 is 1/1.95 of the way, counts (1 - 1/1.95) of 1.
+  const double low = 1 - 1 / 1.95;
+  EXPECT_DOUBLE_EQ(both.factor[1], 1);
+  EXPECT_DOUBLE_EQ(both.factor[3], 1 / (1 + low));
+  EXPECT_DOUBLE_EQ(both.order, (2 + low) / (1 + low));
+  EXPECT_EQ(both.model, 3);
+  // 19.5: the two models of the constant alone count 1 - 11/19.5 each.
+  const double constant = 1 - 11 / 19.5, first = 1 - 1 / 19.5;
+  EXPECT_DOUBLE_EQ(all.factor[0], 1);
+  EXPECT_DOUBLE_EQ(all.factor[1], (1 + first) / (1 + first + 2 * constant));
+  // What is told of the average is its own error: 40 with the factor g for order 2, (1 - g)^2 of its 1 is left.
+  EXPECT_DOUBLE_EQ(both.error[0], (39 + std::pow(1 - both.factor[3], 2)) / 2);
+}
+
+/// Where two models cross, no jump.
+TEST(SelectOrder, FollowsTheDataContinuously) {
+  const BasisLayout layout(0, 2);
+  for (const bool first_stage : {true, false}) {
+    std::array<double, BasisLayout::max_columns> before{};
+    for (int k = 0; k <= 20000; ++k) {
+      Channels channels;
+      for (ColumnStatistics& channel : channels) {
+        channel.guess_energy = 60;
+        channel.noise_energy = 6;
+        channel.variance = {1, 1.1, 0.9, 1.2, 0.8, 1.3};
+        channel.guess[0] = channel.z[0] = 5;
+        channel.guess[1] = channel.z[1] = 1 + k * 1e-5 * 3;  // order 1 rises from below its noise,
+        channel.guess[3] = channel.z[3] = 3 - k * 1e-5 * 6;  // order 2 sinks below it
+      }
+      const OrderChoice choice = select_order(channels, layout, 10, first_stage, 0.02);
+      for (std::size_t a = 0; k > 0 && a < 6; ++a) ASSERT_NEAR(choice.factor[a], before[a], 0.01) << k << " " << a;
+      before = choice.factor;
+    }
+  }
 }
 
 /// Mean over 1000 draws of the estimated error of each nested model against the true risk from an explicit H. The

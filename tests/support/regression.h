@@ -101,9 +101,54 @@ inline Eigen::MatrixXd design_with_constant(int rows, int columns, Random& rando
   return x;
 }
 
-/// How far S^-1 Q is from orthonormal under the weights, over the kept columns; dropped ones must be zero.
+/// The generalised ridge regression of least_squares.h by Gram and Schmidt over rows that are added for the penalties:
+/// S X above the square roots of diag(D) is Q R, with Q = (S q above tail).
+struct Penalised {
+  Eigen::MatrixXd augmented;  ///< S X above diag(sqrt(D)); dropped columns are zero here and in q and tail.
+  Eigen::MatrixXd q, tail;
+};
+
+/// The columns from 1 to features are features.
+inline Penalised penalised(const Eigen::MatrixXd& x, const Eigen::VectorXd& w, const DependenceLimits& limits,
+                           int features) {
+  const Eigen::VectorXd s = w.cwiseSqrt();
+  const auto rows = x.rows(), columns = x.cols();
+  Eigen::MatrixXd a(rows + columns, columns), q = Eigen::MatrixXd::Zero(rows + columns, columns);
+  a << s.asDiagonal() * x, Eigen::MatrixXd::Zero(columns, columns);
+  Penalised out{a, x, {}};
+  for (Eigen::Index k = 0; k < columns; ++k) {
+    Eigen::VectorXd left = a.col(k);
+    out.q.col(k) = x.col(k);
+    for (int sweep = 0; sweep < 2; ++sweep)
+      for (Eigen::Index b = 0; b < k; ++b) {
+        const double part = q.col(b).dot(left);
+        left -= part * q.col(b);
+        out.q.col(k) -= part * out.q.col(b);  // also where S is zero
+      }
+    // The penalties of the columns before have put something into the rows below: no part of the length.
+    const double own = a.col(k).squaredNorm(), rest = left.squaredNorm();
+    const bool is_feature = k >= 1 && k <= features;
+    const double little = std::max(limits.remainder * limits.remainder * own,
+                                   is_feature ? limits.variation * limits.variation * w.sum() : 0.0);
+    const bool kept = rest > 3e-3 * little && rest > 0;
+    const double penalty = kept ? little / std::sqrt(rest) : 0,
+                 length = kept ? std::hypot(std::sqrt(rest), penalty) : 1;
+    a(rows + k, k) = left(rows + k) = penalty;
+    if (!kept) a.col(k) = left = Eigen::VectorXd::Zero(rows + columns);
+    if (!kept) out.q.col(k).setZero();
+    q.col(k) = left / length;
+    out.q.col(k) /= length;
+  }
+  out.augmented = a;
+  out.tail = q.bottomRows(columns);
+  return out;
+}
+
+/// How far S^-1 Q above the tail is from orthonormal under the weights, over the kept columns; dropped ones must be
+/// zero.
 inline double orthonormality_error(const Problem& p) {
-  const Eigen::MatrixXd q = p.q(), gram = q.transpose() * p.w.asDiagonal() * q;
+  const Eigen::MatrixXd q = p.q(), tail = penalised(p.x, p.w, {}, p.window.layout.features()).tail;
+  const Eigen::MatrixXd gram = q.transpose() * p.w.asDiagonal() * q + tail.transpose() * tail;
   double worst = 0;
   for (int a = 0; a < gram.rows(); ++a)
     for (int b = 0; b < gram.cols(); ++b) {
