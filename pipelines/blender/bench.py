@@ -5,10 +5,12 @@
 (b) adaptive  adaptive.py
 (c) cycles    Cycles' adaptive sampling, its noise threshold tuned to the seconds, then Open Image Denoise
 (d) oidn      uniform samples, then Open Image Denoise (albedo, normal, accurate prefilter, as in (c))
+(e) prior     (b) --with-prior: Open Image Denoise's picture of each half goes into the reconstruction
+(f) uniform_prior  (a) with that
 
-Seconds are those of the whole command: start-up, rendering, merging, reconstruction. (b) gets the budget, the others are
+Seconds are those of the whole command: start-up, rendering, merging, reconstruction. (b) and (e) get the budget, the others are
 tuned until they take as long as (b) took. On a machine that is busy with other work --clock cpu counts the processor
-seconds of all processes instead; all four are then tuned to the budget, (b) by its samples. References are rendered once, with other seeds, and kept; so are all
+seconds of all processes instead; all are then tuned to the budget, (b) by its samples. References are rendered once, with other seeds, and kept; so are all
 results: run it again to go on, or with another budget to add to the table.
 
   bench.py                                           all of it; hours the first time, nearly all for the references
@@ -39,7 +41,8 @@ from . import bench_report  # noqa: E402
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 HERE = pathlib.Path(__file__).resolve().parent
 SCENES = ("gallery", "glass", "meadow", "fan")
-METHODS = ("uniform", "adaptive", "cycles", "oidn")
+METHODS = ("uniform", "adaptive", "cycles", "oidn", "prior", "uniform_prior")
+LOOPS = ("adaptive", "prior")  # given a budget; the others are tuned to it
 PARTS = 8  # subsets of (a)
 REFERENCE_STEP, FIRST_REFERENCE_SEED = 64, 1001  # samples of one render; each has a seed of its own
 MOST_SAMPLES = 1 << 14  # of one pixel by (c)
@@ -174,14 +177,26 @@ def cycles(scene, image, threshold):
     return scene.render(image, samples=MOST_SAMPLES, threshold=threshold, denoise=True), {"threshold": threshold}
 
 
-def adaptive(scene, image, amount):
+def uniform_prior(scene, image, samples):
+    merged = scene.folder / "merged_prior.exr"
+    words = ["-o", merged, "--spp", str(samples), "--parts", str(PARTS), "--bpy", "--with-prior", "--quiet"]
+    run([scene.options.python, HERE / "render_passes.py", scene.blend, *words, "--polyrecon", scene.polyrecon.program])
+    scene.polyrecon.run("denoise", "-i", merged, "-o", image, "--quiet")
+    return None, {"spp": samples}
+
+
+def prior(scene, image, amount):
+    return adaptive(scene, image, amount, "--with-prior")
+
+
+def adaptive(scene, image, amount, *words):
     """amount: seconds, or samples per pixel by --clock cpu."""
     passes = scene.folder / "passes"
     shutil.rmtree(passes, ignore_errors=True)
     budget = "--budget-seconds" if scene.options.clock == "wall" else "--budget-spp"
     run(
         [scene.options.python, HERE / "adaptive.py", scene.blend, "-o", image, budget, f"{amount:g}", "--bpy"]
-        + ["--passes-dir", passes, "--polyrecon", scene.polyrecon.program]
+        + ["--passes-dir", passes, "--polyrecon", scene.polyrecon.program, *words]
     )
     journal = json.loads((passes / "journal.json").read_text())
     rendering = sum(part["seconds"] for part in journal["parts"])
@@ -235,7 +250,7 @@ def next_threshold(tries, target):
     return last["knob"] * (last["rendering"] / wanted) ** (1 / slope)
 
 
-NEXT_KNOB = {"uniform": next_samples, "oidn": next_samples, "cycles": next_threshold, "adaptive": next_samples}
+NEXT_KNOB = {method: next_samples for method in METHODS} | {"cycles": next_threshold}
 
 
 class Results:
@@ -262,14 +277,14 @@ class Results:
 def next_run(results, scene, method, budget):
     """The knob of the next run of a cell, None when it is done."""
     runs = results.of(scene.name, method, budget)
-    if method == "adaptive" and scene.options.clock == "wall":
+    if method in LOOPS and scene.options.clock == "wall":
         return None if runs else budget
     target = seconds_of(results, scene, budget)
     if runs and (len(runs) >= TRIES or any(abs(row["seconds"] / target - 1) < TOLERANCE for row in runs)):
         return None
     # The first try at a budget starts from what the other budgets taught.
     known = runs or results.of(scene.name, method)
-    if method == "adaptive":
+    if method in LOOPS:
         known = with_rate_of_uniform(known, results.of(scene.name, "uniform"), target)
     knob = NEXT_KNOB[method](known, target)
     return None if any(row["knob"] == knob for row in runs) else knob

@@ -4,8 +4,10 @@ import os
 import platform
 
 LETTER = {"uniform": "(a) uniform, polyrecon", "adaptive": "(b) adaptive loop", "cycles": "(c) Cycles adaptive, OIDN"}
-LETTER |= {"oidn": "(d) uniform, OIDN"}
+LETTER |= {"oidn": "(d) uniform, OIDN", "prior": "(e) loop with OIDN as prior", "uniform_prior": "(f) uniform with that"}
 COLOUR = {"uniform": "#4477aa", "adaptive": "#cc3311", "cycles": "#228833", "oidn": "#aa8800"}
+COLOUR |= {"prior": "#aa3377", "uniform_prior": "#66ccee"}
+RATIOS = (("adaptive", "uniform"), ("adaptive", "cycles"), ("prior", "uniform"), ("prior", "uniform_prior"), ("prior", "cycles"))
 BEGIN, END = "<!-- bench: begin -->", "<!-- bench: end -->"
 
 
@@ -14,12 +16,13 @@ def table(rows):
     pixels where the reference itself has not converged can decide the first), and seconds; and the ratios that are goals,
     of both figures."""
     methods = [method for method in LETTER if any(row["method"] == method for row in rows)]
-    lines = ["| scene | budget | " + " | ".join(LETTER[method] for method in methods) + " | (b) / (a) | (b) / (c) |"]
-    lines.append("|---|---|" + "---|" * (len(methods) + 2))
+    ratios = [pair for pair in RATIOS if set(pair) <= set(methods)]
+    named = [LETTER[method] for method in methods] + [f"{LETTER[a][:3]} / {LETTER[b][:3]}" for a, b in ratios]
+    lines = ["| scene | budget | " + " | ".join(named) + " |", "|---|---|" + "---|" * len(named)]
     for scene, budget in dict.fromkeys((row["scene"], row["budget"]) for row in rows):
         found = {row["method"]: row for row in rows if (row["scene"], row["budget"]) == (scene, budget)}
         cells = [_cell(found[m]) if m in found else "" for m in methods]
-        cells += [_ratio(found, "adaptive", "uniform"), _ratio(found, "adaptive", "cycles")]
+        cells += [_ratio(found, *pair) for pair in ratios]
         lines.append(f"| {scene} | {budget:g} s | " + " | ".join(cells) + " |")
     return "\n".join(lines)
 

@@ -52,7 +52,7 @@ def one_frame(options, renderer, frame, output, passes, polyrecon, progress):
         progress.update("pass", frame=frame, samples=k * each, done=k / options.parts)
         renderer.uniform(k * each, each, part)
     told = polyrecon.run("merge", *parts, "-o", output)
-    renderer.complete(output)
+    renderer.complete_last(output)
     if not options.keep_parts:
         for part in parts:
             part.unlink()

@@ -25,6 +25,7 @@ class BlenderRenderer(Renderer):
         self.method = method
         self.visibility = visibility
         self.with_prior = with_prior
+        self.last_over_round = prior.OVER_ROUND if with_prior else 0.0
         self.session = BlenderSession(blender, timeout)
         self.overhead_seconds = OVERHEAD_SECONDS
         self.seconds_per_sample = 0.0
@@ -95,7 +96,7 @@ class BlenderRenderer(Renderer):
         self._write(target, means, taken)
         return int(taken.max(initial=0))
 
-    def complete(self, merged):
+    def complete_last(self, merged):
         if self.with_prior:
             prior.add(merged, self.opened["view_layer"], self.session)
 

@@ -208,7 +208,7 @@ class _Loop:
             worth=sum(p["worth"] for p in parts),
             seconds_per_sample=seconds / worth * self.extra_over_uniform(),
             judging=self.judging,
-            reserve=self.judging * LAST_OVER_ROUND[self.settings.quality],
+            reserve=self.judging * (LAST_OVER_ROUND[self.settings.quality] + self.renderer.last_over_round),
         )
 
     def error_of_mean(self, number):
@@ -291,6 +291,7 @@ class _Loop:
         halves = [self.journal.files(half) for half in HALVES]
         self.polyrecon.run("merge", *halves[0], "--half-b", *halves[1], "-o", merged, "--quiet")
         self.renderer.complete(merged)
+        self.renderer.complete_last(merged)
         self.polyrecon.run("denoise", "-i", merged, "-o", self.settings.output, "--quality", self.settings.quality, "--error-map",
                            error_map, "--quiet")  # fmt: skip
         self.save()

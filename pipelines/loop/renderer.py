@@ -50,6 +50,7 @@ class Renderer(abc.ABC):
     """One scene. Failures are raised as DriverError(ExitCode.RENDERER, one line); the driver can then be resumed."""
 
     name = ""  # "Blender 5.0.1": for the report
+    last_over_round = 0.0  # seconds of complete_last over those of judging a round: kept back from a budget of seconds
 
     @abc.abstractmethod
     def begin(self, frame: Optional[int]) -> Audit:
@@ -72,6 +73,9 @@ class Renderer(abc.ABC):
     def complete(self, merged: pathlib.Path) -> None:
         """Adds to a file of merged parts what is rendered once and for all, feature passes for instance. They must not
         depend on the samples of the picture."""
+
+    def complete_last(self, merged: pathlib.Path) -> None:
+        """Adds to the merged file of all parts what serves the last reconstruction alone: a prior made from its halves."""
 
     def close(self) -> None:
         """Ends what runs in the background. Called once, in every case."""

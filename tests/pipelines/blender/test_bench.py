@@ -65,10 +65,12 @@ class Run(unittest.TestCase):
 
 class Report(unittest.TestCase):
     def test_ratios(self):
-        figures = (("uniform", 0.02, 0.01), ("adaptive", 0.01, 0.008))
+        figures = (("uniform", 0.02, 0.01), ("adaptive", 0.01, 0.008), ("prior", 0.004, 0.004))
         made = [{"scene": "fan", "budget": 9.0, "method": m, "seconds": 9.1, "relMSE": e, "trimmed": t} for m, e, t in figures]
-        line = "| fan | 9 s | 0.02000 / 0.01000 (9.1 s) | 0.01000 / 0.00800 (9.1 s) | 0.50 / 0.80 |  |"
-        self.assertIn(line, bench_report.table(made))
+        table = bench_report.table(made)
+        cells = "| 0.02000 / 0.01000 (9.1 s) | 0.01000 / 0.00800 (9.1 s) | 0.00400 / 0.00400 (9.1 s) |"
+        self.assertIn(f"| fan | 9 s {cells} 0.50 / 0.80 | 0.20 / 0.40 |", table)
+        self.assertIn("| (b) / (a) | (e) / (a) |", table)
 
 
 if __name__ == "__main__":
