@@ -28,7 +28,7 @@ PARTS = (
     ("Taylor terms", "order 0"),
     ("patch weights", "no patch weights"),
     ("choice pixel by pixel (else by regions five times as wide)", "choice by wide regions"),
-    ("lower order on a near tie", "order by least error alone"),
+    ("orders averaged on a near tie (else rounding decides)", "order by least error alone"),
     ("finer centres where coverage is low", "coverage 0"),
     ("outlier handling", "no outlier removal"),
     ("variance floor", "no variance floor"),
