@@ -24,12 +24,12 @@ struct Report {
 
   std::size_t windows = 0;                         ///< Local fits made.
   std::array<std::size_t, 6> windows_per_order{};  ///< [0]: constant only; [k]: order k - 1 with features, k = 1..5.
-  std::size_t rank_deficient_windows = 0;          ///< Fits in which a column depends on others: counts for half at most.
-  std::size_t dropped_windows = 0;                 ///< Fits that were not finite and left out.
-  std::size_t pixels_fallen_back_to_input = 0;     ///< Pixels that no finite fit covered.
-  std::size_t raised_pixels = 0;    ///< Pixels raised to the least input around them (blend/undershoot.h).
-  std::size_t mended_pixels = 0;    ///< Non-finite input pixels replaced before the fit, all passes.
-  std::size_t negative_pixels = 0;  ///< Beauty pixels with a negative channel (kept as they are).
+  std::size_t rank_deficient_windows = 0;       ///< Fits in which a column depends on others: counts for half at most.
+  std::size_t dropped_windows = 0;              ///< Fits that were not finite and left out.
+  std::size_t pixels_fallen_back_to_input = 0;  ///< Pixels that no finite fit covered.
+  std::size_t raised_pixels = 0;                ///< Pixels raised to the least input around them (blend/undershoot.h).
+  std::size_t mended_pixels = 0;                ///< Non-finite input pixels replaced before the fit, all passes.
+  std::size_t negative_pixels = 0;              ///< Beauty pixels with a negative channel (kept as they are).
 
   std::size_t neighbours = 0;   ///< Frames before and after that joined.
   double neighbour_weight = 0;  ///< Mean weight of all of them beside the own pixel's 1.
