@@ -80,7 +80,7 @@ class Adaptive(SceneTest):
         out, passes = self.folder / "out.exr", self.folder / "out.passes"
         words = [self.scene(), "-o", out, "--budget-seconds", 8, "--first-pass", 4, "--quality", "draft", "--max-rounds", 99, "--bpy"]
         killed = subprocess.Popen([sys.executable, ROOT / "pipelines" / "blender" / "adaptive.py", *map(str, words)], stderr=subprocess.DEVNULL)
-        while not (passes / "part_0a0.exr").exists():  # three more to come: Blender is the only child
+        while not (passes / "part_0a1.exr").exists():  # a journal is there; two more to come: Blender is the only child
             self.assertIsNone(killed.poll())
             time.sleep(0.005)
         blender = pathlib.Path(f"/proc/{killed.pid}/task/{killed.pid}/children").read_text().split()
