@@ -46,8 +46,10 @@ def write(document, rows, options):
         raise SystemExit(f"{document}: no '{BEGIN}' ... '{END}'")
     made = f"{options.size}, references of {options.reference_spp} samples, {os.cpu_count()} cores ({platform.machine()})"
     clock = {"wall": "seconds", "cpu": "processor seconds"}[options.clock]
-    plot(rows, document.with_suffix(".svg"), clock)
-    document.write_text(f"{head}{BEGIN}\n{made}; relMSE / trimmed ({clock}):\n\n{table(rows)}\n{END}{tail}")
+    picture = document.with_suffix(".svg")
+    plot(rows, picture, clock)
+    body = f"{made}; relMSE / trimmed ({clock}):\n\n{table(rows)}\n\n![Error against seconds]({picture.name})"
+    document.write_text(f"{head}{BEGIN}\n{body}\n{END}{tail}")
 
 
 def plot(rows, path, clock):

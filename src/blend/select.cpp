@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/gaussian.h"
+#include "core/near_best.h"
 #include "core/parallel.h"
 #include "core/real.h"
 
@@ -13,7 +14,7 @@ namespace polyrecon {
 namespace {
 
 constexpr double brightness_sigma = 1;
-constexpr double tie = 1e-3;  ///< Relative difference of risks.
+constexpr double tie = 1e-3;  // candidates whose risk is within this of the least are the best together
 // Relative noise variance below and above which candidates count alike: keeps shares finite and above zero.
 constexpr Real least_relative_variance = Real(1e-12), most_relative_variance = Real(1e12);
 constexpr double pi = 3.14159265358979323846;
@@ -102,19 +103,17 @@ void favour_little_noise(const Image& variance, const Image& scale, double sigma
   });
 }
 
-/// Candidates count as the best from 1 at the least risk falling to 0 at `tie` above it: rounding does not decide
-/// which.
 Best best_of(const std::vector<Image>& raw, const std::vector<Image>& risk) {
   Best out{Image(raw[0].width(), raw[0].height(), 1), risk[0]};
   for_rows(out.raw.height(), [&](int y) {
     for (int x = 0; x < out.raw.width(); ++x) {
       Real& least = out.risk.at(x, y, 0);
       for (const Image& r : risk) least = std::min(least, r.at(x, y, 0));
-      const double scale = tie * std::abs(static_cast<double>(least));
+      const double tolerance = tie * std::abs(static_cast<double>(least));
       double sum = 0, total = 0;
       for (std::size_t k = 0; k < raw.size(); ++k) {
         const double above = static_cast<double>(risk[k].at(x, y, 0)) - static_cast<double>(least);
-        const double share = above < scale ? 1 - above / scale : above > 0 ? 0 : 1;
+        const double share = share_near_best(above, tolerance);
         sum += share * static_cast<double>(raw[k].at(x, y, 0));
         total += share;
       }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cassert>
 
+#include "core/near_best.h"
+
 namespace polyrecon {
 namespace {
 
@@ -66,8 +68,7 @@ std::array<double, BasisLayout::max_columns> shrinkage_factors(const Channels& c
   return factors;
 }
 
-/// How much each model counts: 1 at the least error, falling to 0 where the error is above it by tolerance times itself
-/// and the noise of the constant.
+/// How much each model counts: by how far its error lies above the least one.
 std::array<double, BasisLayout::max_models> model_shares(const std::array<double, BasisLayout::max_models>& errors,
                                                          const Channels& channels, int models, double tolerance) {
   const double least = *std::min_element(errors.begin(), errors.begin() + models);
@@ -77,8 +78,7 @@ std::array<double, BasisLayout::max_models> model_shares(const std::array<double
   std::array<double, BasisLayout::max_models> shares{};
   double total = 0;
   for (std::size_t m = 0; m < static_cast<std::size_t>(models); ++m) {
-    const double above = errors[m] - least;
-    shares[m] = above < scale ? 1 - above / scale : above > 0 ? 0 : 1;
+    shares[m] = share_near_best(errors[m] - least, scale);
     total += shares[m];
   }
   for (double& share : shares) share /= total;

@@ -28,7 +28,8 @@ struct OrderChoice {
 /// Change of the window's estimated error, per channel, when a column enters with factor g. With e = z^2, n = s^2:
 ///     stage 1 (mu guessed by y, the noise inside it subtracted):   2 g n - (2g - g^2) e
 ///     later   (mu guessed by the result of the stage before):      g^2 n - (2g - g^2) guess^2
-/// For g = 1 this is the identity of Mallows' Cp: all nested models from one factorisation.
+/// For g = 1 this is the identity of Mallows' Cp: all nested models from one factorisation. A column that fades out
+/// (least_squares.h) is shorter than 1 and reckoned as if it were not.
 double error_change(const ColumnStatistics& channel, int column, double g, bool first_stage);
 
 /// Factor that minimises the error_change of the columns [begin, end) summed over the channels: the positive-part

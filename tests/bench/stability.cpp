@@ -1,7 +1,7 @@
 /// How well the windows met on real renders are conditioned, and what the limits of regression/least_squares.h do to
 /// them: stability FOLDER RENDER REFERENCE [RENDER REFERENCE]... writes into FOLDER
 ///   windows.csv  one row a window: its condition number and the residual ratio of each solver
-///   columns.csv  one row a column: what is left of it, and how far from orthogonal one sweep and two leave it
+///   columns.csv  one row a column: what is left of it, and how far it is from orthogonal to those before it
 ///   limits.csv   one row a setting of the limits: the error of the windows' fits against the reference
 /// The windows are those of stage 1, every 8th pixel both ways, with the bandwidths of both stages.
 /// tests/bench/stability.py runs it and draws.
@@ -194,9 +194,9 @@ struct Tables {
 void tell_window(const std::string& name, const Weighed& w, Tables& tables) {
   NestedFactor chosen, all;
   const DependenceLimits none{1e-7, 0};
-  const double nothing_dropped = ours(w, none, all);
+  const double with_hardly_any = ours(w, none, all);
   tables.windows << name << ',' << w.sx.rows() << ',' << w.sx.cols() << ',' << condition_of(w.sx) << ','
-                 << ours(w, {}, chosen) << ',' << nothing_dropped << ',' << householder(w) << ','
+                 << ours(w, {}, chosen) << ',' << with_hardly_any << ',' << householder(w) << ','
                  << normal_equations<double>(w) << ',' << normal_equations<float>(w) << ',' << chosen.rank << '\n';
   const VectorXd of_all = overlaps(w, all, none), of_chosen = overlaps(w, chosen, {});
   const MatrixXd r = w.sx.householderQr().matrixQR();
@@ -235,9 +235,9 @@ int main(int argc, char** argv) {
     const std::string folder = argv[1];
     polyrecon::Tables tables{std::ofstream(folder + "/windows.csv"), std::ofstream(folder + "/columns.csv"),
                              std::ofstream(folder + "/limits.csv")};
-    tables.windows << "sample,rows,columns,condition,chosen,nothing dropped,QR in float,normal equations in double,"
+    tables.windows << "sample,rows,columns,condition,chosen,hardly any limits,QR in float,normal equations in double,"
                       "normal equations in float,rank\n";
-    tables.columns << "sample,column,left,nothing dropped,limits in use\n";
+    tables.columns << "sample,column,left,hardly any limits,limits in use\n";
     tables.limits << "sample,remainder,variation,error,overlap,dropped\n";
     for (int k = 2; k < argc; k += 2) polyrecon::look_at_sample(argv[k], argv[k + 1], tables);
   } catch (const std::exception& error) {

@@ -15,8 +15,8 @@ import matplotlib.pyplot as plt  # noqa: E402
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SAMPLES = {"study_16": "study", "glass_16": "glass", "lighthouse_16": "lighthouse", "study_denoised_16": "study"}
-SOLVERS = ("chosen", "nothing dropped", "QR in float", "normal equations in double", "normal equations in float")
-LABELS = {"chosen": "ours", "nothing dropped": "ours, nothing dropped"}
+SOLVERS = ("chosen", "hardly any limits", "QR in float", "normal equations in double", "normal equations in float")
+LABELS = {"chosen": "ours", "hardly any limits": "ours, limits of 1e-7 and 0"}
 LAPACK_LIMIT = 30
 REMAINDER, VARIATION = 0.03, 2e-4  # DependenceLimits
 
@@ -73,7 +73,7 @@ def draw_columns(columns):
     edges = np.logspace(-9, 0, 37)
     place = np.digitize(left, edges)
     bins = np.array([k for k in range(1, len(edges)) if (place == k).sum() > 0])
-    for name in ("nothing dropped", "limits in use"):
+    for name in ("hardly any limits", "limits in use"):
         worst = np.array([field(columns, name)[place == k].max() for k in bins])
         axes.plot(np.sqrt(edges[bins - 1] * edges[bins])[worst > 0], worst[worst > 0], ".-", label=name)
     axes.axvline(REMAINDER, color="grey", linestyle=":")

@@ -125,7 +125,8 @@ inline Penalised penalised(const Eigen::MatrixXd& x, const Eigen::VectorXd& w, c
         left -= part * q.col(b);
         out.q.col(k) -= part * out.q.col(b);  // also where S is zero
       }
-    // The penalties of the columns before have put something into the rows below: no part of the length.
+    // What column k takes over from the penalties of those before it, in the rows below, is left of it too: it makes up
+    // for what they do not take.
     const double own = a.col(k).squaredNorm(), rest = left.squaredNorm();
     const bool is_feature = k >= 1 && k <= features;
     const double little = std::max(limits.remainder * limits.remainder * own,
