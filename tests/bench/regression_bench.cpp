@@ -19,7 +19,7 @@ void count_windows(benchmark::State& state, std::size_t windows) {
 }
 
 /// For the roofline: floating point operations of the method, and bytes that its loops load and store, each a window.
-/// They come from the first two levels of the cache: a window of 14 columns takes 100 KiB.
+/// They come from the first two levels of the cache: a window of 14 columns takes 80 KiB.
 void count_work(benchmark::State& state, std::size_t windows, double flops, double bytes) {
   const double all = static_cast<double>(state.iterations()) * static_cast<double>(windows);
   state.counters["flop"] = benchmark::Counter(flops * all, benchmark::Counter::kIsRate);
