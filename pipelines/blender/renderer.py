@@ -1,5 +1,6 @@
 """Blender's Cycles as a Renderer of the loop."""
 
+import concurrent.futures
 import pathlib
 
 import numpy as np
@@ -84,13 +85,13 @@ class BlenderRenderer(Renderer):
 
     def extra(self, first, counts, target):
         sums, taken = {}, np.zeros(counts.shape)
-        for piece in masks.plan(counts) if self.masked else regions.plan(counts, self._overhead_samples()):
+        pieces = masks.plan(counts) if self.masked else regions.plan(counts, self._overhead_samples())
+        for piece, channels in self._render_ahead(first, pieces):
             x0, y0, x1, y1 = piece.box
-            channels = self._render_piece(first, piece)
             for name, values in channels.items():
                 whole = sums.setdefault(name, np.zeros(counts.shape))
                 weight = 1 if _is_time(name) else piece.samples
-                whole[y0:y1, x0:x1] += np.where(piece.inside, weight * values, 0)
+                np.add(whole[y0:y1, x0:x1], weight * values, out=whole[y0:y1, x0:x1], where=piece.inside)
             taken[y0:y1, x0:x1] += piece.samples * piece.inside
         means = {name: whole if _is_time(name) else whole / np.maximum(taken, 1) for name, whole in sums.items()}
         self._write(target, means, taken)
@@ -99,6 +100,20 @@ class BlenderRenderer(Renderer):
     def complete_last(self, merged):
         if self.with_prior:
             prior.add(merged, self.opened["view_layer"], self.session)
+
+    def _render_ahead(self, first, pieces):
+        """Each piece with its channels. While the caller works on one, the next is rendered."""
+        with concurrent.futures.ThreadPoolExecutor(1) as renderer:
+            try:
+                before = None
+                for piece in [*pieces, None]:
+                    rendering = piece and renderer.submit(self._render_piece, first, piece)
+                    if before:
+                        yield before[0], before[1].result()
+                    before = piece, rendering
+            except BaseException:
+                self.session.stop()  # or the thread would be waited for
+                raise
 
     def _render_piece(self, first, piece):
         if piece.inside.shape == self.shape and piece.inside.all():

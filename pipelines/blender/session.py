@@ -48,7 +48,7 @@ class BlenderSession:
         self.close()
 
     def close(self):
-        self._stop()
+        self.stop()
         shutil.rmtree(self.folder, ignore_errors=True)
 
     @property
@@ -64,16 +64,16 @@ class BlenderSession:
             self.child.stdin.flush()
             answer = self.answers.get(timeout=self.timeout)
         except queue.Empty:
-            self._stop()
+            self.stop()
             raise DriverError(ExitCode.RENDERER, f"Blender did not answer within {self.timeout:g} s ({job})") from None
         except BrokenPipeError:
             answer = None
         except BaseException:
-            self._stop()
+            self.stop()
             raise
         if answer is None:
             code = self.child.wait()
-            self._stop()
+            self.stop()
             last = next((line for line in reversed(self.log) if line.strip()), "no message")
             raise DriverError(ExitCode.RENDERER, f"Blender ended with code {code} ({job}): {last}")
         if "error" in answer:
@@ -106,7 +106,7 @@ class BlenderSession:
                 self.log = [*self.log[-LOG_LINES_KEPT:], line.rstrip()]
         answers.put(None)
 
-    def _stop(self):
+    def stop(self):
         if self.child:
             process.stop(self.child)
             self.listener.join()

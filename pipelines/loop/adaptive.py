@@ -16,7 +16,7 @@ from typing import Optional
 import numpy as np
 
 from . import exr
-from .budget import CONVERGENCE_RATE, Budget, Spent, next_slice, nothing_left
+from .budget import CONVERGENCE_RATE, Budget, Spent, even_share, next_slice, nothing_left
 from .counts import cost_of_samples, quantise, weight_of_samples
 from .errors import DriverError, ExitCode
 from .journal import Journal
@@ -27,7 +27,7 @@ OTHER = {"a": "b", "b": "a"}
 ROUND_QUALITY = "draft"
 EVEN_PARTS = 4  # of a half in an even round: what they differ by tells the variance
 EVEN_STEPS = 3  # slices that an even round takes at once: it is not as soon that another map pays
-EXTRA_OVER_UNIFORM = 1.5  # seconds of a sample in a masked pass over one in a whole pass, until they are measured
+EXTRA_OVER_UNIFORM = 1.25  # seconds of a sample in a masked pass over one in a whole pass, until they are measured
 # Time of the last reconstruction, of all samples, over that of a half at ROUND_QUALITY (docs/performance.md).
 LAST_OVER_ROUND = {"draft": 1.1, "standard": 4.0, "best": 16.0}
 
@@ -108,6 +108,7 @@ class _Loop:
     def run(self):
         self.audit = self.renderer.begin(self.settings.frame)
         self.uniform_pass()
+        self.even_pass()
         while plan := self.journal["plan"] or self.plan_round():
             self.render_round(plan)
         return self.finish()
@@ -117,8 +118,8 @@ class _Loop:
     def uniform_pass(self):
         """The first samples of the sequence as parts of their own, the first half of them being A: each half is a block of
         the sequence, which is better spread than every other sample would be."""
-        each = 2 if self.settings.first_pass % 4 == 0 and self.settings.first_pass > 8 else 1
-        parts = self.settings.first_pass // each
+        parts = self.first_parts()
+        each = self.settings.first_pass // parts
         for index in range(parts):
             half = HALVES[index * 2 // parts]
             place = index % (parts // 2)
@@ -127,13 +128,32 @@ class _Loop:
                 self.render_part(0, half, place, index * each, None, each)
         self.journal["next"] = max(self.journal["next"], self.settings.first_pass)
 
+    def first_parts(self):
+        samples = self.settings.first_pass
+        return samples // 2 if samples % 4 == 0 and samples > 8 else samples
+
+    def even_pass(self):
+        """Goes on with the first pass where even_share says so."""
+        parts = self.journal["parts"]
+        if self.journal["rounds"] or self.journal["plan"] or len(parts) > self.first_parts():
+            return
+        rate = sum(part["seconds"] for part in parts) / sum(part["spp"] for part in parts)
+        each = int(even_share(self.settings.budget, self.seconds(), rate) / 2) // EVEN_PARTS * EVEN_PARTS
+        if each > 0:
+            counts = {half: np.full(self.totals[half].counts.shape, each) for half in HALVES}
+            before = self.first_parts() // 2
+            self.journal["plan"] = {**self.place_in_sequence(0, counts), "worth": 2 * each, "before": before}
+            self.render_round(self.journal["plan"])
+
     def render_round(self, plan):
+        """before: parts of a half that the round has already."""
         for half, index in itertools.product(HALVES, range(plan["parts"])):
-            if not self.journal.has(plan["round"], half, index):
+            place = plan["before"] + index
+            if not self.journal.has(plan["round"], half, place):
                 self.tell(f"round {plan['round']}, half {half.upper()}", round=plan["round"])
                 counts = next(iter(exr.read(self.file(plan["round"], f"counts_{half}")).values())).astype(int) // plan["parts"]
                 first = plan["first"][half] + index * int(counts.max())
-                self.render_part(plan["round"], half, index, first, counts, 0, plan["worth"] / 2)
+                self.render_part(plan["round"], half, place, first, counts, 0, plan["worth"] / 2)
         self.journal["plan"] = None
         self.journal.save()
 
@@ -200,7 +220,9 @@ class _Loop:
 
     def spent(self):
         parts = self.journal["parts"]
-        whole = [part for part in parts if not part["masked"]]
+        # Short parts are dearer than the next ones will be.
+        longest = max(part["spp"] for part in parts if not part["masked"])
+        whole = [part for part in parts if not part["masked"] and part["spp"] >= longest / 2]
         seconds, worth = (sum(part[key] for part in whole) for key in ("seconds", "worth"))
         return Spent(
             samples=sum(p["spp"] for p in parts),
@@ -270,14 +292,16 @@ class _Loop:
         return max(1.0, masked / whole)
 
     def place_in_sequence(self, number, counts):
-        """Each half's round begins at a multiple of its largest count, so that every count is a whole block of the
-        sequence."""
-        even = all(c.min() == c.max() and c.max() % EVEN_PARTS == 0 for c in counts.values())
-        plan, free = {"round": number, "first": {}, "parts": EVEN_PARTS if even else 1}, self.journal["next"]
+        """A half's counts that differ begin at a multiple of the largest, so that every count is a whole block of the sequence;
+        even ones go on where the sequence has come to."""
+        even = all(c.min() == c.max() for c in counts.values())
+        in_parts = even and all(c.max() % EVEN_PARTS == 0 for c in counts.values())
+        plan = {"round": number, "first": {}, "parts": EVEN_PARTS if in_parts else 1, "before": 0}
+        free = self.journal["next"]
         (self.folder / f"round_{number}").mkdir(exist_ok=True)
         for half in HALVES:
             most = max(1, int(counts[half].max()))
-            plan["first"][half] = -(-free // most) * most
+            plan["first"][half] = free if even else -(-free // most) * most
             free = plan["first"][half] + most
             exr.write(self.file(number, f"counts_{half}"), {"samples.Y": counts[half]})
         exr.write(self.file(number, "samples"), {"samples.Y": counts["a"] + counts["b"]})

@@ -6,7 +6,8 @@ from typing import Optional
 
 GROWTH = 1.0  # a round takes as much as was spent before it, so the slices double
 LEAST_SAMPLES = 0.25  # per pixel: a smaller round does not pay its overhead
-MOST_JUDGING = 0.1  # of a round's seconds, where seconds are the budget: fewer and larger rounds where judging is dear
+EVEN_SHARE = 0.25  # of a budget of seconds, spent evenly before anything is judged: see even_share
+MOST_JUDGING = 0.06  # of a round's seconds, where seconds are the budget: fewer and larger rounds where judging is dear
 CONVERGENCE_RATE = 0.75  # the error falls with n^-this: src/estimate/sample_map.h
 SAMPLES_SPENT, SECONDS_SPENT = "the samples are spent", "the seconds are spent"
 
@@ -40,6 +41,13 @@ class Spent:
     error: float = math.nan
 
 
+def even_share(budget, seconds, seconds_per_sample):
+    """Samples per pixel that are spent evenly after the first pass, where seconds are the budget. No pixel of a good map has
+    fewer than such a share, so they are not spent in vain, and the first judgement, which is dear where the seconds
+    count, then knows more than that of a few samples would."""
+    return (EVEN_SHARE * budget.seconds - seconds) / max(seconds_per_sample, 1e-9) if budget.seconds else 0.0
+
+
 def nothing_left(budget, spent):
     """Why the loop ends, where that is known before another round is judged; else ''. A round of which the judging takes
     more seconds than the samples does not pay."""
@@ -52,7 +60,7 @@ def nothing_left(budget, spent):
 
 def next_slice(budget, spent, steps=1):
     """Samples per pixel of the next round, and why there is none (or ''). The slices grow geometrically; the last one takes
-    what is left, and one that would leave no more than half of itself takes that too. steps: so many slices at once."""
+    what is left, and one that would leave no more than itself takes that too. steps: so many slices at once."""
     step = GROWTH * spent.worth
     if budget.samples:
         left, reason = budget.samples - spent.samples, SAMPLES_SPENT
@@ -68,7 +76,7 @@ def next_slice(budget, spent, steps=1):
     if left < LEAST_SAMPLES:
         return 0.0, reason
     step *= steps
-    return (left if left <= 1.5 * step else step), ""
+    return (left if left <= 2 * step else step), ""
 
 
 def _needed(target, spent):

@@ -3,12 +3,15 @@
 import numpy as np
 
 MOST = 1 << 12  # samples of one pixel in one pass
+COST_BLUR = 4.0  # pixels, standard deviation
+LEAST_OVER_MEAN = 0.25  # the lowest count: below it a pass costs more than its samples are worth
 WINDOW = 3.5  # pixels, standard deviation: how far a sample helps (SampleMapParams::radius / 2)
-COHERENCE = 2.0  # pixels, standard deviation of the blur
+COHERENCE = 6.0  # pixels, standard deviation of the blur: docs/adaptive.md
 
 
 def quantise(wanted, cost):
-    """Counts that are 0 or powers of two, and cost together what `wanted` (samples, any real numbers >= 0) does.
+    """Counts that are 0 or powers of two, from about a quarter of their mean on, and cost together what `wanted` (samples, any
+    real numbers >= 0) does.
 
     The map is smoothed first, so that neighbours mostly share a count: borders between counts cost samples. Rounding to a
     power of two costs little: sum v / n is flat around its minimum (3 % more variance at most, a factor of sqrt 2 off).
@@ -18,20 +21,21 @@ def quantise(wanted, cost):
     budget = float((cost * wanted).sum())
     if budget <= 0:
         return np.zeros(wanted.shape, int)
+    least = max(0.0, np.floor(np.log2(max(1.0, LEAST_OVER_MEAN * wanted.mean()))))
     low, high = 1e-3, 1e3  # of the factor that makes the costs equal; the cost grows with it
     for _ in range(40):
         factor = np.sqrt(low * high)
-        if (cost * _powers(smooth * factor)).sum() > budget:
+        if (cost * _powers(smooth * factor, least)).sum() > budget:
             high = factor
         else:
             low = factor
-    return _powers(smooth * low)
+    return _powers(smooth * low, least)
 
 
-def _powers(values):
-    """Nearest power of two by ratio, 0 below 1 / sqrt 2."""
+def _powers(values, least):
+    """Nearest power of two by ratio, 0 below 1 / sqrt 2 of the lowest one, 2^least."""
     exponents = np.rint(np.log2(np.maximum(values, 1e-9)))
-    return np.where(exponents < 0, 0, 2.0 ** np.clip(exponents, 0, np.log2(MOST))).astype(int)
+    return np.where(exponents < least, 0, 2.0 ** np.clip(exponents, 0, np.log2(MOST))).astype(int)
 
 
 def gaussian_blur(image, sigma):
@@ -60,5 +64,5 @@ def cost_of_samples(seconds, counts):
     if seconds is None or not np.isfinite(seconds).all() or seconds.sum() <= 0 or counts.sum() <= 0:
         return np.ones(counts.shape)
     seconds = np.minimum(seconds, 16 * counts * seconds.sum() / counts.sum())
-    cost = gaussian_blur(seconds, 2 * COHERENCE) / np.maximum(gaussian_blur(counts, 2 * COHERENCE), 1e-9)
+    cost = gaussian_blur(seconds, COST_BLUR) / np.maximum(gaussian_blur(counts, COST_BLUR), 1e-9)
     return np.clip(cost / cost.mean(), 1 / 16, 16)

@@ -6,7 +6,7 @@ import pathlib
 
 from .errors import DriverError, ExitCode
 
-VERSION = 2
+VERSION = 3
 
 
 class Journal:
@@ -16,7 +16,7 @@ class Journal:
       next      first number of the sequence that is free
       parts     [{file, half, round, first, spp, seconds}] whole files, in the order they were rendered
       rounds    [{round, spp, seconds, error, extra}] what was known after each round, and the samples per pixel that follow
-      plan      {round, first: {a, b}} the round being rendered; its counts are in files
+      plan      {round, first: {a, b}, parts, before, worth} the round being rendered; its counts are in files
     A part is entered after its file has its name, so a part that is not here was never counted; its numbers of the sequence
     are drawn again, for the same part."""
 

@@ -161,7 +161,7 @@ std::size_t stage_bytes_per_pixel(int color_channels, int feature_channels, cons
   const std::size_t inputs = 2 * colors + 3 + 2 * static_cast<std::size_t>(feature_channels) + candidate;
   // The most that lives at once: the choice among all candidates with their risks and its result, or the last fits of
   // the noisy halves with their sums, or those of the guide beside the candidates that are there.
-  const std::size_t choosing = candidates * (candidate + 3) + candidate + 12;
+  const std::size_t choosing = candidates * (candidate + 3) + candidate + 13;
   const std::size_t fitting = raw * (2 * fit + sums);
   const std::size_t guided = raw * candidate + 6 + params.guided_bandwidths.size() * (2 * fit + sums);
   return sizeof(Real) * (inputs + std::max({choosing, fitting, guided})) + 8;

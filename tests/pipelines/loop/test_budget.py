@@ -1,7 +1,7 @@
 import unittest
 from pathlib import Path
 
-from pipelines.loop.budget import Budget, Spent, next_slice, nothing_left
+from pipelines.loop.budget import Budget, Spent, even_share, next_slice, nothing_left
 from pipelines.loop.errors import DriverError
 from pipelines.loop.frames import frame_path, parse_frames
 
@@ -19,20 +19,26 @@ class Slices(unittest.TestCase):
             done.append(extra)
             n += extra
         self.assertEqual(done, [8, 16, 32])
-        self.assertEqual(next_slice(Budget(samples=20), spent(8.0))[0], 8 + 4)  # 4 more would be no round of their own
+        self.assertEqual(next_slice(Budget(samples=24), spent(8.0))[0], 8 + 8)  # 8 more would be no round of their own
         self.assertEqual(next_slice(Budget(samples=8), spent(8.0)), (0.0, "the samples are spent"))
 
     def test_case31_seconds_leave_room_for_the_result(self):
-        # 8 samples took 8 of the 10 seconds; of 25, 2 are kept for the result, 13 are left: 13 samples, over 1.5 x 8.
-        self.assertEqual(next_slice(Budget(seconds=25), spent(8.0))[0], 8)
+        # 8 samples took 8 of the 10 seconds; of 29, 2 are kept for the result, 17 are left: 17 samples, over 2 x 8.
+        self.assertEqual(next_slice(Budget(seconds=29), spent(8.0, judging=0.1))[0], 8)
         self.assertAlmostEqual(next_slice(Budget(seconds=20), spent(8.0))[0], 8)
         self.assertAlmostEqual(next_slice(Budget(seconds=15), spent(8.0))[0], 3)
         self.assertEqual(next_slice(Budget(seconds=12), spent(8.0)), (0.0, "the seconds are spent"))
 
-    def test_judging_takes_no_more_than_a_tenth_of_a_round(self):
-        # A sample takes a second: rounds of 20 samples where judging takes 2 seconds.
-        self.assertEqual(next_slice(Budget(seconds=100), spent(8.0, judging=2))[0], 20)
+    def test_judging_takes_little_of_a_round(self):
+        # A sample takes a second: rounds of 50 samples where judging takes 3 seconds.
+        self.assertAlmostEqual(next_slice(Budget(seconds=200), spent(8.0, judging=3))[0], 50)
         self.assertEqual(next_slice(Budget(samples=64), spent(8.0, judging=2))[0], 8)  # not by the clock
+
+    def test_a_quarter_of_the_seconds_is_even(self):
+        self.assertAlmostEqual(even_share(Budget(seconds=100), 5.0, 0.5), 40)
+        self.assertLess(even_share(Budget(seconds=10), 5.0, 0.5), 0)
+        self.assertEqual(even_share(Budget(samples=100), 5.0, 0.5), 0)
+        self.assertEqual(even_share(Budget(target=0.1), 5.0, 0.5), 0)
 
     def test_a_round_that_cannot_pay_is_not_judged(self):
         self.assertEqual(nothing_left(Budget(samples=8), spent(8.0)), "the samples are spent")

@@ -10,14 +10,16 @@ ONES = np.ones((32, 48))
 class Counts(unittest.TestCase):
     def test_powers_of_two_that_cost_what_was_wanted(self):
         random = np.random.default_rng(1)
-        wanted = np.exp(gaussian_blur(random.normal(0, 12, ONES.shape), 4) + 2)
-        cost = np.where(np.arange(48) < 24, 1.0, 5.0) * ONES
+        hills = gaussian_blur(random.normal(0, 1, (96, 144)), 20)
+        wanted = np.exp(hills / hills.std() + 3)
+        cost = np.where(np.arange(144) < 72, 1.0, 5.0) * np.ones((96, 1))
         counts = quantise(wanted, cost)
         self.assertLessEqual((cost * counts).sum(), (cost * wanted).sum() * 1.02)
         self.assertGreater((cost * counts).sum(), (cost * wanted).sum() * 0.9)
         used = counts[counts > 0]
         np.testing.assert_array_equal(2 ** np.rint(np.log2(used)).astype(int), used)
-        self.assertGreater(np.corrcoef(np.log2(wanted).ravel(), np.log2(counts + 0.5).ravel())[0, 1], 0.9)
+        self.assertGreaterEqual(used.min(), 2 ** np.floor(np.log2(wanted.mean() / 4)))
+        self.assertGreater(np.corrcoef(np.log2(wanted[counts > 0]), np.log2(used))[0, 1], 0.9)
 
     def test_neighbours_mostly_share_a_count(self):
         wanted = np.random.default_rng(2).exponential(8, (64, 64))
@@ -31,9 +33,10 @@ class Counts(unittest.TestCase):
         one = 0 * ONES
         one[7, 9] = 640
         counts = quantise(one, ONES)
-        self.assertGreater(counts[7, 9], 8)
+        self.assertGreater(counts[7, 9], 1)  # the most, and near by
+        self.assertEqual(counts[7, 9], counts.max())
         self.assertLessEqual(counts.sum(), 640)
-        self.assertEqual(counts[20:].sum(), 0)
+        self.assertEqual(counts[24:].sum(), 0)
         holed = 4 * ONES
         holed[3, 3] = np.nan
         self.assertTrue(np.isin(quantise(holed, ONES), (2, 4, 8)).all())
