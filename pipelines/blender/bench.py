@@ -15,6 +15,7 @@ results: run it again to go on, or with another budget to add to the table.
 
   bench.py                                           all of it; hours the first time, nearly all for the references
   bench.py glass fan --seconds 10,30 --size 320x180
+  bench.py shot.blend --size 320x180                 a file of one's own, whatever engine it is set to, by Cycles
   bench.py --references                              only these
   bench.py --stop-after 90                           a slice; the next call goes on
 """
@@ -53,7 +54,7 @@ def arguments(words):
     parser = argparse.ArgumentParser(
         prog="bench.py", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("scenes", nargs="*", metavar="SCENE", help=f"of: {', '.join(SCENES)} (all)")
+    parser.add_argument("scenes", nargs="*", metavar="SCENE", help=f"of: {', '.join(SCENES)} (all), or a .blend file")
     parser.add_argument("--size", default="320x180")
     parser.add_argument("--seconds", default="15,45", help="budgets (%(default)s)")
     parser.add_argument("--clock", choices=("wall", "cpu"), default="wall", help="what the seconds are (wall)")
@@ -70,7 +71,8 @@ def arguments(words):
     options.methods = options.methods.split(",")
     first = "adaptive" if options.clock == "wall" else "uniform"  # the others are tuned by what these taught
     options.methods.sort(key=lambda method: method != first)
-    for given, known in ((options.scenes, SCENES), (options.methods, METHODS)):
+    ours = [scene for scene in options.scenes if not scene.endswith(".blend")]
+    for given, known in ((ours, SCENES), (options.methods, METHODS)):
         if unknown := sorted(set(given) - set(known)):
             parser.error(f"{', '.join(unknown)}: not one of {', '.join(known)}")
     if options.reference_spp < 2 * REFERENCE_STEP or options.reference_spp % REFERENCE_STEP:
@@ -100,9 +102,11 @@ class Deadline:
 class Scene:
     """The files of one scene."""
 
-    def __init__(self, name, options, polyrecon):
-        self.name, self.options, self.polyrecon = name, options, polyrecon
-        self.folder = options.work.resolve() / options.size / name
+    def __init__(self, scene, options, polyrecon):
+        self.source = pathlib.Path(scene).resolve() if scene.endswith(".blend") else None
+        self.name = self.source.stem if self.source else scene
+        self.options, self.polyrecon = options, polyrecon
+        self.folder = options.work.resolve() / options.size / self.name
         self.folder.mkdir(parents=True, exist_ok=True)
         self.blend = self.folder / "scene.blend"
         self.reference = self.folder / f"ref_{options.reference_spp}.exr"
@@ -110,9 +114,10 @@ class Scene:
     def build(self):
         if not self.blend.exists():
             print(f"{self.name}: building the scene", flush=True)
-            script = ROOT / "samples" / "scenes" / "render.py"
             first, made = self.folder / "first.exr", self.folder / "making.blend"
-            run([self.options.python, script, self.name, first, "--spp=1", f"--size={self.options.size}", "--save-blend", made])
+            script = HERE / "bench_render.py" if self.source else ROOT / "samples" / "scenes" / "render.py"
+            words = ["--spp=1", f"--size={self.options.size}", "--save-blend", made]
+            run([self.options.python, script, self.source or self.name, first, *words])
             first.unlink()
             made.replace(self.blend)
 
@@ -127,7 +132,7 @@ class Scene:
                 deadline.check()
                 print(f"{self.name}: reference, seed {seed}", flush=True)
                 making = self.folder / "making.exr"
-                self.render(making, samples=REFERENCE_STEP, seed=seed)
+                self.render(making, spp=REFERENCE_STEP, seed=seed)
                 making.replace(files[-1])
         making = self.folder / "making.exr"
         self.polyrecon.run("merge", *files, "-o", making, "--samples", str(REFERENCE_STEP), "--quiet")
@@ -163,18 +168,18 @@ def run(words):
 def uniform(scene, image, samples):
     parts = [scene.folder / f"part_{i}.exr" for i in range(PARTS)]
     merged = scene.folder / "merged.exr"
-    rendering = scene.render(scene.folder / "part.exr", samples=samples, parts=PARTS, features=True)
+    rendering = scene.render(scene.folder / "part.exr", spp=samples, parts=PARTS, features=True)
     scene.polyrecon.run("merge", *parts, "-o", merged, "--samples", str(samples // PARTS), "--quiet")
     scene.polyrecon.run("denoise", "-i", merged, "-o", image, "--quiet")
     return rendering, {"spp": samples}
 
 
 def oidn(scene, image, samples):
-    return scene.render(image, samples=samples, denoise=True), {"spp": samples}
+    return scene.render(image, spp=samples, denoise=True), {"spp": samples}
 
 
 def cycles(scene, image, threshold):
-    return scene.render(image, samples=MOST_SAMPLES, threshold=threshold, denoise=True), {"threshold": threshold}
+    return scene.render(image, spp=MOST_SAMPLES, threshold=threshold, denoise=True), {"threshold": threshold}
 
 
 def uniform_prior(scene, image, samples):

@@ -56,6 +56,19 @@ class Run(unittest.TestCase):
             self.assertIn("| meadow | 0.5 s |", self.call(*words)[1])
             self.assertEqual({path: path.stat().st_mtime_ns for path in work.rglob("*.exr")}, before)
 
+    def test_a_file_of_ones_own_is_rendered_by_cycles_whatever_its_engine(self):
+        import bpy
+
+        with tempfile.TemporaryDirectory() as folder:
+            own = pathlib.Path(folder) / "own.blend"
+            bpy.ops.wm.read_factory_settings()  # the cube, for EEVEE
+            bpy.ops.wm.save_as_mainfile(filepath=str(own))
+            before = own.read_bytes()
+            code, said = self.call(own, "--size=24x16", "--seconds=0.5", "--methods=oidn", "--reference-spp=128", "--work", folder)
+            self.assertEqual(code, 0, said)
+            self.assertIn("| own | 0.5 s |", said)
+            self.assertEqual(own.read_bytes(), before)
+
     def test_wrong_use(self):
         for words in (["nowhere"], ["glass", "--methods=magic"], ["--seconds=soon"], ["--reference-spp=65"]):
             with self.subTest(words), contextlib.redirect_stderr(io.StringIO()), self.assertRaises(SystemExit) as raised:
