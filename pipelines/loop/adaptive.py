@@ -16,7 +16,7 @@ from typing import Optional
 import numpy as np
 
 from . import exr
-from .budget import CONVERGENCE_RATE, Budget, Spent, even_share, next_slice, nothing_left
+from .budget import CONVERGENCE_RATE, Budget, Spent, even_share, next_slice, nothing_left, rest
 from .counts import cost_of_samples, quantise, weight_of_samples
 from .errors import DriverError, ExitCode
 from .journal import Journal
@@ -26,8 +26,9 @@ HALVES = ("a", "b")
 OTHER = {"a": "b", "b": "a"}
 ROUND_QUALITY = "draft"
 EVEN_PARTS = 4  # of a half in an even round: what they differ by tells the variance
+LEAST_PART = 2  # samples of a part, except for the first pass: the fewer, the dearer each
 EVEN_STEPS = 3  # slices that an even round takes at once: it is not as soon that another map pays
-EXTRA_OVER_UNIFORM = 1.25  # seconds of a sample in a masked pass over one in a whole pass, until they are measured
+EXTRA_OVER_UNIFORM = 1.1  # seconds of a sample in a masked pass over one in a whole pass, until they are measured
 # Time of the last reconstruction, of all samples, over that of a half at ROUND_QUALITY (docs/performance.md).
 LAST_OVER_ROUND = {"draft": 1.1, "standard": 4.0, "best": 16.0}
 
@@ -138,15 +139,19 @@ class _Loop:
         if self.journal["rounds"] or self.journal["plan"] or len(parts) > self.first_parts():
             return
         rate = sum(part["seconds"] for part in parts) / sum(part["spp"] for part in parts)
-        each = int(even_share(self.settings.budget, self.seconds(), rate) / 2) // EVEN_PARTS * EVEN_PARTS
-        if each > 0:
-            counts = {half: np.full(self.totals[half].counts.shape, each) for half in HALVES}
-            before = self.first_parts() // 2
-            self.journal["plan"] = {**self.place_in_sequence(0, counts), "worth": 2 * each, "before": before}
-            self.render_round(self.journal["plan"])
+        if plan := self.plan_even(0, even_share(self.settings.budget, self.seconds(), rate)):
+            self.render_round(plan)
+
+    def plan_even(self, number, samples):
+        """The same samples of every pixel as (a further part of) a round; None where they are too few."""
+        counts = {half: self.even_counts(samples) for half in HALVES}
+        most = int(counts["a"].max())
+        if most < LEAST_PART:
+            return None
+        self.journal["plan"] = {**self.place_in_sequence(number, counts), "worth": 2 * most}
+        return self.journal["plan"]
 
     def render_round(self, plan):
-        """before: parts of a half that the round has already."""
         for half, index in itertools.product(HALVES, range(plan["parts"])):
             place = plan["before"] + index
             if not self.journal.has(plan["round"], half, place):
@@ -179,9 +184,10 @@ class _Loop:
         """Reconstructs both halves and decides where the next samples of each go; None where the loop ends."""
         number = len(self.journal["rounds"])
         if self.judging is not None:
-            self.why_ended = nothing_left(self.settings.budget, self.spent())
+            spent = self.spent()
+            self.why_ended = nothing_left(self.settings.budget, spent)
             if self.why_ended:
-                return None
+                return self.plan_even(number + 1, self.even_samples(rest(self.settings.budget, spent)))
         (self.folder / f"round_{number}").mkdir(exist_ok=True)
         self.reconstruct_halves(number)
         spent = dataclasses.replace(self.spent(), error=self.error_of_mean(number))
@@ -191,7 +197,7 @@ class _Loop:
         counts = self.counts_for(number, samples) if samples else {}
         if samples and not counts:
             samples, _ = next_slice(self.settings.budget, spent, EVEN_STEPS)
-            counts = {half: self.even_counts(samples) for half in HALVES}
+            counts = {half: self.even_counts(self.even_samples(samples)) for half in HALVES}
         if samples and not any(c.any() for c in counts.values()):
             self.why_ended = "no error is left that more samples could lower"
             samples = 0.0
@@ -259,7 +265,7 @@ class _Loop:
         counts = {half: quantise(exr.read(map_file)["samples.Y"], costs[half]) for half, (_, map_file) in files.items()}
         for file in itertools.chain(*files.values()):
             file.unlink()
-        return counts if self.even_samples(samples) < 1 or self.map_pays(number, counts, samples) else {}
+        return counts if self.even_samples(samples) < 2 or self.map_pays(number, counts, samples) else {}
 
     def map_pays(self, number, counts, samples):
         """Whether the counts lower the error by more than as many seconds of uniform samples would. Each half's counts are
@@ -269,17 +275,18 @@ class _Loop:
             error = exr.read(self.file(number, f"error_{half}"))
             weight = weight_of_samples(error["relvariance.Y"], error["relnoise.Y"])
             taken = np.maximum(self.totals[half].counts, 1)
-            for way, extra in (("map", counts[half]), ("even", self.even_samples(samples))):
+            for way, extra in (("map", counts[half]), ("even", self.even_samples(samples) / 2)):
                 left[way] += float((weight * (taken / (taken + extra)) ** CONVERGENCE_RATE).sum())
         return left["map"] <= left["even"]
 
     def even_samples(self, samples):
-        """Uniform samples of a half for the seconds of a round's slice."""
-        return samples / 2 * (1 if self.settings.budget.samples else self.extra_over_uniform())
+        """Uniform samples for the seconds of a round's slice."""
+        return samples * (1 if self.settings.budget.samples else self.extra_over_uniform())
 
     def even_counts(self, samples):
-        each = int(self.even_samples(samples))
-        if each > EVEN_PARTS:
+        """Of a half; a multiple of the parts that they can be cut into."""
+        each = max(0, int(samples / 2))
+        if each > EVEN_PARTS * LEAST_PART:
             each -= each % EVEN_PARTS
         return np.full(self.totals["a"].counts.shape, each)
 
@@ -295,8 +302,9 @@ class _Loop:
         """A half's counts that differ begin at a multiple of the largest, so that every count is a whole block of the sequence;
         even ones go on where the sequence has come to."""
         even = all(c.min() == c.max() for c in counts.values())
-        in_parts = even and all(c.max() % EVEN_PARTS == 0 for c in counts.values())
-        plan = {"round": number, "first": {}, "parts": EVEN_PARTS if in_parts else 1, "before": 0}
+        in_parts = even and all(c.max() % EVEN_PARTS == 0 and c.max() >= EVEN_PARTS * LEAST_PART for c in counts.values())
+        before = sum(part["round"] == number for part in self.journal["parts"]) // 2  # parts of a half that the round has
+        plan = {"round": number, "first": {}, "parts": EVEN_PARTS if in_parts else 1, "before": before}
         free = self.journal["next"]
         (self.folder / f"round_{number}").mkdir(exist_ok=True)
         for half in HALVES:

@@ -49,13 +49,18 @@ def even_share(budget, seconds, seconds_per_sample):
 
 
 def nothing_left(budget, spent):
-    """Why the loop ends, where that is known before another round is judged; else ''. A round of which the judging takes
-    more seconds than the samples does not pay."""
+    """Why no further round is judged, where that is known before; else ''. One of which the judging takes more than its share
+    of the seconds does not pay."""
     if budget.samples and budget.samples - spent.samples < LEAST_SAMPLES:
         return SAMPLES_SPENT
-    if budget.seconds and budget.seconds - spent.seconds - spent.reserve < 2 * spent.judging:
+    if budget.seconds and _seconds_left(budget, spent) < spent.judging / MOST_JUDGING:
         return SECONDS_SPENT
     return ""
+
+
+def rest(budget, spent):
+    """Samples per pixel for the seconds that are left when nothing more is judged."""
+    return _seconds_left(budget, spent) / max(spent.seconds_per_sample, 1e-9) if budget.seconds else 0.0
 
 
 def next_slice(budget, spent, steps=1):
@@ -65,10 +70,8 @@ def next_slice(budget, spent, steps=1):
     if budget.samples:
         left, reason = budget.samples - spent.samples, SAMPLES_SPENT
     elif budget.seconds:
-        seconds = budget.seconds - spent.seconds - spent.reserve
-        rate = 1 / max(spent.seconds_per_sample, 1e-9)
-        left, reason = seconds * rate, SECONDS_SPENT
-        step = max(step, spent.judging / MOST_JUDGING * rate)
+        left, reason = rest(budget, spent), SECONDS_SPENT
+        step = max(step, spent.judging / MOST_JUDGING / max(spent.seconds_per_sample, 1e-9))
     elif spent.error <= budget.target:
         return 0.0, f"the target is reached: {spent.error:.3g}"
     else:
@@ -77,6 +80,10 @@ def next_slice(budget, spent, steps=1):
         return 0.0, reason
     step *= steps
     return (left if left <= 2 * step else step), ""
+
+
+def _seconds_left(budget, spent):
+    return budget.seconds - spent.seconds - spent.reserve
 
 
 def _needed(target, spent):

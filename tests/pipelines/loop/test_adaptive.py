@@ -77,6 +77,7 @@ class Statistics(Folder):
     def test_where_no_map_pays_the_samples_are_even(self):
         even = SyntheticRenderer()
         even.spread = np.full(even.mean.shape, 4.0)
+        even.seconds = np.ones(even.mean.shape)
         _, result = loop(self.folder, Budget(target=1e-6), max_rounds=1, renderer=even)
         counts = counts_of(result)
         self.assertEqual(counts.min(), counts.max())

@@ -1,7 +1,7 @@
 import unittest
 from pathlib import Path
 
-from pipelines.loop.budget import Budget, Spent, even_share, next_slice, nothing_left
+from pipelines.loop.budget import Budget, Spent, even_share, next_slice, nothing_left, rest
 from pipelines.loop.errors import DriverError
 from pipelines.loop.frames import frame_path, parse_frames
 
@@ -43,10 +43,15 @@ class Slices(unittest.TestCase):
     def test_a_round_that_cannot_pay_is_not_judged(self):
         self.assertEqual(nothing_left(Budget(samples=8), spent(8.0)), "the samples are spent")
         self.assertEqual(nothing_left(Budget(samples=9), spent(8.0)), "")
-        # 10 seconds are spent and 2 kept: judging (2) and samples (2 at least) need 4 more.
-        self.assertEqual(nothing_left(Budget(seconds=15.9), spent(8.0, judging=2)), "the seconds are spent")
-        self.assertEqual(nothing_left(Budget(seconds=16.1), spent(8.0, judging=2)), "")
+        # 10 seconds are spent and 2 kept: judging takes 3, so a round takes 50.
+        self.assertEqual(nothing_left(Budget(seconds=61), spent(8.0, judging=3)), "the seconds are spent")
+        self.assertEqual(nothing_left(Budget(seconds=63), spent(8.0, judging=3)), "")
         self.assertEqual(nothing_left(Budget(target=0.2), spent(8.0)), "")
+
+    def test_the_rest_is_what_the_seconds_hold(self):
+        self.assertAlmostEqual(rest(Budget(seconds=15), spent(8.0)), 3)
+        self.assertLess(rest(Budget(seconds=11), spent(8.0)), 0)
+        self.assertEqual(rest(Budget(samples=100), spent(8.0)), 0)
 
     def test_a_target_takes_what_it_needs(self):
         self.assertEqual(next_slice(Budget(target=0.2), spent(8.0))[0], 0)
