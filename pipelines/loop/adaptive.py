@@ -25,8 +25,8 @@ from .renderer import RENDER_SECONDS, SAMPLE_COUNT
 HALVES = ("a", "b")
 OTHER = {"a": "b", "b": "a"}
 ROUND_QUALITY = "draft"
-EVEN_PARTS = 4  # of a half in an even round: what they differ by tells the variance
-LEAST_PART = 2  # samples of a part, except for the first pass: the fewer, the dearer each
+EVEN_PARTS = 2  # of a half in an even round: what they differ by tells the variance; the longer, the cheaper a sample
+LEAST_CUT, LEAST_EVEN = 8, 2  # samples of a half that are cut so, and that are worth a pass
 EVEN_STEPS = 3  # slices that an even round takes at once: it is not as soon that another map pays
 EXTRA_OVER_UNIFORM = 1.1  # seconds of a sample in a masked pass over one in a whole pass, until they are measured
 # Time of the last reconstruction, of all samples, over that of a half at ROUND_QUALITY (docs/performance.md).
@@ -146,7 +146,7 @@ class _Loop:
         """The same samples of every pixel as (a further part of) a round; None where they are too few."""
         counts = {half: self.even_counts(samples) for half in HALVES}
         most = int(counts["a"].max())
-        if most < LEAST_PART:
+        if most < LEAST_EVEN:
             return None
         self.journal["plan"] = {**self.place_in_sequence(number, counts), "worth": 2 * most}
         return self.journal["plan"]
@@ -286,7 +286,7 @@ class _Loop:
     def even_counts(self, samples):
         """Of a half; a multiple of the parts that they can be cut into."""
         each = max(0, int(samples / 2))
-        if each > EVEN_PARTS * LEAST_PART:
+        if each >= LEAST_CUT:
             each -= each % EVEN_PARTS
         return np.full(self.totals["a"].counts.shape, each)
 
@@ -302,7 +302,7 @@ class _Loop:
         """A half's counts that differ begin at a multiple of the largest, so that every count is a whole block of the sequence;
         even ones go on where the sequence has come to."""
         even = all(c.min() == c.max() for c in counts.values())
-        in_parts = even and all(c.max() % EVEN_PARTS == 0 and c.max() >= EVEN_PARTS * LEAST_PART for c in counts.values())
+        in_parts = even and all(c.max() % EVEN_PARTS == 0 and c.max() >= LEAST_CUT for c in counts.values())
         before = sum(part["round"] == number for part in self.journal["parts"]) // 2  # parts of a half that the round has
         plan = {"round": number, "first": {}, "parts": EVEN_PARTS if in_parts else 1, "before": before}
         free = self.journal["next"]
