@@ -10,8 +10,10 @@ Frames work alone there; what their neighbours in time add is measured by --neig
 import argparse
 import itertools
 import json
+import multiprocessing
 import os
 import pathlib
+import statistics
 import subprocess
 import sys
 import tempfile
@@ -37,6 +39,7 @@ RUNS = (
 CHECK = ((960, 540), "standard")  # a size and quality that the fit has not seen
 SCALING_SIZE = (640, 360)
 THREADS = 2
+TURNS = 3  # of --scaling
 TRAITS = (" Variance", " A", " B", " Count")
 
 
@@ -98,6 +101,15 @@ def inspect(program, path):
     )
 
 
+def apart(function, *arguments):
+    """Calls it in a process of its own, so that this one stays small: the peak of a child that it starts begins with its own."""
+    process = multiprocessing.get_context("fork").Process(target=function, args=arguments)
+    process.start()
+    process.join()
+    if process.exitcode:
+        sys.exit(f"{function.__name__} failed")
+
+
 class Shots:
     """Sequences of links to one frame, made when asked for."""
 
@@ -114,8 +126,8 @@ class Shots:
         folder = self.folder / (name or f"{layout}_{width}")
         if not folder.exists():
             folder.mkdir()
-            write_layout(self.layouts[layout][0], folder / "layout.exr", *self.layouts[layout][1:])
-            scaling.make_frame(folder / "layout.exr", width, height, folder / "in.0001.exr")
+            apart(write_layout, self.layouts[layout][0], folder / "layout.exr", *self.layouts[layout][1:])
+            apart(scaling.make_frame, folder / "layout.exr", width, height, folder / "in.0001.exr")
             for k in range(2, frames_of(RADIUS) + 1):
                 os.link(folder / "in.0001.exr", folder / f"in.{k:04}.exr")
         return folder, inspect(self.program, folder / "in.0001.exr")
@@ -165,37 +177,33 @@ def rounded(value):
 
 
 def side_by_side(program, shots, tasks, threads):
-    """So many tasks at once, each in a folder of its own: wall-clock seconds of all, processor seconds, and those of the
-    first threads of the tasks, all per frame."""
+    """So many tasks at once, each in a folder of its own: wall-clock seconds of all and processor seconds, per frame."""
     folders = [shots.get("merged", *SCALING_SIZE, name=f"task_{task}")[0] for task in range(tasks)]
     begun = time.monotonic()
     children = [subprocess.Popen(list(map(str, command(program, f, "standard", threads)))) for f in folders]
-    cpu = first = 0.0
+    cpu = 0.0
     for child in children:
-        os.waitid(os.P_PID, child.pid, os.WEXITED | os.WNOWAIT)
-        ticks = pathlib.Path(f"/proc/{child.pid}/task/{child.pid}/stat").read_text().rpartition(")")[2].split()[11:13]
-        first += sum(map(int, ticks)) / os.sysconf("SC_CLK_TCK")
         _, status, usage = os.wait4(child.pid, 0)
         child.returncode = os.waitstatus_to_exitcode(status)
         cpu += usage.ru_utime + usage.ru_stime
     if any(child.returncode for child in children):
         sys.exit("polyrecon failed")
     frames = tasks * FRAMES
-    return (time.monotonic() - begun) / frames, cpu / frames, first / frames
+    return (time.monotonic() - begun) / frames, cpu / frames
 
 
 def measure_scaling(program, shots):
-    """Prints a table; returns the parallel part of Amdahl's law of one task.
-
-    By processor seconds, which other work on the machine hardly changes: with two threads the first one works through
-    all that is serial and half of the rest, the others (readers and coders of files among them) through the other half.
-    """
-    scaling.row("tasks", "threads of each", "CPU s a frame", "wall s a frame", "CPU s of the first threads")
-    scaling.row("---:", "---:", "---:", "---:", "---:")
-    for tasks, threads in ((1, 1), (2, 1), (1, 2)):
-        wall, cpu, first = side_by_side(program, shots, tasks, threads)
-        scaling.row(tasks, threads, f"{cpu:.2f}", f"{wall:.2f}", f"{first:.2f}")
-    return min(1.0, 2 * (cpu - first) / cpu)
+    """Prints a table of medians; returns the parallel part of Amdahl's law of one task, by the clock: the machine must be idle."""
+    scaling.row("tasks", "threads of each", "CPU s a frame", "wall s a frame")
+    scaling.row("---:", "---:", "---:", "---:")
+    ways = ((1, 1), (2, 1), (1, 2))
+    turns = [[side_by_side(program, shots, *way) for way in ways] for _ in range(TURNS)]
+    walls = []
+    for way, (tasks, threads) in enumerate(ways):
+        wall, cpu = (statistics.median(turn[way][figure] for turn in turns) for figure in (0, 1))
+        scaling.row(tasks, threads, f"{cpu:.2f}", f"{wall:.2f}")
+        walls.append(wall)
+    return min(1.0, 2 * (1 - walls[2] / walls[0]))
 
 
 def measure_neighbours(program, shots):
