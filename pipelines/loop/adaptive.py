@@ -216,8 +216,10 @@ class _Loop:
         files = {half: [self.file(number, f"{kind}_{half}") for kind in ("merged", "clean", "error")] for half in HALVES}
         self.polyrecon.run_side_by_side("merge", [
             [*self.journal.files(half), "-o", merged, "--compression", "none", "--quiet"] for half, (merged, _, _) in files.items()])  # fmt: skip
+        completing = time.monotonic()
         for merged, _, _ in files.values():
             self.renderer.complete(merged)
+        begin += time.monotonic() - completing  # it may render feature passes, once: no later judgement takes as long
         threads = max(1, len(os.sched_getaffinity(0)) // 2)
         self.polyrecon.run_side_by_side("denoise", [
             ["-i", merged, "-o", clean, "--quality", ROUND_QUALITY, "--error-map", error, "--threads", threads, "--quiet"]
