@@ -61,6 +61,8 @@ def plot(rows, path, clock):
     import matplotlib.pyplot as plt
 
     scenes = list(dict.fromkeys(row["scene"] for row in rows))
+    budgets = {scene: {row["budget"] for row in rows if row["scene"] == scene} for scene in scenes}
+    scenes = [scene for scene in scenes if len(budgets[scene]) > 1] or scenes  # a single budget makes no curve
     figure, axes = plt.subplots(1, len(scenes), figsize=(2.6 * len(scenes), 2.8), squeeze=False, layout="constrained")
     for axis, scene in zip(axes[0], scenes):
         for method, label in LETTER.items():
