@@ -75,6 +75,9 @@ def arguments(words):
     for given, known in ((ours, SCENES), (options.methods, METHODS)):
         if unknown := sorted(set(given) - set(known)):
             parser.error(f"{', '.join(unknown)}: not one of {', '.join(known)}")
+    names = [pathlib.Path(scene).stem for scene in options.scenes]
+    if len(set(names)) < len(names) or {pathlib.Path(s).stem for s in options.scenes if s.endswith(".blend")} & set(SCENES):
+        parser.error("a .blend file is known by its name, which another scene has: copy it to one of its own")
     if options.reference_spp < 2 * REFERENCE_STEP or options.reference_spp % REFERENCE_STEP:
         parser.error(f"--reference-spp {options.reference_spp}: a multiple of {REFERENCE_STEP}, {2 * REFERENCE_STEP} at least")
     try:

@@ -70,7 +70,8 @@ class Run(unittest.TestCase):
             self.assertEqual(own.read_bytes(), before)
 
     def test_wrong_use(self):
-        for words in (["nowhere"], ["glass", "--methods=magic"], ["--seconds=soon"], ["--reference-spp=65"]):
+        for words in (["nowhere"], ["glass", "--methods=magic"], ["--seconds=soon"], ["--reference-spp=65"], ["a/glass.blend"],
+                      ["a/x.blend", "b/x.blend"]):
             with self.subTest(words), contextlib.redirect_stderr(io.StringIO()), self.assertRaises(SystemExit) as raised:
                 bench.arguments(words)
             self.assertEqual(raised.exception.code, 2)

@@ -6,6 +6,7 @@ import signal
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 from pathlib import Path
 
@@ -110,6 +111,21 @@ class Budgets(Folder):
         # One pass over it, and a last reconstruction that takes no longer than was reserved.
         self.assertLess(result.seconds, 6 + max(passes) + 4 * rounds[-1]["judging"])
         self.assertLess(rounds[-1]["seconds"], 6)
+
+
+    def test_features_that_are_rendered_once_are_no_judging_time(self):
+        _, result = loop(self.folder, Budget(samples=16), renderer=SlowFeatures())
+        self.assertLess(result.journal["rounds"][0]["judging"], SlowFeatures.seconds_once)
+
+
+class SlowFeatures(SyntheticRenderer):
+    seconds_once = 4.0
+    done = False
+
+    def complete(self, merged):
+        if not self.done:
+            time.sleep(self.seconds_once)
+        self.done = True
 
 
 class Failing(SyntheticRenderer):
