@@ -37,7 +37,7 @@ class BlenderSession:
     def __init__(self, blender=None, timeout=3600.0):
         self.command = find_blender(blender)
         self.timeout = timeout
-        self.child = None
+        self.child, self.lock = None, threading.Lock()
         # Raw renders go to a folder with a name that Blender's output path takes literally (no '#', no '{').
         self.folder = pathlib.Path(tempfile.mkdtemp(prefix="polyrecon-blender-"))
 
@@ -59,9 +59,10 @@ class BlenderSession:
         """Sends one job (a method of inside/session.py) and waits for its answer."""
         if not self.running:
             self._start()
+        child = self.child
         try:
-            self.child.stdin.write(json.dumps({"do": job, **arguments}) + "\n")
-            self.child.stdin.flush()
+            child.stdin.write(json.dumps({"do": job, **arguments}) + "\n")
+            child.stdin.flush()
             answer = self.answers.get(timeout=self.timeout)
         except queue.Empty:
             self.stop()
@@ -72,7 +73,7 @@ class BlenderSession:
             self.stop()
             raise
         if answer is None:
-            code = self.child.wait()
+            code = child.wait()
             self.stop()
             last = next((line for line in reversed(self.log) if line.strip()), "no message")
             raise DriverError(ExitCode.RENDERER, f"Blender ended with code {code} ({job}): {last}")
@@ -107,9 +108,11 @@ class BlenderSession:
         answers.put(None)
 
     def stop(self):
-        if self.child:
-            process.stop(self.child)
+        """From any thread; one that waits for an answer gets none and fails."""
+        with self.lock:
+            child, self.child = self.child, None
+        if child:
+            process.stop(child)
             self.listener.join()
-            self.child.stdin.close()
-            self.child.stdout.close()
-            self.child = None
+            child.stdin.close()
+            child.stdout.close()
