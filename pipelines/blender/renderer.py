@@ -2,7 +2,6 @@
 
 import concurrent.futures
 import pathlib
-import threading
 
 import numpy as np
 
@@ -103,30 +102,20 @@ class BlenderRenderer(Renderer):
             prior.add(merged, self.opened["view_layer"], self.session)
 
     def _render_ahead(self, first, pieces):
-        """Each piece with its channels. While the caller works on one, the next is rendered; none after one that failed."""
-        ended = threading.Event()
-
-        def render(piece):
-            if ended.is_set():
-                return None
-            try:
-                return self._render_piece(first, piece)
-            except BaseException:
-                ended.set()
-                raise
-
-        with concurrent.futures.ThreadPoolExecutor(1) as renderer:
-            try:
-                before = None
-                for piece in [*pieces, None]:
-                    rendering = piece and renderer.submit(render, piece)
-                    if before:
-                        yield before[0], before[1].result()
-                    before = piece, rendering
-            except BaseException:
-                ended.set()
-                self.session.stop()  # or the thread would be waited for
-                raise
+        """Each piece with its channels. While the caller works on one, the next is rendered; where one fails, or at an interrupt, Blender ends."""
+        renderer = concurrent.futures.ThreadPoolExecutor(1)
+        try:
+            before = None
+            for piece in [*pieces, None]:
+                rendering = piece and renderer.submit(self._render_piece, first, piece)
+                if before:
+                    yield before[0], before[1].result()
+                before = piece, rendering
+        except BaseException:
+            with self.session.halt():
+                renderer.shutdown(cancel_futures=True)
+            raise
+        renderer.shutdown()
 
     def _render_piece(self, first, piece):
         if piece.inside.shape == self.shape and piece.inside.all():

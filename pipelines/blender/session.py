@@ -1,5 +1,6 @@
 """The Blender process behind a renderer: started once, told one job after another."""
 
+import contextlib
 import json
 import os
 import pathlib
@@ -37,7 +38,8 @@ class BlenderSession:
     def __init__(self, blender=None, timeout=3600.0):
         self.command = find_blender(blender)
         self.timeout = timeout
-        self.child, self.lock = None, threading.Lock()
+        self.child, self.listener = None, None
+        self.lock, self.halted = threading.Lock(), False
         # Raw renders go to a folder with a name that Blender's output path takes literally (no '#', no '{').
         self.folder = pathlib.Path(tempfile.mkdtemp(prefix="polyrecon-blender-"))
 
@@ -57,17 +59,15 @@ class BlenderSession:
 
     def ask(self, job, **arguments):
         """Sends one job (a method of inside/session.py) and waits for its answer."""
-        if not self.running:
-            self._start()
-        child = self.child
+        child, answers = self._process()
         try:
             child.stdin.write(json.dumps({"do": job, **arguments}) + "\n")
             child.stdin.flush()
-            answer = self.answers.get(timeout=self.timeout)
+            answer = answers.get(timeout=self.timeout)
         except queue.Empty:
             self.stop()
             raise DriverError(ExitCode.RENDERER, f"Blender did not answer within {self.timeout:g} s ({job})") from None
-        except BrokenPipeError:
+        except (BrokenPipeError, ValueError):  # it died, or was stopped and its pipe closed
             answer = None
         except BaseException:
             self.stop()
@@ -90,6 +90,15 @@ class BlenderSession:
             raise DriverError(ExitCode.RENDERER, "Blender rendered, but wrote no file")
         return raw, answer["seconds"]
 
+    def _process(self):
+        """The child, started where none runs, and the queue of its answers."""
+        with self.lock:
+            if self.halted:
+                raise DriverError(ExitCode.RENDERER, "Blender was stopped")
+            if not self.running:
+                self._start()
+            return self.child, self.answers
+
     def _start(self):
         self.log = []
         self.answers = queue.Queue()
@@ -107,12 +116,24 @@ class BlenderSession:
                 self.log = [*self.log[-LOG_LINES_KEPT:], line.rstrip()]
         answers.put(None)
 
-    def stop(self):
+    @contextlib.contextmanager
+    def halt(self):
+        """Stops, and no thread can start Blender anew while this lasts."""
+        self.stop(halted=True)
+        try:
+            yield
+        finally:
+            self.halted = False
+
+    def stop(self, halted=False):
         """From any thread; one that waits for an answer gets none and fails."""
         with self.lock:
             child, self.child = self.child, None
+            self.halted = self.halted or halted
+            listener = self.listener
         if child:
             process.stop(child)
-            self.listener.join()
-            child.stdin.close()
+            listener.join()
+            with contextlib.suppress(BrokenPipeError):  # a job that was not sent yet
+                child.stdin.close()
             child.stdout.close()

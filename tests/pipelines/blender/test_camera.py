@@ -1,5 +1,6 @@
 """The mask camera makes the picture of Blender's own, and renders what the mask says."""
 
+import time
 import unittest
 
 import numpy as np
@@ -77,6 +78,21 @@ class Masks(SceneTest):
                 name, place = f"ViewLayer.Combined.{channel}", counts == samples
                 difference = np.abs(part[name] - whole[name])[place] > 1e-3 * (whole[name][place] + 0.01)
                 self.assertLess(difference.mean(), 0.03, f"{samples} samples: rims are dark or bright")
+
+    def test_an_interrupt_between_two_passes_starts_no_other(self):
+        renderer = BlenderRenderer(self.scene(), "bpy")
+        self.addCleanup(renderer.close)
+        renderer.begin(None)
+        counts = np.ones(renderer.shape, int)
+        counts[: counts.shape[0] // 2] = 1 << 20  # hours
+        for delay in (0, 0.001, 0.01, 0.1):
+            pieces = renderer._render_ahead(0, masks.plan(counts))
+            next(pieces)
+            time.sleep(delay)
+            with self.assertRaises(KeyboardInterrupt):
+                pieces.throw(KeyboardInterrupt())
+            self.assertFalse(renderer.session.running)
+        renderer.uniform(0, 1, self.folder / "after.exr")  # and goes on
 
     def test_the_open_place_around_a_pixel(self):
         inside = np.zeros((3, 4), bool)
