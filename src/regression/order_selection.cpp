@@ -10,9 +10,25 @@ namespace {
 
 using Channels = std::array<ColumnStatistics, 3>;
 
-/// The error of the empty model, whose bias is all of mu: |S mu|^2 as the stage guesses it.
-double error_of_nothing(const ColumnStatistics& channel, bool first_stage) {
-  return first_stage ? channel.guess_energy - channel.noise_energy : channel.guess_energy;
+// Of z_a m_a in the estimate of mu_a^2 by which an error is told; the rest is m_a^2. z_a m_a is unbiased where z_a and
+// the guess err independently, but the factors were chosen by it; m_a^2 is too high by the noise of the guess.
+constexpr double share_of_product = 0.8;
+
+/// Estimates of mu_a^2: what the factors and the order are chosen by, and what the error is told by.
+double chosen_by(const ColumnStatistics& channel, std::size_t a, bool first_stage) {
+  return first_stage ? channel.z[a] * channel.z[a] - channel.variance[a] : channel.z[a] * channel.guess[a];
+}
+double told_by(const ColumnStatistics& channel, std::size_t a, bool first_stage) {
+  const double chosen = chosen_by(channel, a, first_stage);
+  return first_stage ? chosen : chosen + (1 - share_of_product) * (channel.guess[a] * channel.guess[a] - chosen);
+}
+
+/// |S mu|^2 outside of all columns: the error that every model has.
+double error_of_all(const ColumnStatistics& channel, const BasisLayout& layout, bool first_stage) {
+  double error = first_stage ? channel.guess_energy - channel.noise_energy : channel.guess_energy;
+  for (std::size_t a = 0; a < static_cast<std::size_t>(layout.columns()); ++a)
+    error -= first_stage ? chosen_by(channel, a, true) : channel.guess[a] * channel.guess[a];
+  return error;
 }
 
 /// Estimated error of every model, summed over the channels: one pass over the columns.
@@ -20,7 +36,11 @@ std::array<double, BasisLayout::max_models> nested_errors(const Channels& channe
                                                           const double* factor, bool first_stage) {
   std::array<double, BasisLayout::max_models> errors{};
   double error = 0;
-  for (const ColumnStatistics& channel : channels) error += error_of_nothing(channel, first_stage);
+  for (const ColumnStatistics& channel : channels) {
+    error += error_of_all(channel, layout, first_stage);
+    for (std::size_t a = 0; a < static_cast<std::size_t>(layout.columns()); ++a)
+      error += chosen_by(channel, a, first_stage);
+  }
   int column = 0;
   for (int model = 0; model < layout.models(); ++model) {
     for (; column < layout.columns(model); ++column)
@@ -35,9 +55,7 @@ std::array<double, BasisLayout::max_models> nested_errors(const Channels& channe
 
 double error_change(const ColumnStatistics& channel, int column, double g, bool first_stage) {
   const auto a = static_cast<std::size_t>(column);
-  const double n = channel.variance[a];
-  if (first_stage) return 2 * g * n - (2 * g - g * g) * channel.z[a] * channel.z[a];
-  return g * g * n - (2 * g - g * g) * channel.guess[a] * channel.guess[a];
+  return g * g * channel.variance[a] - (2 * g - g * g) * chosen_by(channel, a, first_stage);
 }
 
 double shrinkage_factor(const Channels& channels, int begin, int end, bool first_stage) {
@@ -45,11 +63,10 @@ double shrinkage_factor(const Channels& channels, int begin, int end, bool first
   double energy = 0, noise = 0;
   for (const ColumnStatistics& channel : channels)
     for (auto a = static_cast<std::size_t>(begin); a < static_cast<std::size_t>(end); ++a) {
-      energy += first_stage ? channel.z[a] * channel.z[a] : channel.guess[a] * channel.guess[a];
+      energy += chosen_by(channel, a, first_stage);
       noise += channel.variance[a];
     }
-  if (!(energy > 0)) return 0;
-  return first_stage ? std::max(0.0, 1 - noise / energy) : energy / (energy + noise);
+  return energy > 0 ? energy / (energy + noise) : 0;
 }
 
 namespace {
@@ -128,14 +145,14 @@ OrderChoice select_order(const Channels& channels, const BasisLayout& layout, do
   weigh_columns(shares, layout, choice.factor);
   tell_order(shares, layout, choice);
   for (std::size_t c = 0; c < channels.size(); ++c) {
-    double error = error_of_nothing(channels[c], first_stage), variance = 0;
-    for (int a = 0; a < layout.columns(); ++a) {
-      const double g = choice.factor[static_cast<std::size_t>(a)];
-      error += error_change(channels[c], a, g, first_stage);
-      variance += g * g * channels[c].variance[static_cast<std::size_t>(a)];
+    double squared_bias = error_of_all(channels[c], layout, first_stage), variance = 0;
+    for (std::size_t a = 0; a < static_cast<std::size_t>(layout.columns()); ++a) {
+      const double g = choice.factor[a];
+      squared_bias += (1 - g) * (1 - g) * told_by(channels[c], a, first_stage);
+      variance += g * g * channels[c].variance[a];
     }
     choice.variance[c] = variance / weight_sum;
-    choice.error[c] = std::max(error, variance) / weight_sum;  // bias^2 is not negative, its estimate may be
+    choice.error[c] = (std::max(squared_bias, 0.0) + variance) / weight_sum;  // the estimate may be negative
   }
   return choice;
 }

@@ -21,20 +21,25 @@ struct OrderChoice {
   int model = 0;     ///< The one that counts most: index into BasisLayout's models, the lowest of equals.
   double order = 0;  ///< Taylor order, mean over the models.
   std::array<double, BasisLayout::max_columns> factor{};  ///< g_a: column a enters the fit as g_a z_a q_a.
-  std::array<double, 3> error{};     ///< Equation (4) per channel: weighted mean of bias^2 + variance; >= 0.
+  /// Equation (4) per channel: weighted mean of bias^2 + variance; >= 0. In later stages its bias^2 is by 4/5 z_a m_a +
+  /// 1/5 m_a^2, since the factors were chosen by the former alone.
+  std::array<double, 3> error{};
   std::array<double, 3> variance{};  ///< Equation (6) per channel, its part of error.
 };
 
-/// Change of the window's estimated error, per channel, when a column enters with factor g. With e = z^2, n = s^2:
-///     stage 1 (mu guessed by y, the noise inside it subtracted):   2 g n - (2g - g^2) e
-///     later   (mu guessed by the result of the stage before):      g^2 n - (2g - g^2) guess^2
-/// For g = 1 this is the identity of Mallows' Cp: all nested models from one factorisation. A column that fades out
-/// (least_squares.h) is shorter than 1 and reckoned as if it were not.
+/// Change of the window's estimated error, per channel, when a column enters with factor g:
+///     g^2 n - (2g - g^2) e,   n = s_a^2,
+/// e an estimate of the column's share mu_a^2 of |S mu|^2:
+///     stage 1 (mu guessed by y, the noise inside it subtracted):   e = z_a^2 - n
+///     later   (mu guessed by the result of the stage before):      e = z_a m_a
+/// For g = 1 stage 1 is the identity of Mallows' Cp: all nested models from one factorisation. Departure from the
+/// paper, which has m_a^2 in later stages: where y and the guess err independently the product is unbiased, the square
+/// is not. A column that fades out (least_squares.h) is shorter than 1 and reckoned as if it were not.
 double error_change(const ColumnStatistics& channel, int column, double g, bool first_stage);
 
-/// Factor that minimises the error_change of the columns [begin, end) summed over the channels: the positive-part
-/// James-Stein factor max(0, 1 - n/e) in stage 1, Wiener's guess^2 / (guess^2 + n) later. The constant always enters
-/// whole. Departure from Moon et al. 2016, who let a column in whole or not at all.
+/// Factor that minimises the error_change of the columns [begin, end) summed over the channels, max(0, e / (e + n)):
+/// in stage 1 the positive-part James-Stein factor, later Wiener's. The constant always enters whole. Departure from
+/// Moon et al. 2016, who let a column in whole or not at all.
 double shrinkage_factor(const std::array<ColumnStatistics, 3>& channels, int begin, int end, bool first_stage);
 
 /// Features have a factor each. The Taylor terms of one order share theirs: their sums do not depend on the axes that

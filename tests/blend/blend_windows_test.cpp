@@ -152,14 +152,16 @@ class Reference {
     const MatrixXd wq = w.asDiagonal() * q;
     VectorXd energy = VectorXd::Zero(q.cols()), noise = energy, g = energy;
     for (int c = 0; c < 3; ++c) {
-      energy += (wq.transpose() * value(first_ ? p_.response : p_.guess, c)).cwiseAbs2();
-      noise += wq.cwiseAbs2().transpose() * value(p_.variance, c);
+      const VectorXd z = wq.transpose() * value(p_.response, c),
+                     s2 = wq.cwiseAbs2().transpose() * value(p_.variance, c);
+      energy += z.cwiseProduct(first_ ? z : wq.transpose() * value(p_.guess, c)) - (first_ ? s2 : 0 * s2);
+      noise += s2;
     }
     for (Eigen::Index a = 0, end; a < q.cols(); a = end) {
       // The constant and the features alone, then the Taylor terms of orders 1, 2, ... together: from 3, 5, 8, ... on.
       end = a < 3 ? a + 1 : a == 3 ? 5 : a == 5 ? 8 : q.cols();
       const double e = energy.segment(a, end - a).sum(), v = noise.segment(a, end - a).sum();
-      g.segment(a, end - a).setConstant(e == 0 ? 0 : first_ ? std::max(0.0, 1 - v / e) : e / (e + v));
+      g.segment(a, end - a).setConstant(e > 0 ? e / (e + v) : 0);
     }
     g(0) = 1;
     // Every model in turn, its error by explicit projection.
@@ -167,19 +169,25 @@ class Reference {
     double least = 1e300;
     MatrixXd best_h;
     int best_order = 0;
+    const MatrixXd whole = q * wq.transpose();
     for (int model = 0; model <= params_.max_order + 1; ++model) {
       const int columns = model == 0 ? 1 : 3 + BasisLayout::taylor_terms(model - 1);
       const MatrixXd h = q.leftCols(columns) * g.head(columns).asDiagonal() * wq.leftCols(columns).transpose();
-      VectorXd error(3), variance(3);
+      VectorXd error(3), told(3), variance(3);
       for (int c = 0; c < 3; ++c) {
-        const VectorXd m = value(first_ ? p_.response : p_.guess, c), v = value(p_.variance, c);
+        const VectorXd y = value(p_.response, c), m = first_ ? y : value(p_.guess, c), v = value(p_.variance, c);
+        const auto bias_product = [&](const MatrixXd& projection, const VectorXd& other) {
+          return w.dot((projection * m - m).cwiseProduct(projection * other - other));
+        };
         variance(c) = w.dot(h.cwiseAbs2() * v);
-        error(c) = w.dot((h * m - m).cwiseAbs2()) + variance(c);
+        // By y and the guess in the columns, by the guess alone outside of them.
+        error(c) = bias_product(h, y) - bias_product(whole, y) + bias_product(whole, m) + variance(c);
         if (first_) error(c) -= w.dot((h - MatrixXd::Identity(n, n)).cwiseAbs2() * v);
+        told(c) = first_ ? error(c) : 0.8 * error(c) + 0.2 * (bias_product(h, m) + variance(c));
       }
       if (error.sum() < least - 1e-9) {
         least = error.sum();
-        best_error = error;
+        best_error = told;
         best_variance = variance;
         best_h = h;
         best_order = std::max(model - 1, 0);

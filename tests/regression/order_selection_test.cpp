@@ -81,6 +81,10 @@ struct Setting {
 
   /// sum_i w_i bias(i)^2 of equation (5) with an explicit H.
   double bias_square(const MatrixXd& h, const VectorXd& m) const { return w.dot((h * m - m).cwiseAbs2()); }
+  /// The same with y's bias for one factor of the square.
+  double bias_product(const MatrixXd& h, const VectorXd& y, const VectorXd& m) const {
+    return w.dot((h * y - y).cwiseProduct(h * m - m));
+  }
   /// sum_i w_i Var(yhat_i) of equation (6) with an explicit H.
   double variance_sum(const MatrixXd& h, int c) const { return w.dot(h.cwiseAbs2() * variance.col(c)); }
   /// What the noise in y adds to bias_square(H, y): sum_i w_i sum_j (H - I)_ij^2 sigma_j^2.
@@ -142,10 +146,10 @@ TEST(ErrorChange, FirstStageSubtractsTheNoiseThatTheBiasOfTheNoisyDataHolds) {
 TEST(ErrorChange, HoldsForShrunkenColumnsToo) {
   Setting s(3);
   Random random(30);
-  const MatrixXd y = stored(s.mu + 0.15 * test::normal_matrix(Setting::n, 3, random));
+  const MatrixXd noisy = stored(s.mu + 0.15 * test::normal_matrix(Setting::n, 3, random));
   for (const bool first_stage : {true, false}) {
-    const MatrixXd& guess = first_stage ? y : s.mu;
-    const Channels channels = s.statistics(y, guess, first_stage);
+    const MatrixXd& guess = first_stage ? noisy : s.mu;
+    const Channels channels = s.statistics(guess, guess, first_stage);
     for (int model = 0; model < s.layout.models(); ++model) {
       const int columns = s.layout.columns(model);
       VectorXd g(columns);
@@ -222,6 +226,8 @@ TEST(SelectOrder, TakesTheModelOfLeastEstimatedErrorAndSaysHowLargeThatIs) {
       const MatrixXd& guess = first_stage ? y : s.mu;
       const Channels channels = s.statistics(y, guess, first_stage);
       const OrderChoice choice = select_order(channels, s.layout, s.w.sum(), first_stage, 0);
+      // Outside of all columns the guess alone tells.
+      const MatrixXd whole = test::projection_matrix(s.x, s.w);
       // Brute force: every model's error with explicit projection matrices, the factors from their definition.
       double least = 1e300;
       int best = -1;
@@ -235,9 +241,13 @@ TEST(SelectOrder, TakesTheModelOfLeastEstimatedErrorAndSaysHowLargeThatIs) {
         for (int c = 0; c < 3; ++c) {
           const auto k = static_cast<std::size_t>(c);
           v[k] = s.variance_sum(h, c);
-          e[k] = s.bias_square(h, guess.col(c)) - (first_stage ? s.noise_in_bias(h, c) : 0) + v[k];
-          sum += e[k];
-          e[k] = std::max(e[k], v[k]);
+          const double square = s.bias_square(h, guess.col(c));
+          const double product = s.bias_product(h, y.col(c), guess.col(c)) + s.bias_square(whole, guess.col(c)) -
+                                 s.bias_product(whole, y.col(c), guess.col(c));
+          const double chosen_by = first_stage ? square - s.noise_in_bias(h, c) : product;
+          const double told_by = first_stage ? chosen_by : 0.8 * product + 0.2 * square;
+          sum += chosen_by + v[k];
+          e[k] = std::max(told_by, 0.0) + v[k];
         }
         if (sum < least - 1e-9) {
           least = sum;
@@ -267,6 +277,7 @@ TEST(SelectOrder, AveragesModelsThatAreAsGoodWithinTheTolerance) {
     channel.guess[0] = std::sqrt(50.0);  // the constant, also order 0, leaves 50
     channel.guess[1] = std::sqrt(10.0);  // order 1 leaves 40
     channel.guess[3] = std::sqrt(1.0);   // order 2 leaves 39
+    channel.z = channel.guess;
   }
   const auto select = [&](double within) { return select_order(channels, layout, 2, false, within); };
   const OrderChoice best = select(0), near = select(0.02), both = select(0.05), all = select(0.5);
