@@ -23,11 +23,10 @@ Params params_for(Quality quality) {
     params.cleaning.search_radius = 2;
     params.cleaning.patch_radius = 2;
   } else if (quality == Quality::Best) {
-    params.stages = 3;
-    params.stride = 2;
+    params.radius = 11;
+    params.stride = 3;
     params.coverage = 6;
-    params.first_bandwidths = {Real(0.35), Real(0.5), Real(0.7), Real(1)};
-    params.later_bandwidths = {Real(0.35), Real(0.5), Real(0.7), Real(1)};
+    params.max_order = 4;
   }
   return params;
 }

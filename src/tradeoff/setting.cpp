@@ -163,8 +163,8 @@ std::array<Step, step_count> ladder() {
                                        })},
            {"stages 1", changed(standard, [](Params& p) { p.stages = 1; })},
            {"standard", standard},
-           {"stages 3", changed(standard, [](Params& p) { p.stages = 3; })},
-           {"best, stages 2", changed(best, [](Params& p) { p.stages = 2; })},
+           {"order 3", changed(standard, [](Params& p) { p.max_order = 3; })},
+           {"best, coverage 2", changed(best, [](Params& p) { p.coverage = 2; })},
            {"best", best}}};
 }
 

@@ -14,7 +14,7 @@ import subprocess
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SAMPLES = {"study": "study", "glass": "glass", "lighthouse": "lighthouse", "study_denoised": "study"}  # : reference
-STEPS = ("draft, order 0", "draft", "draft, stages 2", "stages 1", "standard", "stages 3", "best, stages 2", "best")
+STEPS = ("draft, order 0", "draft", "draft, stages 2", "stages 1", "standard", "order 3", "best, coverage 2", "best")
 # Each part of the method alone, and the setting of the sweep that takes it out.
 PARTS = (
     ("weights and features from the other half", "weights from the own half"),
