@@ -29,8 +29,9 @@ EVEN_PARTS = 2  # of a half in an even round: what they differ by tells the vari
 LEAST_CUT, LEAST_EVEN = 8, 2  # samples of a half that are cut so, and that are worth a pass
 EVEN_STEPS = 3  # slices that an even round takes at once: it is not as soon that another map pays
 EXTRA_OVER_UNIFORM = 1.1  # seconds of a sample in a masked pass over one in a whole pass, until they are measured
+JUDGING_OVER_MERGING = 3.0  # seconds of reconstructing both halves over those of merging them, until it was done once
 # Time of the last reconstruction, of all samples, over that of a half at ROUND_QUALITY (docs/performance.md).
-LAST_OVER_ROUND = {"draft": 1.1, "standard": 4.0, "best": 16.0}
+LAST_OVER_ROUND = {"draft": 1.1, "standard": 4.0, "best": 10.0}
 
 
 @dataclasses.dataclass
@@ -183,12 +184,18 @@ class _Loop:
     def plan_round(self):
         """Reconstructs both halves and decides where the next samples of each go; None where the loop ends."""
         number = len(self.journal["rounds"])
+        (self.folder / f"round_{number}").mkdir(exist_ok=True)
+        if self.judging is None and self.settings.budget.seconds:
+            self.judging = JUDGING_OVER_MERGING * self.merge_halves(number)
         if self.judging is not None:
             spent = self.spent()
             self.why_ended = nothing_left(self.settings.budget, spent)
             if self.why_ended:
+                if not number:
+                    self.why_ended += ", too few of them to judge where samples should go"
+                    for half in HALVES:
+                        self.file(number, f"merged_{half}").unlink(missing_ok=True)
                 return self.plan_even(number + 1, self.even_samples(rest(self.settings.budget, spent)))
-        (self.folder / f"round_{number}").mkdir(exist_ok=True)
         self.reconstruct_halves(number)
         spent = dataclasses.replace(self.spent(), error=self.error_of_mean(number))
         samples, self.why_ended = next_slice(self.settings.budget, spent)
@@ -213,9 +220,8 @@ class _Loop:
         """Both at a time, each on half of the processors: a frame of a draft keeps several less busy than two frames do."""
         self.tell(f"reconstruction {number}", round=number)
         begin = time.monotonic()
+        self.merge_halves(number)
         files = {half: [self.file(number, f"{kind}_{half}") for kind in ("merged", "clean", "error")] for half in HALVES}
-        self.polyrecon.run_side_by_side("merge", [
-            [*self.journal.files(half), "-o", merged, "--compression", "none", "--quiet"] for half, (merged, _, _) in files.items()])  # fmt: skip
         completing = time.monotonic()
         for merged, _, _ in files.values():
             self.renderer.complete(merged)
@@ -225,6 +231,13 @@ class _Loop:
             ["-i", merged, "-o", clean, "--quality", ROUND_QUALITY, "--error-map", error, "--threads", threads, "--quiet"]
             for merged, clean, error in files.values()])  # fmt: skip
         self.judging = time.monotonic() - begin
+
+    def merge_halves(self, number):
+        """Returns the seconds that it took."""
+        begin = time.monotonic()
+        self.polyrecon.run_side_by_side("merge", [
+            [*self.journal.files(half), "-o", self.file(number, f"merged_{half}"), "--compression", "none", "--quiet"] for half in HALVES])  # fmt: skip
+        return time.monotonic() - begin
 
     def spent(self):
         parts = self.journal["parts"]

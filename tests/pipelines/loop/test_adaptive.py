@@ -8,11 +8,12 @@ import sys
 import tempfile
 import time
 import unittest
+import unittest.mock
 from pathlib import Path
 
 import numpy as np
 
-from pipelines.loop import exr
+from pipelines.loop import budget, exr
 from pipelines.loop.budget import Budget
 from pipelines.loop.errors import DriverError, ExitCode
 from pipelines.loop.renderer import SAMPLE_COUNT
@@ -104,7 +105,8 @@ class Budgets(Folder):
         self.assertIn("target", result.why_ended)
 
     def test_seconds_are_kept_to(self):
-        _, result = loop(self.folder, Budget(seconds=6))
+        with unittest.mock.patch.object(budget, "MOST_JUDGING", 0.5):  # or six seconds would be too few to judge
+            _, result = loop(self.folder, Budget(seconds=6))
         self.assertEqual(result.why_ended, "the seconds are spent")
         passes = [part["seconds"] for part in result.journal["parts"]]
         rounds = result.journal["rounds"]
@@ -112,6 +114,17 @@ class Budgets(Folder):
         self.assertLess(result.seconds, 6 + max(passes) + 4 * rounds[-1]["judging"])
         self.assertLess(rounds[-1]["seconds"], 6)
 
+    def test_few_seconds_are_spent_evenly(self):
+        with unittest.mock.patch.object(budget, "MOST_JUDGING", 1e-6):
+            _, result = loop(self.folder, Budget(seconds=4))
+        self.assertIn("too few of them to judge", result.why_ended)
+        self.assertEqual(result.journal["rounds"], [])
+        self.assertFalse(any(part["masked"] for part in result.journal["parts"]))
+        self.assertGreater(result.samples, 8)
+        self.assertTrue(np.isfinite(result.error))
+        self.assertEqual(list(self.folder.rglob("merged_*.exr")), [])
+        for half in "ab":
+            self.assertEqual(sum(p["spp"] for p in result.journal["parts"] if p["half"] == half), result.samples / 2)
 
     def test_features_that_are_rendered_once_are_no_judging_time(self):
         _, result = loop(self.folder, Budget(samples=16), renderer=SlowFeatures())
