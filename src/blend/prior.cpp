@@ -91,10 +91,12 @@ double noise_in_prior(const Image& prior, const HalfPair& pair, const Image& own
   double shared = 0, input = 0;
   for (int c = 0; c < beauty_channels; ++c)
     for (std::size_t i = 0; i < own.pixels(); ++i) {
-      const double f = own.plane(c)[i], scale = 1 / (f * f + pair.epsilon);
+      const double f = own.plane(c)[i], p = prior.plane(c)[i];
       const double noisy =
           0.5 * (static_cast<double>(pair.color[0].plane(c)[i]) + static_cast<double>(pair.color[1].plane(c)[i]));
-      shared += (static_cast<double>(prior.plane(c)[i]) - f) * (noisy - f) * scale;
+      // By the brightest: an outlier that was taken out of the input, and is still in the prior, would decide alone.
+      const double scale = 1 / (std::max({f * f, p * p, noisy * noisy}) + pair.epsilon);
+      shared += (p - f) * (noisy - f) * scale;
       input += (noisy - f) * (noisy - f) * scale;
     }
   return input > 0 ? shared / input : 0;

@@ -13,7 +13,8 @@ namespace polyrecon {
 Image usable_prior(const Pass& prior, const HalfPair& pair, const Image& own);
 
 /// How much of the input's noise the prior holds, 1 if it is the input itself: slope of its difference from own over
-/// the input's. An upper bound, since detail that own misses counts too. All 3 channels.
+/// the input's, relative to the brightest of the three. An upper bound, since detail that own misses counts too. All 3
+/// channels.
 double noise_in_prior(const Image& prior, const HalfPair& pair, const Image& own);
 
 /// Order -1 of equation (2): takes the prior as it is, whole or by half, where that has less error. own, own + b (prior

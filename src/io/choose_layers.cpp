@@ -21,12 +21,21 @@ const PartInfo& part_of(const FrameSource& source, const Layer& layer) {
 
 bool covers(const Rect& outer, const Rect& inner) { return intersect(outer, inner) == inner; }
 
+/// The layer of a file that is meant where the file is named for a role: the one that plays it there, else the beauty.
+const Layer& layer_for(const std::vector<Layer>& layers, Role wanted) {
+  for (const Role role : {wanted, Role::Beauty})
+    for (const Layer& layer : layers)
+      if (layer.role == role && layer.companion == Companion::Mean) return layer;
+  return layers.front();
+}
+
 /// Every pass of a one-pass-a-file render becomes a layer named after its file.
-void add_file(FrameSource& source, const std::string& path, const std::string& pass, const ReadLimits& limits) {
+void add_file(FrameSource& source, const std::string& path, const std::string& pass, Role role,
+              const ReadLimits& limits) {
   source.files.push_back(describe_file(path, limits));
-  std::vector<Layer> layers = find_layers(source.files.back());
+  const std::vector<Layer> layers = find_layers(source.files.back());
   if (layers.empty()) throw Error(ExitCode::BadInput, fmt::format("{}: no channels", path));
-  Layer layer = layers.front();
+  Layer layer = layer_for(layers, role);
   layer.file = static_cast<int>(source.files.size()) - 1;
   layer.name = layer.pass = pass;
   layer.view_layer.clear();
@@ -49,7 +58,7 @@ void open_files(LayerChoice& choice, const std::string& path, const ReadOptions&
   source.layers.front().name = source.layers.front().pass = pass_in_file_name(path);
   std::vector<std::string> names;
   for (const SiblingFile& sibling : siblings) {
-    add_file(source, sibling.path, sibling.pass, options.limits);
+    add_file(source, sibling.path, sibling.pass, Role::Other, options.limits);
     names.push_back(std::filesystem::path(sibling.path).filename().string());
   }
   classify_layers(source.files, source.layers);
@@ -109,13 +118,15 @@ void choose_view_layer(FrameSource& source, const ReadOptions& options) {
 
 /// Marks the layers named by hand; companions after the means, since they refer to them.
 void apply_map(FrameSource& source, const ReadOptions& options) {
+  const auto own_files = static_cast<int>(source.files.size());
   for (const bool means : {true, false})
     for (const RoleMapping& mapping : options.map) {
       if ((mapping.companion == Companion::Mean) != means) continue;
       int index = find_layer(source, mapping.layer, source.view_layer);
       std::error_code failure;
-      if (index < 0 && std::filesystem::is_regular_file(mapping.layer, failure)) {
-        add_file(source, mapping.layer, mapping.layer, options.limits);
+      const bool added = index >= 0 && source.layers[static_cast<std::size_t>(index)].file >= own_files;
+      if ((index < 0 || added) && std::filesystem::is_regular_file(mapping.layer, failure)) {
+        add_file(source, mapping.layer, mapping.layer, mapping.role, options.limits);
         index = static_cast<int>(source.layers.size()) - 1;
       }
       if (index < 0) no_such_layer(source, mapping.layer);

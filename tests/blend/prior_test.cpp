@@ -98,5 +98,13 @@ TEST(NoiseInPrior, IsOneForTheInputAndNothingForTheTruth) {
   EXPECT_LT(noise_in_prior(truth(), c.pair, c.own), 0.1);
 }
 
+/// The pair has lost its outliers, a prior that is the input has them still.
+TEST(NoiseInPrior, IsNotMovedByAnOutlier) {
+  const Case c;
+  Image noisy = mean_of_halves({c.pair.color, {}, {}, {}});
+  noisy.at(20, 30, 1) = 1e4;
+  EXPECT_NEAR(noise_in_prior(noisy, c.pair, c.own), 1, 0.02);
+}
+
 }  // namespace
 }  // namespace polyrecon

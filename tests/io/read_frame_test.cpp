@@ -306,6 +306,22 @@ TEST(ReadFrame, ARoleFromAnotherFile) {
   ASSERT_THAT(read.source.files, SizeIs(2));
 }
 
+TEST(ReadFrame, ARoleFromAFileOfManyLayersIsTheLayerThatPlaysItThereElseTheBeauty) {
+  const TemporaryFolder folder;
+  const TestPart noisy = part_of(layer("", "RGB"));
+  const std::string in = write_exr(folder / "in.exr", {noisy});
+  const std::string other = write_exr(
+      folder / "other.exr", {part_of(join({layer("V.Combined A", "RGB", 20), layer("V.Combined B", "RGB", 30),
+                                           layer("V.Combined", "RGB", 40), layer("V.Denoising Albedo", "RGB", 50)}))});
+  ReadOptions options;
+  options.map = {parse_mapping("prior=" + other), parse_mapping("albedo=" + other)};
+  const Frame frame = read_frame(in, options).frame;
+  ASSERT_EQ(frame.prior.mean.channels(), 3);
+  EXPECT_TRUE(holds(frame.prior.mean, 0, noisy.window, 40));
+  ASSERT_THAT(frame.features, SizeIs(1));
+  EXPECT_TRUE(holds(frame.features[0].pass.mean, 0, noisy.window, 50));
+}
+
 TEST(ReadFrame, OnePassAFileIsGathered) {
   // Tungsten: <name>Color.exr and its companions, <name>Albedo.exr and so on, all plain RGB.
   const TemporaryFolder folder;
