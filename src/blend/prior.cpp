@@ -1,6 +1,7 @@
 #include "blend/prior.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -11,8 +12,10 @@
 namespace polyrecon {
 namespace {
 
-constexpr double most_gain = 2;        // between the exposures of a frame and its prior; beyond it is another image
-constexpr double plausible = 3;        // D / E up to which a prior is believed whole: E is known to a factor of 2.5
+constexpr double most_gain = 2;  // between the exposures of a frame and its prior; beyond it is another image
+constexpr double plausible = 2;  // D / E up to which a prior is believed whole: E is known to a factor of 2.5
+// Of the prior in each candidate. Where risks cannot tell, all count alike and the prior for a little over a half.
+constexpr std::array<double, 3> shares{0.5, 0.75, 1};
 constexpr double least_error = 1e-12;  // relative; keeps D / E finite
 constexpr int beauty_channels = 3;
 
@@ -105,9 +108,9 @@ double noise_in_prior(const Image& prior, const HalfPair& pair, const Image& own
 Candidate add_prior(const HalfPair& pair, const Image& prior, const Image& mse, Candidate own,
                     const SelectParams& params) {
   const Image mean = mean_of_halves(own);
-  std::vector<Candidate> corrected(2);
+  std::vector<Candidate> corrected(shares.size());
   for (std::size_t k = 0; k < corrected.size(); ++k) {
-    const double share = 0.5 * static_cast<double>(k + 1);
+    const double share = shares[k];
     const Image belief = belief_in(contradiction(mean, prior, share, mse, pair.epsilon, params.risk_sigma));
     for (std::size_t h = 0; h < 2; ++h)
       corrected[k].half[h] = toward(own.half[h], prior, static_cast<Real>(share), belief);

@@ -17,9 +17,9 @@ Image usable_prior(const Pass& prior, const HalfPair& pair, const Image& own);
 /// channels.
 double noise_in_prior(const Image& prior, const HalfPair& pair, const Image& own);
 
-/// Order -1 of equation (2): takes the prior as it is, whole or by half, where that has less error. own, own + b (prior
-/// - own) / 2 and own + b (prior - own) are judged by cross-validation like any others. b is how far each is believed,
-///     exp(-max(0, D / E - 3)),   D = its squared distance from own,   E = mse,
+/// Order -1 of equation (2): takes the prior as it is, whole or in part, where that has less error. own and own + s b
+/// (prior - own), s = 1/2, 3/4 and 1, are judged by cross-validation like any others. b is how far each is believed,
+///     exp(-max(0, D / E - 2)),   D = its squared distance from own,   E = mse,
 /// both relative and averaged over risk_sigma: an image that contradicts the samples by far more than our own
 /// estimated error is wrong, whatever the noise of the validation lets it score. prior: 3 channels. mse: estimated
 /// squared error of own (ErrorMap::mse). Only the beauty changes; bias, variance and order stay those of own.
