@@ -5,14 +5,14 @@ namespace polyrecon {
 
 const std::array<StepFigures, step_count>& measured_steps() {
   static const std::array<StepFigures, step_count> figures{{
-      {0.159, 1.338},  // draft, order 0
-      {0.149, 1.3},    // draft
-      {0.409, 1.071},  // draft, stages 2
-      {0.296, 1.24},   // stages 1
+      {0.142, 1.356},  // draft, order 0
+      {0.14, 1.317},   // draft
+      {0.344, 1.073},  // draft, stages 2
+      {0.283, 1.26},   // stages 1
       {1, 1},          // standard
-      {1.87, 0.9953},  // stages 3
-      {3.13, 0.9882},  // best, stages 2
-      {4.85, 0.9955},  // best
+      {1.19, 0.9818},  // order 3
+      {2.11, 0.9708},  // best, coverage 2
+      {2.8, 0.9637},   // best
   }};
   return figures;
 }
