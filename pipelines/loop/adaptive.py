@@ -31,7 +31,7 @@ EVEN_STEPS = 3  # slices that an even round takes at once: it is not as soon tha
 EXTRA_OVER_UNIFORM = 1.1  # seconds of a sample in a masked pass over one in a whole pass, until they are measured
 JUDGING_OVER_MERGING = 3.0  # seconds of reconstructing both halves over those of merging them, until it was done once
 # Time of the last reconstruction, of all samples, over that of a half at ROUND_QUALITY (docs/performance.md).
-LAST_OVER_ROUND = {"draft": 1.1, "standard": 4.0, "best": 10.0}
+LAST_OVER_ROUND = {"draft": 1.0, "standard": 3.2, "best": 8.0}
 
 
 @dataclasses.dataclass
@@ -185,8 +185,10 @@ class _Loop:
         """Reconstructs both halves and decides where the next samples of each go; None where the loop ends."""
         number = len(self.journal["rounds"])
         (self.folder / f"round_{number}").mkdir(exist_ok=True)
+        merging = None
         if self.judging is None and self.settings.budget.seconds:
-            self.judging = JUDGING_OVER_MERGING * self.merge_halves(number)
+            merging = self.merge_halves(number)
+            self.judging = JUDGING_OVER_MERGING * merging
         if self.judging is not None:
             spent = self.spent()
             self.why_ended = nothing_left(self.settings.budget, spent)
@@ -196,7 +198,7 @@ class _Loop:
                     for half in HALVES:
                         self.file(number, f"merged_{half}").unlink(missing_ok=True)
                 return self.plan_even(number + 1, self.even_samples(rest(self.settings.budget, spent)))
-        self.reconstruct_halves(number)
+        self.reconstruct_halves(number, merging)
         spent = dataclasses.replace(self.spent(), error=self.error_of_mean(number))
         samples, self.why_ended = next_slice(self.settings.budget, spent)
         if samples and number >= self.settings.max_rounds:
@@ -216,11 +218,12 @@ class _Loop:
         self.save()
         return self.journal["plan"]
 
-    def reconstruct_halves(self, number):
-        """Both at a time, each on half of the processors: a frame of a draft keeps several less busy than two frames do."""
+    def reconstruct_halves(self, number, merging):
+        """Both at a time, each on half of the processors: a frame of a draft keeps several less busy than two frames do.
+        merging: seconds, where they are merged already."""
         self.tell(f"reconstruction {number}", round=number)
-        begin = time.monotonic()
-        self.merge_halves(number)
+        merging = merging or self.merge_halves(number)
+        begin = time.monotonic() - merging
         files = {half: [self.file(number, f"{kind}_{half}") for kind in ("merged", "clean", "error")] for half in HALVES}
         completing = time.monotonic()
         for merged, _, _ in files.values():
