@@ -102,7 +102,8 @@ class BlenderRenderer(Renderer):
             prior.add(merged, self.opened["view_layer"], self.session)
 
     def _render_ahead(self, first, pieces):
-        """Each piece with its channels. While the caller works on one, the next is rendered; where one fails, or at an interrupt, Blender ends."""
+        """Each piece with its channels. While the caller works on one, the next is rendered. Where one fails, or at an
+        interrupt, Blender ends."""
         renderer = concurrent.futures.ThreadPoolExecutor(1)
         try:
             before = None

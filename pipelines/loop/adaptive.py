@@ -30,7 +30,8 @@ LEAST_CUT, LEAST_EVEN = 8, 2  # samples of a half that are cut so, and that are 
 EVEN_STEPS = 3  # slices that an even round takes at once: it is not as soon that another map pays
 EXTRA_OVER_UNIFORM = 1.1  # seconds of a sample in a masked pass over one in a whole pass, until they are measured
 JUDGING_OVER_MERGING = 3.0  # seconds of reconstructing both halves over those of merging them, until it was done once
-# Time of the last reconstruction, of all samples, over that of a half at ROUND_QUALITY (docs/performance.md).
+# Seconds of the last merge and reconstruction, of all samples, over those of judging both halves: from journals of the bench, best by
+# what it takes over standard (docs/accuracy.md).
 LAST_OVER_ROUND = {"draft": 1.0, "standard": 3.2, "best": 8.0}
 
 

@@ -154,7 +154,8 @@ class Reference {
     for (int c = 0; c < 3; ++c) {
       const VectorXd z = wq.transpose() * value(p_.response, c),
                      s2 = wq.cwiseAbs2().transpose() * value(p_.variance, c);
-      energy += z.cwiseProduct(first_ ? z : wq.transpose() * value(p_.guess, c)) - (first_ ? s2 : 0 * s2);
+      energy += z.cwiseProduct(first_ ? z : wq.transpose() * value(p_.guess, c));
+      if (first_) energy -= s2;
       noise += s2;
     }
     for (Eigen::Index a = 0, end; a < q.cols(); a = end) {
