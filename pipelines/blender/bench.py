@@ -46,7 +46,7 @@ METHODS = ("uniform", "adaptive", "cycles", "oidn", "prior", "uniform_prior")
 LOOPS = ("adaptive", "prior")  # given a budget; the others are tuned to it
 PARTS = 8  # subsets of (a)
 REFERENCE_STEP, FIRST_REFERENCE_SEED = 64, 1001  # samples of one render; each has a seed of its own
-MOST_SAMPLES = 1 << 14  # of one pixel by (c)
+MOST_SAMPLES = 1 << 12  # of one pixel by (c): what Blender sets unasked
 TOLERANCE, TRIES = 0.08, 4  # how near the seconds have to come, and how often to try
 
 

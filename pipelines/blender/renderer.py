@@ -11,7 +11,6 @@ from ..loop.renderer import RENDER_SECONDS, SAMPLE_COUNT, Audit, Renderer, Switc
 from . import masks, prior, regions
 from .session import BlenderSession
 
-SEQUENCE = 1 << 13  # samples that Cycles lays a pixel's sequence out for; more follow where a frame takes more
 PART_LAYERS = {"Combined", "Denoising Albedo", "Denoising Normal", "Denoising Depth", "Shadow", "Ambient Occlusion", "AO"}
 RENDER_TIME = "Render Time"  # of all samples of a pass, in milliseconds of a thread
 OVERHEAD_SECONDS = 0.045  # of a pass, until one was measured
@@ -54,7 +53,6 @@ class BlenderRenderer(Renderer):
             "open",
             path=str(self.scene),
             frame=self.frame,
-            sequence=SEQUENCE,
             visibility=self.visibility,
             mask_camera=self.method != "regions",
         )
@@ -138,8 +136,22 @@ class BlenderRenderer(Renderer):
     def close(self):
         self.session.close()
 
-    def _render(self, **job):
-        """One pass of the session: (channels, seconds). A new process, where the last one died, opens the scene again."""
+    def _render(self, first, samples, own_passes=False, **job):
+        """One pass: (channels, seconds). Where it takes samples of several sequences, it is a pass of each, and their mean; the
+        user's own passes are of the first then."""
+        channels, seconds, done = {}, 0.0, 0
+        for begin, length in _sequences_of(first, samples, self.opened["sequence"] or first + samples):
+            more, took = self._render_once(first=begin, samples=length, own_passes=own_passes and not done, **job)
+            done += length
+            for name, values in more.items():
+                if done > length:
+                    values = channels[name] + (values if _is_time(name) else (values - channels[name]) * (length / done))
+                channels[name] = values
+            seconds += took
+        return channels, seconds
+
+    def _render_once(self, **job):
+        """A new process, where the last one died, opens the scene again."""
         if not self.session.running:
             self._open()
         raw, seconds = self.session.render(**job)
@@ -155,6 +167,15 @@ class BlenderRenderer(Renderer):
         if time is not None:
             part[f"{layer}.{RENDER_SECONDS}"] = 1e-3 * time
         exr.write(target, part, compression="none")  # read again at once, and by every merge
+
+
+def _sequences_of(first, samples, length):
+    """(first, samples) of each sequence of so many."""
+    end = first + samples
+    while first < end:
+        following = min(end, (first // length + 1) * length)
+        yield first, following - first
+        first = following
 
 
 def _is_time(name):

@@ -26,10 +26,10 @@ HALVES = ("a", "b")
 OTHER = {"a": "b", "b": "a"}
 ROUND_QUALITY = "draft"
 EVEN_PARTS = 2  # of a half in an even round: what they differ by tells the variance; the longer, the cheaper a sample
-LEAST_CUT, LEAST_EVEN = 8, 2  # samples of a half that are cut so, and that are worth a pass
+LEAST_CUT, LEAST_EVEN = 8, 1  # samples of a half that are cut so, and that are worth a pass
 EVEN_STEPS = 3  # slices that an even round takes at once: it is not as soon that another map pays
 EXTRA_OVER_UNIFORM = 1.1  # seconds of a sample in a masked pass over one in a whole pass, until they are measured
-JUDGING_OVER_MERGING = 3.0  # seconds of reconstructing both halves over those of merging them, until it was done once
+JUDGING_OVER_MERGING = 4.0  # seconds of judging both halves over those of merging their first parts, until it was done once
 # Seconds of the last merge and reconstruction, of all samples, over those of judging both halves: from journals of the bench, best by
 # what it takes over standard (docs/accuracy.md).
 LAST_OVER_ROUND = {"draft": 1.0, "standard": 3.2, "best": 8.0}
@@ -105,13 +105,16 @@ class _Loop:
         self.totals = {half: _Totals() for half in HALVES}
         for part in self.journal["parts"]:
             self.totals[part["half"]].add(self.folder / part["file"])
+        self.journal["first_parts"] = self.journal["first_parts"] or self.first_parts()
         self.why_ended = ""
         self.judging = None  # seconds of the last reconstruction of both halves
 
     def run(self):
         self.audit = self.renderer.begin(self.settings.frame)
         self.uniform_pass()
-        self.even_pass()
+        if self.settings.budget.seconds:
+            self.foresee_judging()
+            self.even_pass()
         while plan := self.journal["plan"] or self.plan_round():
             self.render_round(plan)
         return self.finish()
@@ -121,7 +124,7 @@ class _Loop:
     def uniform_pass(self):
         """The first samples of the sequence as parts of their own, the first half of them being A: each half is a block of
         the sequence, which is better spread than every other sample would be."""
-        parts = self.first_parts()
+        parts = self.journal["first_parts"]
         each = self.settings.first_pass // parts
         for index in range(parts):
             half = HALVES[index * 2 // parts]
@@ -132,16 +135,24 @@ class _Loop:
         self.journal["next"] = max(self.journal["next"], self.settings.first_pass)
 
     def first_parts(self):
+        """How many to cut the first pass into. Where seconds are the budget, even parts follow that tell the variance as well:
+        fewer and longer ones then."""
         samples = self.settings.first_pass
-        return samples // 2 if samples % 4 == 0 and samples > 8 else samples
+        in_pairs = samples % 4 == 0 and (samples > 8 or samples == 8 and self.settings.budget.seconds)
+        return samples // 2 if in_pairs else samples
+
+    def foresee_judging(self):
+        """What reconstructing both halves will take, from how long it takes to merge them."""
+        (self.folder / "round_0").mkdir(exist_ok=True)
+        self.judging = JUDGING_OVER_MERGING * self.merge_halves(0)
+        for half in HALVES:
+            self.file(0, f"merged_{half}").unlink()
 
     def even_pass(self):
         """Goes on with the first pass where even_share says so."""
-        parts = self.journal["parts"]
-        if self.journal["rounds"] or self.journal["plan"] or len(parts) > self.first_parts():
+        if self.journal["rounds"] or self.journal["plan"] or len(self.journal["parts"]) > self.journal["first_parts"]:
             return
-        rate = sum(part["seconds"] for part in parts) / sum(part["spp"] for part in parts)
-        if plan := self.plan_even(0, even_share(self.settings.budget, self.seconds(), rate)):
+        if plan := self.plan_even(0, self.even_samples(even_share(self.settings.budget, self.spent()))):
             self.render_round(plan)
 
     def plan_even(self, number, samples):
@@ -186,20 +197,14 @@ class _Loop:
         """Reconstructs both halves and decides where the next samples of each go; None where the loop ends."""
         number = len(self.journal["rounds"])
         (self.folder / f"round_{number}").mkdir(exist_ok=True)
-        merging = None
-        if self.judging is None and self.settings.budget.seconds:
-            merging = self.merge_halves(number)
-            self.judging = JUDGING_OVER_MERGING * merging
         if self.judging is not None:
             spent = self.spent()
             self.why_ended = nothing_left(self.settings.budget, spent)
             if self.why_ended:
                 if not number:
                     self.why_ended += ", too few of them to judge where samples should go"
-                    for half in HALVES:
-                        self.file(number, f"merged_{half}").unlink(missing_ok=True)
                 return self.plan_even(number + 1, self.even_samples(rest(self.settings.budget, spent)))
-        self.reconstruct_halves(number, merging)
+        self.reconstruct_halves(number)
         spent = dataclasses.replace(self.spent(), error=self.error_of_mean(number))
         samples, self.why_ended = next_slice(self.settings.budget, spent)
         if samples and number >= self.settings.max_rounds:
@@ -219,12 +224,11 @@ class _Loop:
         self.save()
         return self.journal["plan"]
 
-    def reconstruct_halves(self, number, merging):
-        """Both at a time, each on half of the processors: a frame of a draft keeps several less busy than two frames do.
-        merging: seconds, where they are merged already."""
+    def reconstruct_halves(self, number):
+        """Both at a time, each on half of the processors: a frame of a draft keeps several less busy than two frames do."""
         self.tell(f"reconstruction {number}", round=number)
-        merging = merging or self.merge_halves(number)
-        begin = time.monotonic() - merging
+        begin = time.monotonic()
+        self.merge_halves(number)
         files = {half: [self.file(number, f"{kind}_{half}") for kind in ("merged", "clean", "error")] for half in HALVES}
         completing = time.monotonic()
         for merged, _, _ in files.values():

@@ -41,11 +41,14 @@ class Spent:
     error: float = math.nan
 
 
-def even_share(budget, seconds, seconds_per_sample):
+def even_share(budget, spent):
     """Samples per pixel that are spent evenly after the first pass, where seconds are the budget. No pixel of a good map has
     fewer than such a share, so they are not spent in vain, and the first judgement, which is dear where the seconds
-    count, then knows more than that of a few samples would."""
-    return (EVEN_SHARE * budget.seconds - seconds) / max(seconds_per_sample, 1e-9) if budget.seconds else 0.0
+    count, then knows more than that of a few samples would. Where no judgement would pay after that, all that is left."""
+    after = max(spent.seconds, EVEN_SHARE * budget.seconds)
+    if nothing_left(budget, dataclasses.replace(spent, seconds=after)):
+        return rest(budget, spent)
+    return (after - spent.seconds) / max(spent.seconds_per_sample, 1e-9)
 
 
 def nothing_left(budget, spent):

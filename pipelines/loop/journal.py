@@ -6,13 +6,14 @@ import pathlib
 
 from .errors import DriverError, ExitCode
 
-VERSION = 3
+VERSION = 4
 
 
 class Journal:
     """journal.json in a frame's folder of passes:
       identity  what the passes are of: another scene, frame or setting may not go on with them
       seconds   spent so far, over all runs
+      first_parts  how many the first pass is cut into
       next      first number of the sequence that is free
       parts     [{file, half, round, first, spp, seconds}] whole files, in the order they were rendered
       rounds    [{round, spp, seconds, error, extra}] what was known after each round, and the samples per pixel that follow
@@ -22,7 +23,8 @@ class Journal:
 
     def __init__(self, folder, identity):
         self.path = pathlib.Path(folder) / "journal.json"
-        self.data = {"version": VERSION, "identity": identity, "seconds": 0.0, "next": 0, "parts": [], "rounds": [], "plan": None}
+        self.data = {"version": VERSION, "identity": identity, "seconds": 0.0, "first_parts": 0, "next": 0}
+        self.data |= {"parts": [], "rounds": [], "plan": None}
 
     @classmethod
     def open(cls, folder, identity, resume):

@@ -23,19 +23,23 @@ import audit  # noqa: E402
 import camera  # noqa: E402
 
 MARK = "@polyrecon "
+# Samples of one sequence; further ones have other seeds. Cycles lays out a table for a whole sequence, and where that is too
+# long for the processor's caches a sample takes up to a tenth longer (docs/adaptive.md).
+SEQUENCE = 1 << 8
+LONGEST_SEQUENCE = 1 << 13  # of Cycles; what follows is spread less well
+MOST_SEED = (1 << 31) - 1
 
 
 class Session:
     def __init__(self):
         self.scene = self.view_layer = self.mask_camera = None
 
-    def open(self, path, frame, sequence, visibility, mask_camera):
+    def open(self, path, frame, visibility, mask_camera):
         """Opens the file (the first time) at a frame, sets it up, and tells what it calls for. Nothing is ever saved."""
         if self.scene is None:
             self.load(path, visibility)
-            self.sequence = sequence
         scene = self.scene
-        scene.frame_set(self.own_frame if frame is None else frame)
+        self.go_to(self.own_frame if frame is None else frame)
         if scene.camera is None:
             raise RuntimeError("the scene has no camera")
         if self.mask_camera:
@@ -56,6 +60,7 @@ class Session:
             "own_passes": [name for _, name in self.user_passes if name != "use_pass_combined"],
             "no_mask_camera": reason,
             "has_denoiser": bool(_cycles.with_openimagedenoise),
+            "sequence": self.sequence,
             "filter_reach": camera.filter_reach(scene),
         }
 
@@ -64,7 +69,7 @@ class Session:
         scene = self.scene = bpy.context.scene
         if scene.render.engine != "CYCLES":
             raise RuntimeError(f"the scene's renderer is {scene.render.engine}, not Cycles")
-        self.own_frame = scene.frame_current
+        self.own_frame, self.own_seed = scene.frame_current, scene.cycles.seed
         self.view_layer = next((layer for layer in scene.view_layers if layer.use), scene.view_layers[0])
         self.effects = audit.effects(scene, self.view_layer)
         self.switches = audit.switch_off(scene, self.view_layer)
@@ -72,6 +77,16 @@ class Session:
         self.user_passes = self.passes_on()
         self.choose_passes(visibility)
         scene.render.use_persistent_data = True
+
+    def go_to(self, frame):
+        """Evaluates the scene at a frame. A seed that is animated would be set back by each render: then all samples are of one
+        sequence."""
+        cycles = self.scene.cycles
+        cycles.seed = probe = self.own_seed ^ 0x2A5F31C7
+        self.scene.frame_set(frame)
+        self.sequence = SEQUENCE if cycles.seed == probe else None
+        if self.sequence:
+            cycles.seed = self.own_seed
 
     def choose_output(self, render):
         settings = render.image_settings
@@ -112,7 +127,7 @@ class Session:
         self.every_part = self.passes_on()
 
     def render(self, target, first, samples, crop=None, mask=None, own_passes=False):
-        """Samples first .. first + samples - 1 into an EXR. crop: [x0, y0, x1, y1], pixels from the top left, end excluded;
+        """Samples first .. first + samples - 1, all of one sequence, into an EXR. crop: [x0, y0, x1, y1], pixels from the top left, end excluded;
         mask: see camera.py; own_passes: the user's passes too."""
         scene = self.scene
         for owner, name in self.user_passes:
@@ -140,8 +155,11 @@ class Session:
 
     def choose_samples(self, first, samples):
         cycles = self.scene.cycles
+        if self.sequence:
+            number, first = divmod(first, self.sequence)
+            cycles.seed = (self.own_seed + number) & MOST_SEED
         if hasattr(cycles, "use_sample_subset"):  # Blender 5
-            cycles.samples = max(self.sequence, first + samples)
+            cycles.samples = max(self.sequence or LONGEST_SEQUENCE, first + samples)
             cycles.use_sample_subset = True
             cycles.sample_offset = first
             cycles.sample_subset_length = samples

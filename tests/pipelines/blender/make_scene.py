@@ -88,6 +88,13 @@ def moving(scene):
     scene.frame_set(2)
 
 
+def seed_animated(scene):
+    for frame in (1, 2):
+        scene.cycles.seed = 40 + frame
+        scene.keyframe_insert("cycles.seed", frame=frame)
+    scene.frame_set(1)
+
+
 def switched_on(scene):
     """Everything that the audit switches off."""
     scene.render.use_motion_blur = True
@@ -124,7 +131,8 @@ def hostile(scene):
     driver.expression = f"(exec({code('driver')!r}), 0)[1]"
 
 
-KINDS = {f.__name__: f for f in (lens, depth_of_field, caustic, orthographic, panoramic, still_motion_blur, moving, switched_on, hostile)}
+MADE = (lens, depth_of_field, caustic, orthographic, panoramic, still_motion_blur, moving, seed_animated, switched_on, hostile)
+KINDS = {f.__name__: f for f in MADE}
 
 
 def main():

@@ -35,10 +35,13 @@ class Slices(unittest.TestCase):
         self.assertEqual(next_slice(Budget(samples=64), spent(8.0, judging=2))[0], 8)  # not by the clock
 
     def test_a_quarter_of_the_seconds_is_even(self):
-        self.assertAlmostEqual(even_share(Budget(seconds=100), 5.0, 0.5), 40)
-        self.assertLess(even_share(Budget(seconds=10), 5.0, 0.5), 0)
-        self.assertEqual(even_share(Budget(samples=100), 5.0, 0.5), 0)
-        self.assertEqual(even_share(Budget(target=0.1), 5.0, 0.5), 0)
+        self.assertAlmostEqual(even_share(Budget(seconds=100), spent(8.0)), 15)  # 10 of the 25 are spent
+        self.assertLess(even_share(Budget(seconds=10), spent(8.0)), 0)
+
+    def test_all_is_even_where_no_judgement_would_pay(self):
+        # Judging takes 3 seconds, so a round takes 50: after a quarter of 60, which are even, 43 are left.
+        self.assertAlmostEqual(even_share(Budget(seconds=60), spent(8.0, judging=3)), 48)
+        self.assertAlmostEqual(even_share(Budget(seconds=80), spent(8.0, judging=3)), 10)
 
     def test_a_round_that_cannot_pay_is_not_judged(self):
         self.assertEqual(nothing_left(Budget(samples=8), spent(8.0)), "the samples are spent")
