@@ -12,6 +12,8 @@
 #include "cli/commands.h"
 #include "cli/read_limits.h"
 #include "core/error.h"
+#include "core/parallel.h"
+#include "io/exr_file.h"
 
 namespace polyrecon {
 namespace {
@@ -29,6 +31,7 @@ void run(const MergeCommandOptions& o) {
   if (inputs.size() < 2) throw Error(ExitCode::Usage, "merge needs two renders or more");
   for (const std::string& input : inputs) require_readable(input);
   require_outputs(inputs, {{"-o", o.output}});
+  set_codec_threads(processors());
   const MergeResult result = merge(o.inputs, o.output, o.merge);
   if (o.quiet) return;
   std::string text = fmt::format("{}: {} renders", o.output, result.files);

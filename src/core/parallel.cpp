@@ -19,9 +19,12 @@ void parallel_for(std::size_t count, Progress& progress, const std::function<voi
   });
 }
 
+void in_parallel(std::size_t count, const std::function<void(std::size_t)>& body) {
+  tbb::parallel_for(std::size_t{0}, count, body);
+}
+
 void for_rows(int height, const std::function<void(int)>& body) {
-  Progress silent;
-  parallel_for(static_cast<std::size_t>(height), silent, [&](std::size_t y) { body(static_cast<int>(y)); });
+  in_parallel(static_cast<std::size_t>(height), [&](std::size_t y) { body(static_cast<int>(y)); });
 }
 
 double ordered_sum(std::size_t count, const std::function<double(std::size_t)>& term) {

@@ -12,7 +12,10 @@ namespace polyrecon {
 /// Throws Error{Interrupted} when progress asks to stop; exceptions of a body are passed on.
 void parallel_for(std::size_t count, Progress& progress, const std::function<void(std::size_t)>& body);
 
-/// body(y) for every row of an image, for work too short to be reported.
+/// The same for work too short to be reported.
+void in_parallel(std::size_t count, const std::function<void(std::size_t)>& body);
+
+/// body(y) for every row of an image, as in_parallel.
 void for_rows(int height, const std::function<void(int)>& body);
 
 /// Sum of term(i) for i in [0, count). The sum is taken in order of i, so it has the same bits for any number of

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
@@ -20,16 +21,20 @@
 #include <system_error>
 
 #include "core/error.h"
+#include "core/parallel.h"
 #include "io/channel_names.h"
 #include "io/channel_reader.h"
 #include "io/exr_bands.h"
 #include "io/exr_single_part.h"
+#include "io/merge_sums.h"
 
 namespace polyrecon {
 namespace {
 
 constexpr std::size_t kSumsAtOnce = std::size_t{1} << 18;
 constexpr int kChunkLines = 32;
+constexpr std::size_t kRendersAtOnce = 16;                   ///< That are decoded, then added up.
+constexpr std::size_t kPixelsAtOnce = std::size_t{1} << 12;  ///< Of one channel, whose sums stay in the cache.
 
 /// One render and its layers, which are those of the first render in the same order. A layer that only the first render
 /// has is `absent` in the others.
@@ -162,47 +167,6 @@ std::string output_name(const Render& first, const Layer& layer, const std::stri
   return name + "." + suffix;
 }
 
-/// Weighted mean of a stream of samples.
-struct MeanAccumulator {
-  double weight = 0, mean = 0;
-  int renders = 0;
-
-  void add(double x, double w) {
-    ++renders;
-    weight += w;
-    mean += (x - mean) * w / weight;
-  }
-};
-
-/// The same and their spread: sums of w^2, w^2 d and w^2 d^2, d being the distance to the first sample, so that little
-/// cancels.
-struct Accumulator : MeanAccumulator {
-  double origin = 0, squares = 0, first = 0, second = 0;
-
-  void add(double x, double w) {
-    if (renders == 0) origin = x;
-    MeanAccumulator::add(x, w);
-    const double d = x - origin;
-    squares += w * w;
-    first += w * w * d;
-    second += w * w * d * d;
-  }
-  bool spreads() const { return second > 0; }
-  double variance_of_mean() const {
-    if (renders < 2) return std::numeric_limits<double>::quiet_NaN();
-    const double m = mean - origin;
-    return std::max(0.0, second - 2 * m * first + m * m * squares) / (weight * weight - squares);
-  }
-};
-
-/// Accumulators of one channel over a band.
-struct ChannelSums {
-  std::vector<Accumulator> all;
-  std::vector<MeanAccumulator> half_a, half_b;
-
-  explicit ChannelSums(std::size_t pixels) : all(pixels), half_a(pixels), half_b(pixels) {}
-};
-
 /// Attributes of all parts, the first part's before the others', but those that say how a part is stored.
 void copy_metadata(const Imf::MultiPartInputFile& input, Imf::Header& header) {
   static const std::set<std::string> storage{"name",       "type",       "view",          "channels",
@@ -213,6 +177,17 @@ void copy_metadata(const Imf::MultiPartInputFile& input, Imf::Header& header) {
     for (auto a = input.header(p).begin(); a != input.header(p).end(); ++a)
       if (copied.insert(a.name()).second) header.insert(a.name(), a.attribute());
 }
+
+/// A channel that is merged: its layer, and its place among all_channels of that.
+struct Slot {
+  std::size_t layer, channel;
+};
+
+/// A band of one render.
+struct DecodedRender {
+  std::vector<std::vector<float>> samples;  ///< Of each part.
+  std::vector<const float*> planes;         ///< Of each slot.
+};
 
 class Merger {
  public:
@@ -254,9 +229,7 @@ class Merger {
   /// Lines merged at once, so that the sums take some 25 MB (and one chunk of the tallest usual kind at
   /// least).
   int lines_per_band() const {
-    std::size_t channels = 0;
-    for (const std::size_t l : merged_) channels += all_channels(first().layers[l]).size();
-    const std::size_t line = std::max<std::size_t>(1, channels * static_cast<std::size_t>(window_.width()));
+    const std::size_t line = std::max<std::size_t>(1, slots_.size() * static_cast<std::size_t>(window_.width()));
     return std::max(kChunkLines, static_cast<int>(std::min<std::size_t>(kSumsAtOnce / line, kBandLines)) / kChunkLines *
                                      kChunkLines);
   }
@@ -264,10 +237,9 @@ class Merger {
   /// Throws Error{OutOfMemory} where a band, its sums and the chunks of the inputs beside it need more than that.
   void require_memory(std::size_t max_bytes) const {
     const auto lines = static_cast<std::size_t>(std::min(window_.height(), lines_per_band()));
-    std::size_t bytes = 0;  // of a pixel
-    for (const std::size_t l : merged_)
-      bytes += all_channels(first().layers[l]).size() *
-               (sizeof(Accumulator) + 2 * sizeof(MeanAccumulator) + 4 * sizeof(float));
+    // Of a pixel.
+    std::size_t bytes =
+        slots_.size() * (sizeof(Accumulator) + 2 * sizeof(MeanAccumulator) + (4 + 2 * kRendersAtOnce) * sizeof(float));
     for (const PartInfo& part : first().file.parts) bytes += part.channels.size() * 3 * sizeof(float);
     if (static_cast<std::size_t>(window_.width()) * lines > max_bytes / std::max<std::size_t>(bytes, 1))
       throw Error(ExitCode::OutOfMemory, fmt::format("{}: {} lines of {} pixels need more than the limit of {} MB",
@@ -276,7 +248,8 @@ class Merger {
 
   MergeResult report() {
     if (left_out_ > 0)
-      report_.notes.push_back(fmt::format("{} samples that are not finite were left out of the means", left_out_));
+      report_.notes.push_back(
+          fmt::format("{} samples that are not finite were left out of the means", left_out_.load()));
     if (!merged_.empty() && !any_spread_)
       report_.notes.emplace_back("the renders are equal in every pixel: were they made with the same seed or offset?");
     const auto pixels = static_cast<double>(window_.area());
@@ -311,6 +284,7 @@ class Merger {
     switch (renders_[1].absent[l] ? Fate::Kept : fate_of(first(), layer)) {
       case Fate::Merged:
         merged_.push_back(l);
+        for (std::size_t c = 0; c < all_channels(layer).size(); ++c) slots_.push_back({l, c});
         report_.merged.push_back(layer.name);
         break;
       case Fate::Kept:
@@ -375,10 +349,10 @@ class Merger {
   Weights read_weights(int y0, int y1) {
     const std::size_t pixels = static_cast<std::size_t>(window_.width()) * static_cast<std::size_t>(y1 - y0);
     Weights weights(renders_.size());
-    for (const std::string& view_layer : counted_) {
-      const int l = count_layer(view_layer);
-      for (std::size_t k = 0; k < renders_.size(); ++k) {
-        const Render& render = renders_[k];
+    in_parallel(renders_.size(), [&](std::size_t k) {
+      const Render& render = renders_[k];
+      for (const std::string& view_layer : counted_) {
+        const int l = count_layer(view_layer);
         const double metadata = samples_of(render, view_layer).value_or(0);
         std::vector<double>& n = weights[k][view_layer];
         n.assign(pixels, metadata);
@@ -390,49 +364,67 @@ class Merger {
         for (std::size_t i = 0; i < pixels; ++i)
           n[i] = std::isfinite(counts[i]) && counts[i] > 0 ? counts[i] * scale : 0;
       }
-    }
+    });
     return weights;
   }
 
-  /// Adds all merged layers of one render to the sums; every part is decoded once.
-  void add_render(std::size_t k, const Weights& weights, const NativeBand& band,
-                  std::vector<std::vector<ChannelSums>>& sums) {
+  /// All merged channels of one render; every part is decoded once.
+  DecodedRender decode(std::size_t k, const NativeBand& band) const {
     const Render& render = renders_[k];
     const std::size_t pixels = static_cast<std::size_t>(band.width) * static_cast<std::size_t>(band.y1 - band.y0);
-    const std::vector<double> alike(pixels, 1);
+    DecodedRender decoded;
+    decoded.planes.resize(slots_.size());
     for (int part = 0; part < static_cast<int>(render.file.parts.size()); ++part) {
       std::vector<std::string> channels;
-      std::vector<std::pair<ChannelSums*, const std::vector<double>*>> targets;
-      for (std::size_t m = 0; m < merged_.size(); ++m) {
-        const Layer& layer = render.layers[merged_[m]];
+      std::vector<std::size_t> slots;
+      for (std::size_t s = 0; s < slots_.size(); ++s) {
+        const Layer& layer = render.layers[slots_[s].layer];
         if (layer.part != part) continue;
-        const auto known = weights[k].find(layer.view_layer);
-        const std::vector<double>& n = known == weights[k].end() ? alike : known->second;
-        const auto names = all_channels(layer);
-        for (std::size_t c = 0; c < names.size(); ++c) {
-          channels.push_back(names[c]);
-          targets.emplace_back(&sums[m][c], &n);
-        }
+        channels.push_back(all_channels(layer)[slots_[s].channel]);
+        slots.push_back(s);
       }
       if (channels.empty()) continue;
       ChannelReader reader(render.file, part, channels);
-      const std::vector<float>& samples = reader.read(band.y0, band.y1);
-      for (std::size_t c = 0; c < targets.size(); ++c)
-        for (std::size_t i = 0; i < pixels; ++i)
-          add(*targets[c].first, i, samples[c * pixels + i], (*targets[c].second)[i], k);
+      decoded.samples.push_back(reader.read(band.y0, band.y1));
+      for (std::size_t c = 0; c < slots.size(); ++c)
+        decoded.planes[slots[c]] = decoded.samples.back().data() + c * pixels;
     }
+    return decoded;
+  }
+
+  /// Adds renders first .. end - 1 to the sums, each sum in the order of the renders.
+  void add_renders(std::size_t first, std::size_t end, const Weights& weights, const NativeBand& band,
+                   std::vector<ChannelSums>& sums) {
+    std::vector<DecodedRender> decoded(end - first);
+    in_parallel(decoded.size(), [&](std::size_t i) { decoded[i] = decode(first + i, band); });
+    const std::size_t pixels = sums.front().all.size();
+    const std::size_t blocks = (pixels + kPixelsAtOnce - 1) / kPixelsAtOnce;
+    in_parallel(slots_.size() * blocks, [&](std::size_t task) {
+      const std::size_t slot = task / blocks, begin = task % blocks * kPixelsAtOnce;
+      const std::string& view_layer = renders_.front().layers[slots_[slot].layer].view_layer;
+      for (std::size_t k = first; k < end; ++k) {
+        const auto known = weights[k].find(view_layer);
+        const double* n = known == weights[k].end() ? nullptr : known->second.data();
+        const float* samples = decoded[k - first].planes[slot];
+        for (std::size_t i = begin; i < std::min(begin + kPixelsAtOnce, pixels); ++i)
+          add(sums[slot], i, samples[i], n ? n[i] : 1, k);
+      }
+    });
   }
 
   void merge_layers(const Weights& weights, NativeBand& band) {
+    if (slots_.empty()) return;
     const std::size_t pixels = static_cast<std::size_t>(band.width) * static_cast<std::size_t>(band.y1 - band.y0);
-    std::vector<std::vector<ChannelSums>> sums;
-    for (const std::size_t l : merged_) sums.emplace_back(all_channels(first().layers[l]).size(), ChannelSums(pixels));
-    for (std::size_t k = 0; k < renders_.size(); ++k) add_render(k, weights, band, sums);
-    for (std::size_t m = 0; m < merged_.size(); ++m) {
-      const Layer& layer = first().layers[merged_[m]];
-      for (std::size_t c = 0; c < layer.channels.size(); ++c) write_channel(layer, layer.channels[c], sums[m][c], band);
-      if (!layer.alpha.empty()) write_mean(*band.find(output_name(first(), layer, layer.alpha)), sums[m].back());
-    }
+    std::vector<ChannelSums> sums(slots_.size(), ChannelSums(pixels));
+    for (std::size_t k = 0; k < renders_.size(); k += kRendersAtOnce)
+      add_renders(k, std::min(k + kRendersAtOnce, renders_.size()), weights, band, sums);
+    in_parallel(slots_.size(), [&](std::size_t s) {
+      const Layer& layer = first().layers[slots_[s].layer];
+      if (slots_[s].channel < layer.channels.size())
+        write_channel(layer, layer.channels[slots_[s].channel], sums[s], band);
+      else
+        write_mean(*band.find(output_name(first(), layer, layer.alpha)), sums[s]);
+    });
   }
 
   void add(ChannelSums& sums, std::size_t i, float x, double weight, std::size_t k) {
@@ -475,14 +467,16 @@ class Merger {
     NativeChannel& variance = *band.find(output_name(first(), layer, name, " Variance"));
     NativeChannel& half_a = *band.find(output_name(first(), layer, name, " A"));
     NativeChannel& half_b = *band.find(output_name(first(), layer, name, " B"));
+    bool spread = false;
     for (std::size_t i = 0; i < sums.all.size(); ++i) {
       const Moments whole = moments(sums, i);
-      any_spread_ = any_spread_ || sums.all[i].spreads();
+      spread = spread || sums.all[i].spreads();
       put(mean, i, whole.mean);
       put(variance, i, whole.variance);
       put(half_a, i, sums.half_a[i].renders > 0 ? sums.half_a[i].mean : whole.mean);
       put(half_b, i, sums.half_b[i].renders > 0 ? sums.half_b[i].mean : whole.mean);
     }
+    if (spread) any_spread_ = true;
   }
 
   /// Bit for bit, whatever the type.
@@ -556,12 +550,13 @@ class Merger {
   std::size_t first_b_;  ///< First render of half B, 0: even and odd index.
   Rect window_;
   std::vector<std::size_t> merged_, kept_;  ///< Indices of layers.
+  std::vector<Slot> slots_;                 ///< All channels of the merged layers.
   std::vector<std::string> counted_;        ///< View layers whose sample counts are known.
   std::map<std::string, double> metadata_samples_;
   MergeResult report_;
-  std::size_t left_out_ = 0;
+  std::atomic<std::size_t> left_out_ = 0;
   double count_sum_ = 0;
-  bool any_spread_ = false;
+  std::atomic<bool> any_spread_ = false;
 };
 
 }  // namespace
