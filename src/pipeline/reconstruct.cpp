@@ -22,7 +22,6 @@ namespace {
 
 constexpr int smallest_level = 16;           // pixels; a smaller level has no window of its own
 constexpr double max_total_gain = 0.05;      // more than what the weights' preference for ordinary pixels can lose
-constexpr double max_restored_gain = 0.002;  // a fifth of the smallest step in brightness that can be seen (Weber)
 constexpr double most_noise_in_prior = 0.9;  // beyond it a prior is the input, which would judge itself
 
 /// Runs a step, tells progress of it, and notes how long it took.
@@ -228,7 +227,7 @@ Result reconstruct(Frame& frame, const std::vector<TimedNeighbour>& neighbours, 
   Image image = timed(report, progress, "energy", 1, [&] {
     Image out = average(pair, solved);
     if (params.parts.raise_undershoot) report.raised_pixels = raise_undershoot(noisy_mean(pair), out);
-    restore_energy(outliers, max_restored_gain, out);
+    restore_energy(outliers, out);
     if (params.parts.restore_totals) report.restored_gain = restore_totals(totals, max_total_gain, out);
     return out;
   });
