@@ -21,18 +21,75 @@ double sum_of(const Image& image, int channel, const std::function<double(double
   });
 }
 
-/// yhat^2; negative pixels receive nothing.
-double share_of(double yhat) { return yhat > 0 ? yhat * yhat : 0; }
+/// yhat^2 of a pixel. What is not positive receives nothing.
+double share_of(Real value) {
+  const double yhat = usable(value) ? static_cast<double>(value) : 0;
+  return yhat > 0 ? yhat * yhat : 0;
+}
 
-double sum_of_shares(const Image& image, int channel) { return sum_of(image, channel, share_of); }
+/// Summed-area table of a channel's shares: sums over rectangles in four look-ups.
+class BoxSums {
+ public:
+  explicit BoxSums(const Image& image, int channel)
+      : row_(static_cast<std::size_t>(image.width()) + 1),
+        sums_(row_ * (static_cast<std::size_t>(image.height()) + 1), 0.0) {
+    for (int y = 0; y < image.height(); ++y) {
+      double row = 0;
+      const Real* values = image.row(channel, y);
+      for (int x = 0; x < image.width(); ++x) {
+        row += share_of(values[x]);
+        at(x + 1, y + 1) = at(x + 1, y) + row;
+      }
+    }
+  }
+  double sum(const Rect& r) const { return at(r.x1, r.y1) - at(r.x0, r.y1) - at(r.x1, r.y0) + at(r.x0, r.y0); }
+
+ private:
+  std::size_t index(int x, int y) const { return static_cast<std::size_t>(y) * row_ + static_cast<std::size_t>(x); }
+  double& at(int x, int y) { return sums_[index(x, y)]; }
+  double at(int x, int y) const { return sums_[index(x, y)]; }
+
+  std::size_t row_;
+  std::vector<double> sums_;
+};
+
+/// The square around an outlier over which the root mean square of every channel's gain, e_o / sqrt(|Omega| sum
+/// yhat^2), is small enough.
+Rect restoration_area(const Outlier& outlier, const std::vector<BoxSums>& sums, double max_gain, const Rect& bounds) {
+  Rect area;
+  for (int radius = 9;; radius += radius / 2) {
+    area = intersect(grow({outlier.x, outlier.y, outlier.x + 1, outlier.y + 1}, radius), bounds);
+    bool small = true;
+    for (std::size_t c = 0; c < sums.size(); ++c)
+      small &=
+          std::abs(outlier.energy[c]) <= max_gain * std::sqrt(static_cast<double>(area.area()) * sums[c].sum(area));
+    if (small || area == bounds) return area;
+  }
+}
+
+/// Adds value to every pixel of r once `integrate` has run.
+void add_box(std::vector<double>& corners, std::size_t row, const Rect& r, double value) {
+  const auto at = [&](int x, int y) -> double& {
+    return corners[static_cast<std::size_t>(y) * row + static_cast<std::size_t>(x)];
+  };
+  at(r.x0, r.y0) += value;
+  at(r.x1, r.y0) -= value;
+  at(r.x0, r.y1) -= value;
+  at(r.x1, r.y1) += value;
+}
+
+void integrate(std::vector<double>& corners, std::size_t row) {
+  for (std::size_t i = 0; i < corners.size(); ++i)
+    if (i % row != 0) corners[i] += corners[i - 1];
+  for (std::size_t i = row; i < corners.size(); ++i) corners[i] += corners[i - row];
+}
 
 /// Adds energy[c] to channel c = color, color + 3, ..., in proportion to the shares of `color`, whose sum is `shares`.
 void give(const std::vector<double>& energy, int color, double shares, Image& image) {
   for_rows(image.height(), [&](int y) {
     std::vector<double> share(static_cast<std::size_t>(image.width()));
     const Real* yhat = image.row(color, y);
-    for (int x = 0; x < image.width(); ++x)
-      share[static_cast<std::size_t>(x)] = usable(yhat[x]) ? share_of(static_cast<double>(yhat[x])) / shares : 0;
+    for (int x = 0; x < image.width(); ++x) share[static_cast<std::size_t>(x)] = share_of(yhat[x]) / shares;
     for (int c = color; c < static_cast<int>(energy.size()); c += 3) {
       Real* out = image.row(c, y);
       for (int x = 0; x < image.width(); ++x)
@@ -43,20 +100,30 @@ void give(const std::vector<double>& energy, int color, double shares, Image& im
 
 }  // namespace
 
-void restore_energy(const std::vector<Outlier>& outliers, Image& image) {
+void restore_energy(const std::vector<Outlier>& outliers, double max_gain, Image& image) {
   if (outliers.empty()) return;
-  std::vector<double> energy(static_cast<std::size_t>(image.channels() / 3 * 3), 0.0);
-  for (const Outlier& outlier : outliers)
-    for (std::size_t c = 0; c < energy.size(); ++c) energy[c] += outlier.energy[c];
-  for (int color = 0; color < 3; ++color) {
-    const double shares = sum_of_shares(image, color);
-    if (shares > 0) {
-      give(energy, color, shares, image);
-      continue;
+  const Image shape = image;  // yhat before anything is given back
+  std::vector<BoxSums> sums;
+  for (int c = 0; c < 3; ++c) sums.emplace_back(shape, c);
+  std::vector<Rect> areas;
+  for (const Outlier& outlier : outliers) areas.push_back(restoration_area(outlier, sums, max_gain, image.bounds()));
+  const auto row = static_cast<std::size_t>(image.width()) + 1;
+  for (int c = 0; c < image.channels() / 3 * 3; ++c) {
+    const auto color = static_cast<std::size_t>(c % 3);
+    std::vector<double> gain(row * (static_cast<std::size_t>(image.height()) + 1), 0.0);
+    for (std::size_t k = 0; k < outliers.size(); ++k) {
+      const double energy = outliers[k].energy[static_cast<std::size_t>(c)], sum = sums[color].sum(areas[k]);
+      if (sum > 0)
+        add_box(gain, row, areas[k], energy / sum);
+      else
+        image.at(outliers[k].x, outliers[k].y, c) += static_cast<Real>(energy);
     }
-    for (const Outlier& outlier : outliers)
-      for (std::size_t c = static_cast<std::size_t>(color); c < energy.size(); c += 3)
-        image.at(outlier.x, outlier.y, static_cast<int>(c)) += static_cast<Real>(outlier.energy[c]);
+    integrate(gain, row);
+    for (int y = 0; y < image.height(); ++y)
+      for (int x = 0; x < image.width(); ++x) {
+        image.at(x, y, c) += static_cast<Real>(share_of(shape.at(x, y, static_cast<int>(color))) *
+                                               gain[static_cast<std::size_t>(y) * row + static_cast<std::size_t>(x)]);
+      }
   }
 }
 
@@ -77,7 +144,7 @@ std::array<double, 3> restore_totals(const std::vector<double>& totals, double m
     const double gain = positive > 0 ? missing[c] / positive : 0;
     if (!(std::abs(gain) <= max_gain) || !(positive > 0)) continue;
     gains[c] = gain;
-    give(missing, color, sum_of_shares(image, color), image);
+    give(missing, color, BoxSums(image, color).sum(image.bounds()), image);
   }
   return gains;
 }

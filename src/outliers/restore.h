@@ -8,18 +8,19 @@
 
 namespace polyrecon {
 
-/// Gives back what remove_outliers took: as equations (10) and (11), but with Omega the whole image and each pixel's
-/// gain proportional to its brightness, yhat(i) += e yhat(i)^2 / sum yhat^2, e the sum of the outliers' e_o. For a
-/// given e that is what costs the least relative squared error, sum (d / yhat)^2 (docs/accuracy.md); the sum of every
-/// channel is what it was to double rounding. Layers beyond the first three channels (AOVs, three channels each)
-/// receive their energy in the shape of the beauty, so that layers that add up still do; a last single channel (alpha)
-/// is left alone. On a channel that is all black each outlier gives its energy back where it was taken.
-void restore_energy(const std::vector<Outlier>& outliers, Image& image);
+/// Gives back what remove_outliers took: equations (10) and (11) with a gain that is proportional to the pixel's
+/// brightness, yhat(i) += e_o yhat(i)^2 / sum over Omega_o of yhat^2, which of all ways to add e_o costs the least
+/// relative squared error, sum (d / yhat)^2 (docs/accuracy.md); the sum of every channel is what it was to double
+/// rounding. Omega_o is a square around o that grows until the root mean square of the gain is at most max_gain, so
+/// that light stays where it fell as far as that cannot be seen. Layers beyond the first three channels (AOVs, three
+/// channels each) receive their e_o in the shape of the beauty, so that layers that add up still do; a last single
+/// channel (alpha) is left alone. An outlier on an image that is all black gives its energy back where it was taken.
+void restore_energy(const std::vector<Outlier>& outliers, double max_gain, Image& image);
 
-/// The same for what the fit itself gained or lost: every channel's sum becomes `totals` (one value a channel, as many
-/// as are to be restored). Only where that is at most max_gain of the channel; a larger difference is not rounding or
-/// the pull of the weights but content (an input of both signs, a hole that was mended), and stays. Returns the gain of
-/// each of the first three channels.
+/// The same for what the fit itself gained or lost, Omega being the whole image: every channel's sum becomes `totals`
+/// (one value a channel, as many as are to be restored). Only where that is at most max_gain of the channel; a larger
+/// difference is not rounding or the pull of the weights but content (an input of both signs, a hole that was mended),
+/// and stays. Returns the gain of each of the first three channels.
 std::array<double, 3> restore_totals(const std::vector<double>& totals, double max_gain, Image& image);
 
 /// Sum of every channel over the usable pixels.

@@ -21,6 +21,7 @@ namespace polyrecon {
 namespace {
 
 constexpr int smallest_level = 16;           // pixels; a smaller level has no window of its own
+constexpr double max_restored_gain = 0.001;  // a tenth of the smallest step in brightness that can be seen (Weber)
 constexpr double max_total_gain = 0.05;      // more than what the weights' preference for ordinary pixels can lose
 constexpr double most_noise_in_prior = 0.9;  // beyond it a prior is the input, which would judge itself
 
@@ -227,7 +228,7 @@ Result reconstruct(Frame& frame, const std::vector<TimedNeighbour>& neighbours, 
   Image image = timed(report, progress, "energy", 1, [&] {
     Image out = average(pair, solved);
     if (params.parts.raise_undershoot) report.raised_pixels = raise_undershoot(noisy_mean(pair), out);
-    restore_energy(outliers, out);
+    restore_energy(outliers, max_restored_gain, out);
     if (params.parts.restore_totals) report.restored_gain = restore_totals(totals, max_total_gain, out);
     return out;
   });

@@ -542,7 +542,7 @@ TEST(Case26, EnergyOfAnySpikesComesBack) {
     Progress silent;
     const auto outliers = remove_outliers(pair, true, OutlierParams{}, silent);
     Image after = test::mean_of(pair.color[0], pair.color[1]);
-    restore_energy(outliers, after);
+    restore_energy(outliers, 0.02, after);
     EXPECT_TRUE(test::all_finite(after));
     for (int c = 0; c < 6; ++c)
       EXPECT_NEAR(test::sum_of(after, c), test::sum_of(before, c), 1e-6 * test::sum_of(before, c)) << c;
