@@ -10,6 +10,7 @@ import dataclasses
 import itertools
 import os
 import pathlib
+import statistics
 import time
 from typing import Optional
 
@@ -251,13 +252,12 @@ class _Loop:
         parts = self.journal["parts"]
         # Short parts are dearer than the next ones will be.
         longest = max(part["spp"] for part in parts if not part["masked"])
-        whole = [part for part in parts if not part["masked"] and part["spp"] >= longest / 2]
-        seconds, worth = (sum(part[key] for part in whole) for key in ("seconds", "worth"))
+        rates = [part["seconds"] / part["spp"] for part in parts if not part["masked"] and part["spp"] >= longest / 2]
         return Spent(
             samples=sum(p["spp"] for p in parts),
             seconds=self.seconds(),
             worth=sum(p["worth"] for p in parts),
-            seconds_per_sample=seconds / worth * self.extra_over_uniform(),
+            seconds_per_sample=statistics.median(rates) * self.extra_over_uniform(),  # the first part of all takes longer
             judging=self.judging,
             reserve=self.judging * (LAST_OVER_ROUND[self.settings.quality] + self.renderer.last_over_round),
         )
@@ -309,9 +309,13 @@ class _Loop:
     def even_counts(self, samples):
         """Of a half; a multiple of the parts that they can be cut into."""
         each = max(0, int(samples / 2))
-        if each >= LEAST_CUT:
-            each -= each % EVEN_PARTS
-        return np.full(self.totals["a"].counts.shape, each)
+        return np.full(self.totals["a"].counts.shape, each - each % self.even_parts(each))
+
+    def even_parts(self, samples):
+        """How many to cut so many even samples of a half into: what parts differ by tells the variance, so not where others
+        that are as long do."""
+        as_long = sum(p["half"] == "a" and not p["masked"] and p["spp"] >= samples for p in self.journal["parts"])
+        return EVEN_PARTS if samples >= LEAST_CUT and as_long < EVEN_PARTS else 1
 
     def extra_over_uniform(self):
         """What a sample (of average cost) of a masked pass takes, over one of a whole pass."""
@@ -325,9 +329,9 @@ class _Loop:
         """A half's counts that differ begin at a multiple of the largest, so that every count is a whole block of the sequence;
         even ones go on where the sequence has come to."""
         even = all(c.min() == c.max() for c in counts.values())
-        in_parts = even and all(c.max() % EVEN_PARTS == 0 and c.max() >= LEAST_CUT for c in counts.values())
+        parts = min(self.even_parts(int(c.max())) for c in counts.values()) if even else 1
         before = sum(part["round"] == number for part in self.journal["parts"]) // 2  # parts of a half that the round has
-        plan = {"round": number, "first": {}, "parts": EVEN_PARTS if in_parts else 1, "before": before}
+        plan = {"round": number, "first": {}, "parts": parts, "before": before}
         free = self.journal["next"]
         (self.folder / f"round_{number}").mkdir(exist_ok=True)
         for half in HALVES:
