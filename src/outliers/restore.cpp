@@ -10,6 +10,10 @@
 namespace polyrecon {
 namespace {
 
+/// Of the brightest pixel, by squares; where it would be more, as where all but a few pixels are dark, each pixel's
+/// gain is the same.
+constexpr double kMostGain = 0.5;
+
 /// Sum of term(value) over the usable pixels of a channel.
 double sum_of(const Image& image, int channel, const std::function<double(double)>& term) {
   return ordered_sum(static_cast<std::size_t>(image.height()), [&](std::size_t y) {
@@ -25,6 +29,15 @@ double sum_of(const Image& image, int channel, const std::function<double(double
 double share_of(Real value) {
   const double yhat = usable(value) ? static_cast<double>(value) : 0;
   return yhat > 0 ? yhat * yhat : 0;
+}
+
+double positive_part(Real value) { return usable(value) ? std::max(static_cast<double>(value), 0.0) : 0; }
+
+double greatest(const Image& image, int channel) {
+  double most = 0;
+  const Real* values = image.plane(channel);
+  for (std::size_t i = 0; i < image.pixels(); ++i) most = std::max(most, positive_part(values[i]));
+  return most;
 }
 
 /// Summed-area table of a channel's shares: sums over rectangles in four look-ups.
@@ -84,8 +97,9 @@ void integrate(std::vector<double>& corners, std::size_t row) {
   for (std::size_t i = row; i < corners.size(); ++i) corners[i] += corners[i - row];
 }
 
-/// Adds energy[c] to channel c = color, color + 3, ..., in proportion to the shares of `color`, whose sum is `shares`.
-void give(const std::vector<double>& energy, int color, double shares, Image& image) {
+/// Adds energy[c] to channel c = color, color + 3, ..., in proportion to share(yhat) of `color`, the sum of which is
+/// `shares`.
+void give(const std::vector<double>& energy, int color, double (*share_of)(Real), double shares, Image& image) {
   for_rows(image.height(), [&](int y) {
     std::vector<double> share(static_cast<std::size_t>(image.width()));
     const Real* yhat = image.row(color, y);
@@ -144,7 +158,11 @@ std::array<double, 3> restore_totals(const std::vector<double>& totals, double m
     const double gain = positive > 0 ? missing[c] / positive : 0;
     if (!(std::abs(gain) <= max_gain) || !(positive > 0)) continue;
     gains[c] = gain;
-    give(missing, color, BoxSums(image, color).sum(image.bounds()), image);
+    const double squares = BoxSums(image, color).sum(image.bounds());
+    if (std::abs(missing[c]) * greatest(image, color) <= kMostGain * squares)
+      give(missing, color, share_of, squares, image);
+    else
+      give(missing, color, positive_part, positive, image);
   }
   return gains;
 }

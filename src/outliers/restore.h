@@ -20,7 +20,8 @@ void restore_energy(const std::vector<Outlier>& outliers, double max_gain, Image
 /// The same for what the fit itself gained or lost, Omega being the whole image: every channel's sum becomes `totals`
 /// (one value a channel, as many as are to be restored). Only where that is at most max_gain of the channel; a larger
 /// difference is not rounding or the pull of the weights but content (an input of both signs, a hole that was mended),
-/// and stays. Returns the gain of each of the first three channels.
+/// and stays. Where the brightest pixel would change by more than a half, all pixels gain alike. Returns the gain of
+/// each of the first three channels.
 std::array<double, 3> restore_totals(const std::vector<double>& totals, double max_gain, Image& image);
 
 /// Sum of every channel over the usable pixels.

@@ -139,6 +139,21 @@ TEST(RestoreEnergy, NegativePixelsDoNotGrow) {
   expect_energy(before, image, outliers);
 }
 
+/// One bright pixel in the dark: by squares it would take all, and less than nothing would be left of it.
+TEST(RestoreTotals, NoPixelBecomesNegative) {
+  for (const double factor : {0.96, 1.04}) {
+    Image image(64, 48, 3, Real(0.1));
+    for (int c = 0; c < 3; ++c) image.at(20, 20, c) = Real(5);
+    std::vector<double> totals = channel_sums(image);
+    for (double& total : totals) total *= factor;
+    restore_totals(totals, 0.05, image);
+    for (int c = 0; c < 3; ++c) {
+      EXPECT_NEAR(channel_sums(image)[static_cast<std::size_t>(c)], totals[static_cast<std::size_t>(c)], 1e-3);
+      EXPECT_NEAR(static_cast<double>(image.at(20, 20, c)), 5 * factor, 1e-3);
+    }
+  }
+}
+
 TEST(RestoreEnergy, LayersThatAddUpStillDo) {
   // Channels 3-5 and 6-8 add up to 0-2, pixel by pixel and outlier by outlier.
   Image image = test::image_of(64, 48, 9, [](int x, int y, int c) {
