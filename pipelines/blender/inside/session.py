@@ -127,8 +127,8 @@ class Session:
         self.every_part = self.passes_on()
 
     def render(self, target, first, samples, crop=None, mask=None, own_passes=False):
-        """Samples first .. first + samples - 1, all of one sequence, into an EXR. crop: [x0, y0, x1, y1], pixels from the top left, end excluded;
-        mask: see camera.py; own_passes: the user's passes too."""
+        """Samples first .. first + samples - 1, all of one sequence, into an EXR. crop: [x0, y0, x1, y1], pixels from the top
+        left, end excluded; mask: see camera.py; own_passes: the user's passes too."""
         scene = self.scene
         for owner, name in self.user_passes:
             setattr(owner, name, own_passes or (owner, name) in self.every_part)
