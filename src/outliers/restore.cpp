@@ -99,15 +99,15 @@ void integrate(std::vector<double>& corners, std::size_t row) {
 
 /// Adds energy[c] to channel c = color, color + 3, ..., in proportion to share(yhat) of `color`, the sum of which is
 /// `shares`.
-void give(const std::vector<double>& energy, int color, double (*share_of)(Real), double shares, Image& image) {
+void give(const std::vector<double>& energy, int color, double (*share)(Real), double shares, Image& image) {
   for_rows(image.height(), [&](int y) {
-    std::vector<double> share(static_cast<std::size_t>(image.width()));
+    std::vector<double> parts(static_cast<std::size_t>(image.width()));
     const Real* yhat = image.row(color, y);
-    for (int x = 0; x < image.width(); ++x) share[static_cast<std::size_t>(x)] = share_of(yhat[x]) / shares;
+    for (int x = 0; x < image.width(); ++x) parts[static_cast<std::size_t>(x)] = share(yhat[x]) / shares;
     for (int c = color; c < static_cast<int>(energy.size()); c += 3) {
       Real* out = image.row(c, y);
       for (int x = 0; x < image.width(); ++x)
-        out[x] += static_cast<Real>(energy[static_cast<std::size_t>(c)] * share[static_cast<std::size_t>(x)]);
+        out[x] += static_cast<Real>(energy[static_cast<std::size_t>(c)] * parts[static_cast<std::size_t>(x)]);
     }
   });
 }
