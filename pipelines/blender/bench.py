@@ -172,7 +172,7 @@ def uniform(scene, image, samples):
     parts = [scene.folder / f"part_{i}.exr" for i in range(PARTS)]
     merged = scene.folder / "merged.exr"
     rendering = scene.render(scene.folder / "part.exr", spp=samples, parts=PARTS, features=True)
-    scene.polyrecon.run("merge", *parts, "-o", merged, "--samples", str(samples // PARTS), "--quiet")
+    scene.polyrecon.run("merge", *parts, "-o", merged, "--samples", str(samples // PARTS), "--compression", "none", "--quiet")
     scene.polyrecon.run("denoise", "-i", merged, "-o", image, "--quiet")
     return rendering, {"spp": samples}
 

@@ -29,11 +29,12 @@ ROUND_QUALITY = "draft"
 EVEN_PARTS = 2  # of a half in an even round: what they differ by tells the variance; the longer, the cheaper a sample
 LEAST_CUT, LEAST_EVEN = 8, 1  # samples of a half that are cut so, and that are worth a pass
 EVEN_STEPS = 3  # slices that an even round takes at once: it is not as soon that another map pays
-EXTRA_OVER_UNIFORM = 1.1  # seconds of a sample in a masked pass over one in a whole pass, until they are measured
-JUDGING_OVER_MERGING = 4.0  # seconds of judging both halves over those of merging their first parts, until it was done once
-# Seconds of the last merge and reconstruction, of all samples, over those of judging both halves: from journals of the bench, best by
-# what it takes over standard (docs/accuracy.md).
-LAST_OVER_ROUND = {"draft": 1.0, "standard": 3.2, "best": 8.0}
+EXTRA_OVER_UNIFORM = 1.3  # seconds of a sample in a masked pass over one in a whole pass, until they are measured: docs/adaptive.md
+# Seconds of judging both halves are JUDGING x (those of merging two parts)^JUDGING_POWER, until it was done once: 480x270 to
+# 1920x1080 within a quarter. More than in proportion, as the start of a program is a larger share of the merge.
+JUDGING, JUDGING_POWER = 5.4, 1.37
+# Seconds of the last merge and reconstruction, of all samples, and of the report, over those of judging both halves.
+LAST_OVER_ROUND = {"draft": 1.4, "standard": 2.5, "best": 6.0}
 
 
 @dataclasses.dataclass
@@ -136,18 +137,21 @@ class _Loop:
         self.journal["next"] = max(self.journal["next"], self.settings.first_pass)
 
     def first_parts(self):
-        """How many to cut the first pass into. Where seconds are the budget, even parts follow that tell the variance as well:
-        fewer and longer ones then."""
+        """How many to cut the first pass into. Where seconds are the budget, even parts follow that tell the variance: one for
+        each half then, as short ones are dear."""
         samples = self.settings.first_pass
-        in_pairs = samples % 4 == 0 and (samples > 8 or samples == 8 and self.settings.budget.seconds)
-        return samples // 2 if in_pairs else samples
+        if self.settings.budget.seconds:
+            return len(HALVES)
+        return samples // 2 if samples > 8 and samples % 4 == 0 else samples
 
     def foresee_judging(self):
-        """What reconstructing both halves will take, from how long it takes to merge them."""
-        (self.folder / "round_0").mkdir(exist_ok=True)
-        self.judging = JUDGING_OVER_MERGING * self.merge_halves(0)
-        for half in HALVES:
-            self.file(0, f"merged_{half}").unlink()
+        """What reconstructing both halves will take, from how long it takes to merge their first parts."""
+        merged = self.file(0, "first")
+        merged.parent.mkdir(exist_ok=True)
+        begin = time.monotonic()
+        self.polyrecon.run("merge", *[self.journal.files(half)[0] for half in HALVES], "-o", merged, "--compression", "none", "--quiet")
+        self.judging = JUDGING * (time.monotonic() - begin) ** JUDGING_POWER
+        merged.unlink()
 
     def even_pass(self):
         """Goes on with the first pass where even_share says so."""
@@ -242,11 +246,8 @@ class _Loop:
         self.judging = time.monotonic() - begin
 
     def merge_halves(self, number):
-        """Returns the seconds that it took."""
-        begin = time.monotonic()
         self.polyrecon.run_side_by_side("merge", [
             [*self.journal.files(half), "-o", self.file(number, f"merged_{half}"), "--compression", "none", "--quiet"] for half in HALVES])  # fmt: skip
-        return time.monotonic() - begin
 
     def spent(self):
         parts = self.journal["parts"]
@@ -257,7 +258,7 @@ class _Loop:
             samples=sum(p["spp"] for p in parts),
             seconds=self.seconds(),
             worth=sum(p["worth"] for p in parts),
-            seconds_per_sample=statistics.median(rates) * self.extra_over_uniform(),  # the first part of all takes longer
+            seconds_per_sample=statistics.median_low(rates) * self.extra_over_uniform(),  # the first part of all takes longer
             judging=self.judging,
             reserve=self.judging * (LAST_OVER_ROUND[self.settings.quality] + self.renderer.last_over_round),
         )
@@ -348,7 +349,7 @@ class _Loop:
         merged, error_map = self.folder / "merged.exr", self.folder / "error.exr"
         self.tell("result", done=1.0)
         halves = [self.journal.files(half) for half in HALVES]
-        self.polyrecon.run("merge", *halves[0], "--half-b", *halves[1], "-o", merged, "--quiet")
+        self.polyrecon.run("merge", *halves[0], "--half-b", *halves[1], "-o", merged, "--compression", "none", "--quiet")
         self.renderer.complete(merged)
         self.renderer.complete_last(merged)
         self.polyrecon.run("denoise", "-i", merged, "-o", self.settings.output, "--quality", self.settings.quality, "--error-map",

@@ -121,7 +121,7 @@ class Budgets(Folder):
         self.assertEqual(result.journal["rounds"], [])
         self.assertFalse(any(part["masked"] for part in result.journal["parts"]))
         self.assertGreater(result.samples, 8)
-        self.assertEqual([p["spp"] for p in result.journal["parts"] if p["round"] == 0][:4], [2, 2, 2, 2])
+        self.assertEqual([p["spp"] for p in result.journal["parts"] if p["round"] == 0][:2], [4, 4])
         self.assertTrue(np.isfinite(result.error))
         self.assertEqual(list(self.folder.rglob("merged_*.exr")), [])
         for half in "ab":

@@ -30,8 +30,8 @@ class Slices(unittest.TestCase):
         self.assertEqual(next_slice(Budget(seconds=12), spent(8.0)), (0.0, "the seconds are spent"))
 
     def test_judging_takes_little_of_a_round(self):
-        # A sample takes a second: rounds of 50 samples where judging takes 3 seconds.
-        self.assertAlmostEqual(next_slice(Budget(seconds=200), spent(8.0, judging=3))[0], 50)
+        # A sample takes a second: rounds of 60 samples where judging takes 3 seconds.
+        self.assertAlmostEqual(next_slice(Budget(seconds=200), spent(8.0, judging=3))[0], 60)
         self.assertEqual(next_slice(Budget(samples=64), spent(8.0, judging=2))[0], 8)  # not by the clock
 
     def test_a_quarter_of_the_seconds_is_even(self):
@@ -39,16 +39,16 @@ class Slices(unittest.TestCase):
         self.assertLess(even_share(Budget(seconds=10), spent(8.0)), 0)
 
     def test_all_is_even_where_no_judgement_would_pay(self):
-        # Judging takes 3 seconds, so a round takes 50: after a quarter of 60, which are even, 43 are left.
+        # Judging takes 3 seconds, so a round takes 60: after a quarter of 60, which are even, 43 are left.
         self.assertAlmostEqual(even_share(Budget(seconds=60), spent(8.0, judging=3)), 48)
-        self.assertAlmostEqual(even_share(Budget(seconds=80), spent(8.0, judging=3)), 10)
+        self.assertAlmostEqual(even_share(Budget(seconds=100), spent(8.0, judging=3)), 15)
 
     def test_a_round_that_cannot_pay_is_not_judged(self):
         self.assertEqual(nothing_left(Budget(samples=8), spent(8.0)), "the samples are spent")
         self.assertEqual(nothing_left(Budget(samples=9), spent(8.0)), "")
-        # 10 seconds are spent and 2 kept: judging takes 3, so a round takes 50.
-        self.assertEqual(nothing_left(Budget(seconds=61), spent(8.0, judging=3)), "the seconds are spent")
-        self.assertEqual(nothing_left(Budget(seconds=63), spent(8.0, judging=3)), "")
+        # 10 seconds are spent and 2 kept: judging takes 3, so a round takes 60.
+        self.assertEqual(nothing_left(Budget(seconds=71), spent(8.0, judging=3)), "the seconds are spent")
+        self.assertEqual(nothing_left(Budget(seconds=73), spent(8.0, judging=3)), "")
         self.assertEqual(nothing_left(Budget(target=0.2), spent(8.0)), "")
 
     def test_the_rest_is_what_the_seconds_hold(self):
