@@ -26,7 +26,7 @@ struct Parts {
 struct Params {
   int stages = 2;                  ///< Rounds of error estimation, equations (8) and (9); 1..4.
   int levels = 3;                  ///< Resolutions worked: the frame, its half, its quarter; 1..5.
-  int radius = 9;                  ///< Of the windows, pixels; 1..20.
+  int radius = 10;                 ///< Of the windows, pixels; 1..20.
   int stride = 4;                  ///< Distance of the window centres where windows agree, pixels; 1..radius.
   int patch_radius = 1;            ///< Of the patches that weigh a window; 0..4.
   int estimated_patch_radius = 2;  ///< The same where the noise is estimated from the image: it knows no single pixels.
