@@ -10,8 +10,8 @@
 namespace polyrecon {
 namespace {
 
-/// Of the brightest pixel, by squares; where it would be more, as where all but a few pixels are dark, each pixel's
-/// gain is the same.
+/// Of the brightest pixel over the whole image: up to this all is given by squares, from twice this on each pixel's
+/// gain is the same, as where all but a few pixels are dark.
 constexpr double kMostGain = 0.5;
 
 /// Sum of term(value) over the usable pixels of a channel.
@@ -40,29 +40,38 @@ double greatest(const Image& image, int channel) {
   return most;
 }
 
-/// Summed-area table of a channel's shares: sums over rectangles in four look-ups.
+/// Sums of a channel's shares over rectangles, by a summed-area table for each block of pixels: in one for the whole
+/// image the square of a sun would drown what its dark surroundings add.
 class BoxSums {
  public:
-  explicit BoxSums(const Image& image, int channel)
-      : row_(static_cast<std::size_t>(image.width()) + 1),
-        sums_(row_ * (static_cast<std::size_t>(image.height()) + 1), 0.0) {
-    for (int y = 0; y < image.height(); ++y) {
-      double row = 0;
-      const Real* values = image.row(channel, y);
-      for (int x = 0; x < image.width(); ++x) {
-        row += share_of(values[x]);
-        at(x + 1, y + 1) = at(x + 1, y) + row;
-      }
-    }
+  BoxSums(const Image& image, int channel)
+      : width_(static_cast<std::size_t>(image.width())), sums_(image.pixels(), 0.0) {
+    for (int y = 0; y < image.height(); ++y)
+      for (int x = 0; x < image.width(); ++x)
+        at(x, y) = share_of(image.at(x, y, channel)) + before(x, y, x, y - 1) + before(x, y, x - 1, y) -
+                   before(x, y, x - 1, y - 1);
   }
-  double sum(const Rect& r) const { return at(r.x1, r.y1) - at(r.x0, r.y1) - at(r.x1, r.y0) + at(r.x0, r.y0); }
+  double sum(const Rect& r) const {
+    double total = 0;
+    for (int y0 = r.y0; y0 < r.y1; y0 = end_of_block(y0))
+      for (int x0 = r.x0; x0 < r.x1; x0 = end_of_block(x0)) {
+        const int x = std::min(end_of_block(x0), r.x1) - 1, y = std::min(end_of_block(y0), r.y1) - 1;
+        total += at(x, y) - before(x, y, x0 - 1, y) - before(x, y, x, y0 - 1) + before(x, y, x0 - 1, y0 - 1);
+      }
+    return total;
+  }
 
  private:
-  std::size_t index(int x, int y) const { return static_cast<std::size_t>(y) * row_ + static_cast<std::size_t>(x); }
-  double& at(int x, int y) { return sums_[index(x, y)]; }
-  double at(int x, int y) const { return sums_[index(x, y)]; }
+  static constexpr int kBlock = 64;
+  static int end_of_block(int i) { return (i / kBlock + 1) * kBlock; }
+  double& at(int x, int y) { return sums_[static_cast<std::size_t>(y) * width_ + static_cast<std::size_t>(x)]; }
+  double at(int x, int y) const { return sums_[static_cast<std::size_t>(y) * width_ + static_cast<std::size_t>(x)]; }
+  /// The entry at (x, y) where that lies in the block of (in_x, in_y), which it is above or left of; else 0.
+  double before(int in_x, int in_y, int x, int y) const {
+    return x < in_x / kBlock * kBlock || y < in_y / kBlock * kBlock ? 0 : at(x, y);
+  }
 
-  std::size_t row_;
+  std::size_t width_;
   std::vector<double> sums_;
 };
 
@@ -97,13 +106,20 @@ void integrate(std::vector<double>& corners, std::size_t row) {
   for (std::size_t i = row; i < corners.size(); ++i) corners[i] += corners[i - row];
 }
 
-/// Adds energy[c] to channel c = color, color + 3, ..., in proportion to share(yhat) of `color`, the sum of which is
-/// `shares`.
-void give(const std::vector<double>& energy, int color, double (*share)(Real), double shares, Image& image) {
+/// Adds energy[c] to the channels c = color, color + 3, ... in proportion to `color`'s yhat^2, or to yhat, or to both:
+/// see kMostGain. Nothing where no pixel of it is positive.
+void give_to_all(const std::vector<double>& energy, int color, Image& image) {
+  const double positive = sum_of(image, color, [](double v) { return std::max(v, 0.0); });
+  if (!(positive > 0)) return;
+  const double squares = sum_of(image, color, [](double v) { return v > 0 ? v * v : 0.0; });
+  const double most = std::abs(energy[static_cast<std::size_t>(color)]) * greatest(image, color) / squares;
+  const double by_squares = std::clamp(2 - most / kMostGain, 0.0, 1.0);
   for_rows(image.height(), [&](int y) {
     std::vector<double> parts(static_cast<std::size_t>(image.width()));
     const Real* yhat = image.row(color, y);
-    for (int x = 0; x < image.width(); ++x) parts[static_cast<std::size_t>(x)] = share(yhat[x]) / shares;
+    for (int x = 0; x < image.width(); ++x)
+      parts[static_cast<std::size_t>(x)] =
+          by_squares * share_of(yhat[x]) / squares + (1 - by_squares) * positive_part(yhat[x]) / positive;
     for (int c = color; c < static_cast<int>(energy.size()); c += 3) {
       Real* out = image.row(c, y);
       for (int x = 0; x < image.width(); ++x)
@@ -122,23 +138,27 @@ void restore_energy(const std::vector<Outlier>& outliers, double max_gain, Image
   std::vector<Rect> areas;
   for (const Outlier& outlier : outliers) areas.push_back(restoration_area(outlier, sums, max_gain, image.bounds()));
   const auto row = static_cast<std::size_t>(image.width()) + 1;
-  for (int c = 0; c < image.channels() / 3 * 3; ++c) {
-    const auto color = static_cast<std::size_t>(c % 3);
+  std::vector<double> of_all(static_cast<std::size_t>(image.channels() / 3 * 3), 0.0);
+  for (std::size_t c = 0; c < of_all.size(); ++c) {
+    const auto channel = static_cast<int>(c), color = channel % 3;
     std::vector<double> gain(row * (static_cast<std::size_t>(image.height()) + 1), 0.0);
     for (std::size_t k = 0; k < outliers.size(); ++k) {
-      const double energy = outliers[k].energy[static_cast<std::size_t>(c)], sum = sums[color].sum(areas[k]);
-      if (sum > 0)
-        add_box(gain, row, areas[k], energy / sum);
+      const double energy = outliers[k].energy[c], sum = sums[c % 3].sum(areas[k]);
+      if (!(sum > 0))
+        image.at(outliers[k].x, outliers[k].y, channel) += static_cast<Real>(energy);
+      else if (areas[k] == image.bounds())
+        of_all[c] += energy;
       else
-        image.at(outliers[k].x, outliers[k].y, c) += static_cast<Real>(energy);
+        add_box(gain, row, areas[k], energy / sum);
     }
     integrate(gain, row);
-    for (int y = 0; y < image.height(); ++y)
-      for (int x = 0; x < image.width(); ++x) {
-        image.at(x, y, c) += static_cast<Real>(share_of(shape.at(x, y, static_cast<int>(color))) *
-                                               gain[static_cast<std::size_t>(y) * row + static_cast<std::size_t>(x)]);
-      }
+    for_rows(image.height(), [&](int y) {
+      const double* gains = gain.data() + static_cast<std::size_t>(y) * row;
+      for (int x = 0; x < image.width(); ++x)
+        image.at(x, y, channel) += static_cast<Real>(share_of(shape.at(x, y, color)) * gains[x]);
+    });
   }
+  for (int color = 0; color < 3; ++color) give_to_all(of_all, color, image);
 }
 
 std::vector<double> channel_sums(const Image& image) {
@@ -158,11 +178,7 @@ std::array<double, 3> restore_totals(const std::vector<double>& totals, double m
     const double gain = positive > 0 ? missing[c] / positive : 0;
     if (!(std::abs(gain) <= max_gain) || !(positive > 0)) continue;
     gains[c] = gain;
-    const double squares = BoxSums(image, color).sum(image.bounds());
-    if (std::abs(missing[c]) * greatest(image, color) <= kMostGain * squares)
-      give(missing, color, share_of, squares, image);
-    else
-      give(missing, color, positive_part, positive, image);
+    give_to_all(missing, color, image);
   }
   return gains;
 }

@@ -139,6 +139,51 @@ TEST(RestoreEnergy, NegativePixelsDoNotGrow) {
   expect_energy(before, image, outliers);
 }
 
+/// A sun whose square is 16 digits above those of the dark around it: what was taken there comes back there.
+TEST(RestoreEnergy, ASunDoesNotDrownTheDark) {
+  Image image(200, 150, 3, Real(1e-3));
+  for (int c = 0; c < 3; ++c) image.at(20, 20, c) = Real(1e6);
+  const Image before = image;
+  restore_energy({{150, 100, {1e-3, 1e-3, 1e-3}}}, max_gain, image);
+  for (int c = 0; c < 3; ++c) {
+    double given = 0;
+    for (int y = 91; y < 110; ++y)
+      for (int x = 141; x < 160; ++x)
+        given += static_cast<double>(image.at(x, y, c)) - static_cast<double>(before.at(x, y, c));
+    EXPECT_NEAR(given, 1e-3, 1e-5) << c;
+    EXPECT_EQ(image.at(20, 20, c), before.at(20, 20, c));
+  }
+}
+
+/// What no square around it can take goes to all: a lamp does not become many times as bright by it.
+TEST(RestoreEnergy, ALampDoesNotTakeAllOfADarkRoom) {
+  Image image(64, 48, 3, Real(0.1));
+  for (int c = 0; c < 3; ++c) image.at(20, 20, c) = Real(5);
+  const Image before = image;
+  const std::vector<Outlier> outliers{{50, 30, {60, 60, 60}}};
+  restore_energy(outliers, max_gain, image);
+  expect_energy(before, image, outliers);
+  EXPECT_LT(static_cast<double>(image.at(20, 20, 0)), 5 * 1.6);
+}
+
+/// From squares to equal gains without a step: a little more to restore changes each pixel a little.
+TEST(RestoreTotals, GoesFromSquaresToEqualGainsWithoutAStep) {
+  double last = 0;
+  for (double factor = 1; factor < 1.05; factor += 1e-4) {
+    Image image(64, 48, 3, Real(0.1));
+    for (int c = 0; c < 3; ++c) image.at(20, 20, c) = Real(5);
+    std::vector<double> totals = channel_sums(image);
+    for (double& total : totals) total *= factor;
+    restore_totals(totals, 0.05, image);
+    const double bright = static_cast<double>(image.at(20, 20, 0));
+    EXPECT_LT(bright, 5 * 1.51);
+    if (factor > 1) {
+      EXPECT_LT(std::abs(bright - last), 0.04) << factor;
+    }
+    last = bright;
+  }
+}
+
 /// One bright pixel in the dark: by squares it would take all, and less than nothing would be left of it.
 TEST(RestoreTotals, NoPixelBecomesNegative) {
   for (const double factor : {0.96, 1.04}) {
