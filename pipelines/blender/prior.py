@@ -4,7 +4,7 @@ import numpy as np
 
 from ..loop import exr
 
-OVER_ROUND = 1.7  # seconds of add over those of judging a round: docs/adaptive.md
+OVER_ROUND = 1.1  # seconds of add over those of a round's decision: docs/adaptive.md
 FEATURES = {"Denoising Albedo": "RGB", "Denoising Normal": "XYZ", "Denoising Depth": "Z"}
 
 

@@ -30,11 +30,12 @@ EVEN_PARTS = 2  # of a half in an even round: what they differ by tells the vari
 LEAST_CUT, LEAST_EVEN = 8, 1  # samples of a half that are cut so, and that are worth a pass
 EVEN_STEPS = 3  # slices that an even round takes at once: it is not as soon that another map pays
 EXTRA_OVER_UNIFORM = 1.3  # seconds of a sample in a masked pass over one in a whole pass, until they are measured: docs/adaptive.md
-# Seconds of judging both halves are JUDGING x (those of merging two parts)^JUDGING_POWER, until it was done once: 480x270 to
-# 1920x1080 within a quarter. More than in proportion, as the start of a program is a larger share of the merge.
-JUDGING, JUDGING_POWER = 5.4, 1.37
-# Seconds of the last merge and reconstruction, of all samples, and of the report, over those of judging both halves.
-LAST_OVER_ROUND = {"draft": 1.4, "standard": 2.5, "best": 6.0}
+# Seconds of a decision are JUDGING x (those of merging two parts)^JUDGING_POWER, until one was made: its reconstructions from
+# 480x270 to 1920x1080 within a quarter, the maps about half as much again. More than in proportion, as the start of a
+# program is a larger share of the merge.
+JUDGING, JUDGING_POWER = 8.4, 1.37
+# Seconds of the last merge and reconstruction, of all samples, and of the report, over those of a decision.
+LAST_OVER_ROUND = {"draft": 0.9, "standard": 1.6, "best": 3.9}
 
 
 @dataclasses.dataclass
@@ -109,7 +110,7 @@ class _Loop:
             self.totals[part["half"]].add(self.folder / part["file"])
         self.journal["first_parts"] = self.journal["first_parts"] or self.first_parts()
         self.why_ended = ""
-        self.judging = None  # seconds of the last reconstruction of both halves
+        self.judging = None  # seconds of the last round's decision: both halves' reconstruction and maps
 
     def run(self):
         self.audit = self.renderer.begin(self.settings.frame)
@@ -210,6 +211,7 @@ class _Loop:
                     self.why_ended += ", too few of them to judge where samples should go"
                 return self.plan_even(number + 1, self.even_samples(rest(self.settings.budget, spent)))
         self.reconstruct_halves(number)
+        begin = time.monotonic()
         spent = dataclasses.replace(self.spent(), error=self.error_of_mean(number))
         samples, self.why_ended = next_slice(self.settings.budget, spent)
         if samples and number >= self.settings.max_rounds:
@@ -218,10 +220,11 @@ class _Loop:
         if samples and not counts:
             samples, _ = next_slice(self.settings.budget, spent, EVEN_STEPS)
             counts = {half: self.even_counts(self.even_samples(samples)) for half in HALVES}
+        self.judging += time.monotonic() - begin
         if samples and not any(c.any() for c in counts.values()):
             self.why_ended = "no error is left that more samples could lower"
             samples = 0.0
-        entry = {"round": number, "spp": spent.samples, "seconds": spent.seconds, "judging": spent.judging, "error": spent.error}
+        entry = {"round": number, "spp": spent.samples, "seconds": spent.seconds, "judging": self.judging, "error": spent.error}
         entry["extra"] = samples
         self.journal["rounds"].append(entry)
         if samples:

@@ -29,7 +29,7 @@ class Budget:
 @dataclasses.dataclass
 class Spent:
     """samples: per pixel. worth: the same in samples of average cost. seconds: of everything. seconds_per_sample: of the next
-    ones, of average cost. judging: seconds of the last reconstruction of both halves. reserve: seconds that the result
+    ones, of average cost. judging: seconds of the last decision, reconstructions and maps. reserve: seconds that the result
     still needs. error: estimated mean relative MSE of the result."""
 
     samples: float
