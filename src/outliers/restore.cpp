@@ -110,8 +110,8 @@ void integrate(std::vector<double>& corners, std::size_t row) {
 /// see kMostGain. Nothing where no pixel of it is positive.
 void give_to_all(const std::vector<double>& energy, int color, Image& image) {
   const double positive = sum_of(image, color, [](double v) { return std::max(v, 0.0); });
-  if (!(positive > 0)) return;
   const double squares = sum_of(image, color, [](double v) { return v > 0 ? v * v : 0.0; });
+  if (!(squares > 0)) return;
   const double most = std::abs(energy[static_cast<std::size_t>(color)]) * greatest(image, color) / squares;
   const double by_squares = std::clamp(2 - most / kMostGain, 0.0, 1.0);
   for_rows(image.height(), [&](int y) {
