@@ -10,7 +10,6 @@ import dataclasses
 import itertools
 import os
 import pathlib
-import statistics
 import time
 from typing import Optional
 
@@ -254,14 +253,15 @@ class _Loop:
 
     def spent(self):
         parts = self.journal["parts"]
-        # Short parts are dearer than the next ones will be.
+        # Short parts are dearer than the next ones will be. Together, since a renderer may take several in one go.
         longest = max(part["spp"] for part in parts if not part["masked"])
-        rates = [part["seconds"] / part["spp"] for part in parts if not part["masked"] and part["spp"] >= longest / 2]
+        long = [part for part in parts if not part["masked"] and part["spp"] >= longest / 2]
+        rate = sum(part["seconds"] for part in long) / sum(part["spp"] for part in long)
         return Spent(
             samples=sum(p["spp"] for p in parts),
             seconds=self.seconds(),
             worth=sum(p["worth"] for p in parts),
-            seconds_per_sample=statistics.median_low(rates) * self.extra_over_uniform(),  # the first part of all takes longer
+            seconds_per_sample=rate * self.extra_over_uniform(),
             judging=self.judging,
             reserve=self.judging * (LAST_OVER_ROUND[self.settings.quality] + self.renderer.last_over_round),
         )
