@@ -16,7 +16,7 @@ from typing import Optional
 import numpy as np
 
 from . import exr
-from .budget import CONVERGENCE_RATE, Budget, Spent, even_share, next_slice, nothing_left, rest
+from .budget import CONVERGENCE_RATE, Budget, Spent, even_share, next_slice, nothing_left, rest, seconds_per_even_sample
 from .counts import cost_of_samples, quantise, weight_of_samples
 from .errors import DriverError, ExitCode
 from .journal import Journal
@@ -145,7 +145,7 @@ class _Loop:
         return samples // 2 if samples > 8 and samples % 4 == 0 else samples
 
     def foresee_judging(self):
-        """What reconstructing both halves will take, from how long it takes to merge their first parts."""
+        """What a decision will take, from how long it takes to merge the halves' first parts."""
         merged = self.file(0, "first")
         merged.parent.mkdir(exist_ok=True)
         begin = time.monotonic()
@@ -253,15 +253,11 @@ class _Loop:
 
     def spent(self):
         parts = self.journal["parts"]
-        # Short parts are dearer than the next ones will be. Together, since a renderer may take several in one go.
-        longest = max(part["spp"] for part in parts if not part["masked"])
-        long = [part for part in parts if not part["masked"] and part["spp"] >= longest / 2]
-        rate = sum(part["seconds"] for part in long) / sum(part["spp"] for part in long)
         return Spent(
             samples=sum(p["spp"] for p in parts),
             seconds=self.seconds(),
             worth=sum(p["worth"] for p in parts),
-            seconds_per_sample=rate * self.extra_over_uniform(),
+            seconds_per_sample=seconds_per_even_sample(parts) * self.extra_over_uniform(),
             judging=self.judging,
             reserve=self.judging * (LAST_OVER_ROUND[self.settings.quality] + self.renderer.last_over_round),
         )

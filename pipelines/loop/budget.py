@@ -41,6 +41,15 @@ class Spent:
     error: float = math.nan
 
 
+def seconds_per_even_sample(parts):
+    """From a journal's parts without masks. Short ones are dearer than the next will be; the others count together, since a
+    renderer may take several of them in one go and put its seconds down to the first."""
+    even = [part for part in parts if not part["masked"]]
+    longest = max(part["spp"] for part in even)
+    long = [part for part in even if part["spp"] >= longest / 2]
+    return sum(part["seconds"] for part in long) / sum(part["spp"] for part in long)
+
+
 def even_share(budget, spent):
     """Samples per pixel that are spent evenly after the first pass, where seconds are the budget. No pixel of a good map has
     fewer than such a share, so they are not spent in vain, and the first judgement, which is dear where the seconds

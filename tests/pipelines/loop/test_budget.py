@@ -1,7 +1,7 @@
 import unittest
 from pathlib import Path
 
-from pipelines.loop.budget import Budget, Spent, even_share, next_slice, nothing_left, rest
+from pipelines.loop.budget import Budget, Spent, even_share, next_slice, nothing_left, rest, seconds_per_even_sample
 from pipelines.loop.errors import DriverError
 from pipelines.loop.frames import frame_path, parse_frames
 
@@ -50,6 +50,14 @@ class Slices(unittest.TestCase):
         self.assertEqual(nothing_left(Budget(seconds=71), spent(8.0, judging=3)), "the seconds are spent")
         self.assertEqual(nothing_left(Budget(seconds=73), spent(8.0, judging=3)), "")
         self.assertEqual(nothing_left(Budget(target=0.2), spent(8.0)), "")
+
+    def test_parts_that_were_rendered_in_one_go_are_not_free(self):
+        def part(spp, seconds, masked=False):
+            return {"spp": spp, "seconds": seconds, "masked": masked}
+
+        first = [part(8, 30.0), part(8, 0.2)]  # POV-Ray: all samples come with the first part
+        self.assertAlmostEqual(seconds_per_even_sample(first), 30.2 / 16)
+        self.assertAlmostEqual(seconds_per_even_sample([*first, part(20, 10.0), part(99, 1.0, masked=True)]), 0.5)
 
     def test_the_rest_is_what_the_seconds_hold(self):
         self.assertAlmostEqual(rest(Budget(seconds=15), spent(8.0)), 3)
