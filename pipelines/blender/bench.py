@@ -11,10 +11,12 @@
 Seconds are those of the whole command: start-up, rendering, merging, reconstruction. (b) and (e) get the budget, the others are
 tuned until they take as long as (b) took. On a machine that is busy with other work --clock cpu counts the processor
 seconds of all processes instead; all are then tuned to the budget, (b) by its samples. References are rendered once, with other seeds, and kept; so are all
-results: run it again to go on, or with another budget to add to the table.
+results: run it again to go on, or with another budget to add to the table. With --draws every cell is made with so many
+seeds of Cycles: its error is then their geometric mean.
 
   bench.py                                           all of it; hours the first time, nearly all for the references
   bench.py glass fan --seconds 10,30 --size 320x180
+  bench.py --methods adaptive,uniform --draws 3      how much is the luck of one seed
   bench.py shot.blend --size 320x180                 a file of one's own, whatever engine it is set to, by Cycles
   bench.py --references                              only these
   bench.py --stop-after 90                           a slice; the next call goes on
@@ -46,6 +48,7 @@ METHODS = ("uniform", "adaptive", "cycles", "oidn", "prior", "uniform_prior")
 LOOPS = ("adaptive", "prior")  # given a budget; the others are tuned to it
 PARTS = 8  # subsets of (a)
 REFERENCE_STEP, FIRST_REFERENCE_SEED = 64, 1001  # samples of one render; each has a seed of its own
+DRAW_SEEDS = 10000  # from one draw's seed to the next one's; the loop takes a new seed every 256 samples
 MOST_SAMPLES = 1 << 12  # of one pixel by (c): what Blender sets unasked
 TOLERANCE, TRIES = 0.08, 4  # how near the seconds have to come, and how often to try
 
@@ -60,6 +63,7 @@ def arguments(words):
     parser.add_argument("--clock", choices=("wall", "cpu"), default="wall", help="what the seconds are (wall)")
     parser.add_argument("--methods", default=",".join(METHODS), help="(%(default)s)")
     parser.add_argument("--reference-spp", type=int, default=1024, help="a multiple of %d (%%(default)s)" % REFERENCE_STEP)
+    parser.add_argument("--draws", type=int, default=1, help="seeds for each cell (%(default)s: the file's own)")
     parser.add_argument("--references", action="store_true", help="render the references and nothing else")
     parser.add_argument("--stop-after", type=float, default=math.inf, metavar="SECONDS", help="begin no run after this")
     parser.add_argument("--work", type=pathlib.Path, default=ROOT / "out" / "bench", help="folder for all files")
@@ -80,6 +84,8 @@ def arguments(words):
         parser.error("a .blend file is known by its name, which another scene has: copy it to one of its own")
     if options.reference_spp < 2 * REFERENCE_STEP or options.reference_spp % REFERENCE_STEP:
         parser.error(f"--reference-spp {options.reference_spp}: a multiple of {REFERENCE_STEP}, {2 * REFERENCE_STEP} at least")
+    if options.draws < 1:
+        parser.error(f"--draws {options.draws}: 1 at least")
     try:
         options.seconds = sorted(float(word) for word in options.seconds.split(","))
     except ValueError:
@@ -103,26 +109,37 @@ class Deadline:
 
 
 class Scene:
-    """The files of one scene."""
+    """The files of one scene, rendered with the seed of one draw (1: the file's own)."""
 
-    def __init__(self, scene, options, polyrecon):
+    def __init__(self, scene, options, polyrecon, draw=1):
         self.source = pathlib.Path(scene).resolve() if scene.endswith(".blend") else None
         self.name = self.source.stem if self.source else scene
-        self.options, self.polyrecon = options, polyrecon
+        self.options, self.polyrecon, self.draw = options, polyrecon, draw
         self.folder = options.work.resolve() / options.size / self.name
         self.folder.mkdir(parents=True, exist_ok=True)
-        self.blend = self.folder / "scene.blend"
+        self.first_blend = self.folder / "scene.blend"
+        self.blend = self.first_blend if draw == 1 else self.folder / f"scene_draw_{draw}.blend"
         self.reference = self.folder / f"ref_{options.reference_spp}.exr"
 
     def build(self):
-        if not self.blend.exists():
-            print(f"{self.name}: building the scene", flush=True)
-            first, made = self.folder / "first.exr", self.folder / "making.blend"
-            script = HERE / "bench_render.py" if self.source else ROOT / "samples" / "scenes" / "render.py"
-            words = ["--spp=1", f"--size={self.options.size}", "--save-blend", made]
-            run([self.options.python, script, self.source or self.name, first, *words])
-            first.unlink()
-            made.replace(self.blend)
+        """Of several draws of a scene the first one comes first."""
+        if self.blend.exists():
+            return
+        print(f"{self.name}: building the scene", flush=True)
+        first, made = self.folder / "first.exr", self.folder / "making.blend"
+        words = [first, "--spp=1", f"--size={self.options.size}", "--save-blend", made]
+        if self.draw > 1:
+            words = [HERE / "bench_render.py", self.first_blend, *words, f"--seed={self.draw * DRAW_SEEDS}"]
+        elif self.source:
+            words = [HERE / "bench_render.py", self.source, *words]
+        else:
+            words = [ROOT / "samples" / "scenes" / "render.py", self.name, *words]
+        run([self.options.python, *words])
+        first.unlink()
+        made.replace(self.blend)
+
+    def picture_of(self, method, budget):
+        return f"{method}_{budget:g}" + (f"_draw_{self.draw}" if self.draw > 1 else "") + ".exr"
 
     def render_reference(self, deadline):
         """Renders with seeds of their own, each kept as soon as it is there; their mean, and the variance of the mean."""
@@ -213,17 +230,16 @@ def adaptive(scene, image, amount, *words):
 
 def measure(scene, method, budget, knob):
     """One run and its seconds, then its score."""
-    image = scene.folder / f"{method}_{budget:g}.exr"
     trial = scene.folder / "trial.exr"
     wall, cpu = time.perf_counter(), children_seconds()
     governed, details = globals()[method](scene, trial, knob)
     spent = {"wall": time.perf_counter() - wall, "cpu": children_seconds() - cpu}
     seconds = spent[scene.options.clock]
     rendering = governed[scene.options.clock] if governed else seconds
-    row = {"scene": scene.name, "budget": budget, "method": method, "knob": knob, "seconds": seconds}
-    row |= {"rendering": rendering, **spent, **details, **scene.score(trial), "image": image.name}
-    print(f"{scene.name} {budget:g} s: {method} {knob:.4g}: {seconds:.1f} s, relMSE {row['relMSE']:.5f}", flush=True)
-    os.replace(trial, trial.with_name(f"{method}_{budget:g}_try.exr"))
+    row = {"scene": scene.name, "draw": scene.draw, "budget": budget, "method": method, "knob": knob, "seconds": seconds}
+    row |= {"rendering": rendering, **spent, **details, **scene.score(trial), "image": scene.picture_of(method, budget)}
+    draw = f" draw {scene.draw}" if scene.draw > 1 else ""
+    print(f"{scene.name}{draw} {budget:g} s: {method} {knob:.4g}: {seconds:.1f} s, relMSE {row['relMSE']:.5f}", flush=True)
     return row
 
 
@@ -274,26 +290,31 @@ class Results:
         making.write_text(json.dumps(self.rows, indent=1))
         making.replace(self.path)
 
-    def of(self, scene, method, budget=None):
-        return [r for r in self.rows if (r["scene"], r["method"]) == (scene, method) and budget in (None, r["budget"])]
+    def of_all(self, scene, method):
+        """Runs of all budgets and draws, which teach how dear a sample is."""
+        return [row for row in self.rows if (row["scene"], row["method"]) == (scene.name, method)]
 
-    def best(self, scene, method, budget, target):
+    def of(self, scene, method, budget):
+        return [row for row in self.of_all(scene, method) if (row["draw"], row["budget"]) == (scene.draw, budget)]
+
+    def best(self, scene, method, budget):
         """The run that came nearest to the seconds; None where there is none."""
+        target = seconds_of(self, scene, budget)
         return min(self.of(scene, method, budget), key=lambda row: abs(row["seconds"] - target), default=None)
 
 
 def next_run(results, scene, method, budget):
     """The knob of the next run of a cell, None when it is done."""
-    runs = results.of(scene.name, method, budget)
+    runs = results.of(scene, method, budget)
     if method in LOOPS and scene.options.clock == "wall":
         return None if runs else budget
     target = seconds_of(results, scene, budget)
     if runs and (len(runs) >= TRIES or any(abs(row["seconds"] / target - 1) < TOLERANCE for row in runs)):
         return None
-    # The first try at a budget starts from what the other budgets taught.
-    known = runs or results.of(scene.name, method)
+    # The first try at a budget starts from what the other budgets and draws taught.
+    known = runs or results.of_all(scene, method)
     if method in LOOPS:
-        known = with_rate_of_uniform(known, results.of(scene.name, "uniform"), target)
+        known = with_rate_of_uniform(known, results.of_all(scene, "uniform"), target)
     knob = NEXT_KNOB[method](known, target)
     return None if any(row["knob"] == knob for row in runs) else knob
 
@@ -309,7 +330,7 @@ def with_rate_of_uniform(runs, uniform_runs, target):
 
 def seconds_of(results, scene, budget):
     """The seconds to compare at: by the clock on the wall, what (b) took."""
-    runs = results.of(scene.name, "adaptive", budget) if scene.options.clock == "wall" else []
+    runs = results.of(scene, "adaptive", budget) if scene.options.clock == "wall" else []
     return runs[0]["seconds"] if runs else budget
 
 
@@ -317,7 +338,9 @@ def bench(words):
     options = arguments(words)
     polyrecon = Polyrecon(options.polyrecon)
     try:
-        rows = work(options, [Scene(name, options, polyrecon) for name in options.scenes], Deadline(options.stop_after))
+        draws = range(1, options.draws + 1)
+        scenes = [Scene(name, options, polyrecon, draw) for name in options.scenes for draw in draws]
+        rows = work(options, scenes, Deadline(options.stop_after))
     except Stopped:
         print("stopped; the next call goes on")
         return
@@ -342,19 +365,15 @@ def work(options, scenes, deadline):
                 while (knob := next_run(results, scene, method, budget)) is not None:
                     deadline.check()
                     keep_nearest(results, scene, measure(scene, method, budget, knob))
-                rows.append(results.best(scene.name, method, budget, seconds_of(results, scene, budget)))
+                rows.append(results.best(scene, method, budget))
     return rows
 
 
 def keep_nearest(results, scene, row):
     """Adds a run; its picture stays where no other run of the cell came nearer to the seconds."""
     results.add(row)
-    made = scene.folder / f"{row['method']}_{row['budget']:g}_try.exr"
-    target = seconds_of(results, scene, row["budget"])
-    if results.best(row["scene"], row["method"], row["budget"], target) is row:
-        made.replace(scene.folder / row["image"])
-    else:
-        made.unlink()
+    if results.best(scene, row["method"], row["budget"]) is row:
+        (scene.folder / "trial.exr").replace(scene.folder / row["image"])
 
 
 def main(words=None):

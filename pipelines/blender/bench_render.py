@@ -1,6 +1,6 @@
 """Renders a .blend by Cycles for the bench; run by a Python that has the module bpy.
 
-  bench_render.py SCENE.blend OUT.exr --spp 64 [--parts 8 | --seed 7] [--threshold 0.02] [--denoise] [--timing FILE]
+  bench_render.py SCENE.blend OUT.exr --spp 64 [--parts 8] [--seed 7] [--threshold 0.02] [--denoise] [--timing FILE]
 
 With --parts OUT.exr becomes OUT_0.exr, OUT_1.exr, ...: consecutive pieces of one sample sequence. With --threshold Cycles
 samples adaptively, with --denoise it runs Open Image Denoise. FILE then holds as JSON
@@ -25,7 +25,7 @@ def arguments():
     parser.add_argument("--denoise", action="store_true")
     parser.add_argument("--features", action="store_true", help="store the denoising features")
     parser.add_argument("--size", help="WIDTHxHEIGHT instead of the file's own")
-    parser.add_argument("--save-blend", help="write the scene, set to Cycles and the size, here as a .blend file too")
+    parser.add_argument("--save-blend", help="write the scene, set to Cycles, the size and the seed, here as a .blend file too")
     parser.add_argument("--timing")
     return parser.parse_args()
 
@@ -62,14 +62,14 @@ def main():
     if options.size:
         scene.render.resolution_x, scene.render.resolution_y = map(int, options.size.split("x"))
         scene.render.resolution_percentage = 100
+    if options.seed is not None:
+        scene.cycles.seed, scene.cycles.use_animated_seed = options.seed, False
     if options.save_blend:
         bpy.ops.wm.save_as_mainfile(filepath=os.path.abspath(options.save_blend), copy=True)
     scene.render.use_persistent_data = True
     choose_output(scene.render)
     choose_sampling(scene.cycles, options.threshold, options.denoise)
     bpy.context.view_layer.cycles.denoising_store_passes = options.features
-    if options.seed is not None:
-        scene.cycles.seed, scene.cycles.use_animated_seed = options.seed, False
     scene.cycles.samples = options.spp
     length = options.spp // options.parts
     scene.cycles.use_sample_subset = options.parts > 1

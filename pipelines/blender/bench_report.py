@@ -1,5 +1,6 @@
 """The bench's table and plot."""
 
+import math
 import os
 import platform
 
@@ -11,10 +12,31 @@ RATIOS = (("adaptive", "uniform"), ("adaptive", "cycles"), ("prior", "uniform"),
 BEGIN, END = "<!-- bench: begin -->", "<!-- bench: end -->"
 
 
+def averaged(rows):
+    """One row for each scene, budget and method: the geometric mean of the errors of its draws, the mean of their seconds."""
+    cells = {}
+    for row in rows:
+        cells.setdefault((row["scene"], row["budget"], row["method"]), []).append(row)
+    return [
+        dict(zip(("scene", "budget", "method"), cell))
+        | {figure: _mean([row[figure] for row in draws]) for figure in ("relMSE", "trimmed")}
+        | {"seconds": sum(r["seconds"] for r in draws) / len(draws)}
+        for cell, draws in cells.items()
+    ]
+
+
+def _mean(errors):
+    """Geometric; where a reference's variance, subtracted, has left nothing (tiny frames), arithmetic."""
+    if len(errors) > 1 and min(errors) > 0:
+        return math.exp(sum(map(math.log, errors)) / len(errors))
+    return sum(errors) / len(errors)
+
+
 def table(rows):
     """Markdown: a line for each scene and budget; of each method relMSE, the same without the 0.1 % worst pixels (single
     pixels where the reference itself has not converged can decide the first), and seconds; and the ratios that are goals,
     of both figures."""
+    rows = averaged(rows)
     methods = [method for method in LETTER if any(row["method"] == method for row in rows)]
     ratios = [pair for pair in RATIOS if set(pair) <= set(methods)]
     named = [LETTER[method] for method in methods] + [f"{LETTER[a][:3]} / {LETTER[b][:3]}" for a, b in ratios]
@@ -45,6 +67,8 @@ def write(document, rows, options):
     if not mark:
         raise SystemExit(f"{document}: no '{BEGIN}' ... '{END}'")
     made = f"{options.size}, references of {options.reference_spp} samples, {os.cpu_count()} cores ({platform.machine()})"
+    if options.draws > 1:
+        made += f", geometric means of {options.draws} draws"
     clock = {"wall": "seconds", "cpu": "processor seconds"}[options.clock]
     picture = document.with_suffix(".svg")
     plot(rows, picture, clock)
@@ -56,6 +80,7 @@ def plot(rows, path, clock):
     """relMSE without the worst pixels against seconds, a panel for each scene."""
     import matplotlib
 
+    rows = averaged(rows)
     matplotlib.use("svg")
     matplotlib.rcParams.update({"svg.hashsalt": "bench", "svg.fonttype": "none", "font.size": 8})
     import matplotlib.pyplot as plt

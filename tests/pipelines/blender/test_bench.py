@@ -55,6 +55,13 @@ class Run(unittest.TestCase):
             before = {path: path.stat().st_mtime_ns for path in work.rglob("*.exr")}
             self.assertIn("| meadow | 0.5 s |", self.call(*words)[1])
             self.assertEqual({path: path.stat().st_mtime_ns for path in work.rglob("*.exr")}, before)
+            self.call(*words, "--draws=2")
+            self.assertEqual({path: path.stat().st_mtime_ns for path in before}, before)
+            first, second = (min((r for r in json.loads((work / "results_wall.json").read_text()) if r["draw"] == draw),
+                                 key=lambda row: abs(row["seconds"] - 0.5)) for draw in (1, 2))
+            self.assertEqual(first["image"], best["image"])
+            self.assertTrue((work / "meadow" / second["image"]).exists())
+            self.assertNotEqual(second["relMSE"], first["relMSE"])
 
     def test_a_file_of_ones_own_is_rendered_by_cycles_whatever_its_engine(self):
         import bpy
@@ -85,6 +92,11 @@ class Report(unittest.TestCase):
         cells = "| 0.02000 / 0.01000 (9.1 s) | 0.01000 / 0.00800 (9.1 s) | 0.00400 / 0.00400 (9.1 s) |"
         self.assertIn(f"| fan | 9 s {cells} 0.50 / 0.80 | 0.20 / 0.40 |", table)
         self.assertIn("| (b) / (a) | (e) / (a) |", table)
+
+    def test_draws_are_averaged(self):
+        made = [{"scene": "fan", "budget": 9.0, "method": "oidn", "seconds": s, "relMSE": e, "trimmed": e / 2}
+                for s, e in ((8.0, 0.01), (9.0, 0.04))]
+        self.assertIn("| fan | 9 s | 0.02000 / 0.01000 (8.5 s) |", bench_report.table(made))
 
 
 if __name__ == "__main__":
