@@ -75,6 +75,24 @@ POLYRECON_SIMD void add_scaled(Real* y, const Real* x, Real factor, int n) {
   for (int j = 0; j < n; ++j) y[j] += factor * x[j];
 }
 
+constexpr std::size_t columns_at_once = 4;
+
+/// y_c += four columns, each times its factor for that y, from left to right; the columns are loaded once for all
+/// three.
+POLYRECON_SIMD void add_columns(Real* const* y, const Real* const* x, const Real (*factor)[columns_at_once], int n) {
+  Real *y0 = y[0], *y1 = y[1], *y2 = y[2];
+  const Real *x0 = x[0], *x1 = x[1], *x2 = x[2], *x3 = x[3];
+  const Real f00 = factor[0][0], f01 = factor[0][1], f02 = factor[0][2], f03 = factor[0][3];
+  const Real f10 = factor[1][0], f11 = factor[1][1], f12 = factor[1][2], f13 = factor[1][3];
+  const Real f20 = factor[2][0], f21 = factor[2][1], f22 = factor[2][2], f23 = factor[2][3];
+#pragma omp simd
+  for (int j = 0; j < n; ++j) {
+    y0[j] = y0[j] + f00 * x0[j] + f01 * x1[j] + f02 * x2[j] + f03 * x3[j];
+    y1[j] = y1[j] + f10 * x0[j] + f11 * x1[j] + f12 * x2[j] + f13 * x3[j];
+    y2[j] = y2[j] + f20 * x0[j] + f21 * x1[j] + f22 * x2[j] + f23 * x3[j];
+  }
+}
+
 POLYRECON_SIMD void energies(const Real* weight, const Real* guess, const Real* variance, int n, double* guess_energy,
                              double* noise_energy) {
   double guess_sum = 0, noise_sum = 0;
@@ -106,32 +124,65 @@ std::array<ColumnStatistics, 3> column_statistics(Scratch& s, bool first_stage) 
   return channels;
 }
 
+/// sum_a g_a z_a q_a of the three channels of the beauty, added to s.fit.
+void evaluate_beauty(Scratch& s, const OrderChoice& choice, const std::array<ColumnStatistics, 3>& beauty) {
+  const auto stride = static_cast<std::size_t>(s.window.stride);
+  Real* const fit[3] = {s.fit.data(), s.fit.data() + stride, s.fit.data() + 2 * stride};
+  const Real* column[columns_at_once];
+  Real factor[3][columns_at_once] = {};
+  std::size_t held = 0;
+  const auto add_held = [&] {
+    for (std::size_t k = held; k < columns_at_once; ++k) {
+      column[k] = s.factor.q.data();
+      for (Real(&of_channel)[columns_at_once] : factor) of_channel[k] = 0;
+    }
+    add_columns(fit, column, factor, s.window.padded);
+    held = 0;
+  };
+  for (std::size_t a = 0; a < static_cast<std::size_t>(s.factor.columns); ++a) {
+    bool used = false;
+    for (std::size_t c = 0; c < 3; ++c) {
+      factor[c][held] = static_cast<Real>(choice.factor[a] * beauty[c].z[a]);
+      used |= factor[c][held] != 0;
+    }
+    if (!used) continue;
+    column[held++] = s.factor.q.data() + a * stride;
+    if (held == columns_at_once) add_held();
+  }
+  if (held > 0) add_held();
+}
+
 /// yhat of every response channel at every pixel of the window: sum_a g_a z_a q_a and the value that gather took away.
 void evaluate(Scratch& s, const OrderChoice& choice, std::size_t responses,
               const std::array<ColumnStatistics, 3>& beauty) {
   const auto stride = static_cast<std::size_t>(s.window.stride);
-  std::array<double, BasisLayout::max_columns> z{};
   for (std::size_t c = 0; c < responses; ++c) {
     Real* fit = s.fit.data() + c * stride;
     std::fill(fit, fit + s.window.padded, s.window.origin[c]);
-    if (c < 3)
-      z = beauty[c].z;
-    else
-      project(s.factor, s.window, s.weight.data(), s.window.response.data() + c * stride, z.data());
+  }
+  evaluate_beauty(s, choice, beauty);
+  std::array<double, BasisLayout::max_columns> z{};
+  for (std::size_t c = 3; c < responses; ++c) {
+    project(s.factor, s.window, s.weight.data(), s.window.response.data() + c * stride, z.data());
     for (std::size_t a = 0; a < static_cast<std::size_t>(s.factor.columns); ++a)
       if (choice.factor[a] * z[a] != 0)
-        add_scaled(fit, s.factor.q.data() + a * stride, static_cast<Real>(choice.factor[a] * z[a]), s.window.padded);
+        add_scaled(s.fit.data() + c * stride, s.factor.q.data() + a * stride,
+                   static_cast<Real>(choice.factor[a] * z[a]), s.window.padded);
   }
 }
 
+/// Sum of the magnitudes; not finite where one of them is not.
+POLYRECON_SIMD double magnitude_of(const Real* values, int n) {
+  double sum = 0;
+#pragma omp simd reduction(+ : sum)
+  for (int j = 0; j < n; ++j) sum += std::abs(static_cast<double>(values[j]));
+  return sum;
+}
+
 bool all_finite(const Scratch& s, std::size_t responses) {
-  const auto stride = static_cast<std::size_t>(s.window.stride);
-  for (std::size_t c = 0; c < responses; ++c) {
-    double sum = 0;
-    for (std::size_t j = 0; j < static_cast<std::size_t>(s.window.count); ++j)
-      sum += static_cast<double>(s.fit[c * stride + j]);
-    if (!std::isfinite(sum)) return false;
-  }
+  for (std::size_t c = 0; c < responses; ++c)
+    if (!std::isfinite(magnitude_of(s.fit.data() + c * static_cast<std::size_t>(s.window.stride), s.window.count)))
+      return false;
   return true;
 }
 
@@ -145,11 +196,25 @@ POLYRECON_SIMD double energy_of(const Real* weight, const Real* fit, int n) {
   return sum;
 }
 
+constexpr std::size_t constants = 8;  ///< Channels of BlendSums that a window has one value of.
+
+POLYRECON_SIMD void add_pixels(const Window& window, const Real* weight, const Real* fit, std::size_t responses,
+                               const double* constant, BlendSums& sums) {
+  const auto stride = static_cast<std::size_t>(window.stride);
+  for (std::size_t j = 0; j < static_cast<std::size_t>(window.count); ++j) {
+    const double w = static_cast<double>(weight[j]);
+    if (w == 0) continue;
+    double* out = sums.at(window.x[j], window.y[j]);
+    for (std::size_t c = 0; c < responses; ++c) out[c] += w * static_cast<double>(fit[c * stride + j]);
+    for (std::size_t k = 0; k < constants; ++k) out[responses + k] += w * constant[k];
+  }
+}
+
 /// weight_sum: of the window's weights; epsilon as in FitSource.
 void blend(const Scratch& s, const OrderChoice& choice, double weight_sum, double epsilon, std::size_t responses,
            BlendSums& sums) {
   const auto stride = static_cast<std::size_t>(s.window.stride);
-  double constant[8];
+  double constant[constants];
   for (std::size_t c = 0; c < 3; ++c) {
     const double energy = energy_of(s.weight.data(), s.fit.data() + c * stride, s.window.padded) / weight_sum + epsilon;
     constant[c] = std::sqrt((choice.error[c] - choice.variance[c]) / energy);
@@ -157,13 +222,7 @@ void blend(const Scratch& s, const OrderChoice& choice, double weight_sum, doubl
   }
   constant[6] = choice.order;
   constant[7] = 1;
-  for (std::size_t j = 0; j < static_cast<std::size_t>(s.window.count); ++j) {
-    const double w = static_cast<double>(s.weight[j]);
-    if (w == 0) continue;
-    double* out = sums.at(s.window.x[j], s.window.y[j]);
-    for (std::size_t c = 0; c < responses; ++c) out[c] += w * static_cast<double>(s.fit[c * stride + j]);
-    for (std::size_t k = 0; k < 8; ++k) out[responses + k] += w * constant[k];
-  }
+  add_pixels(s.window, s.weight.data(), s.fit.data(), responses, constant, sums);
 }
 
 /// The image sized state of one call.

@@ -31,17 +31,16 @@ void blur_columns(const Image& in, const std::vector<double>& taps, int c, int y
   divide(sum.data(), weights.data(), out.row(c, y), width);
 }
 
-void blur_row(const Real* in, const std::vector<double>& taps, int width, Real* out) {
+/// Sums of a row's values times the taps around each.
+std::vector<double> row_sums(const Real* in, const std::vector<double>& taps, int width) {
   const int reach = static_cast<int>(taps.size()) - 1;
-  std::vector<double> sum(static_cast<std::size_t>(width), 0.0), weight(static_cast<std::size_t>(width), 0.0);
+  std::vector<double> sum(static_cast<std::size_t>(width), 0.0);
   for (int k = -reach; k <= reach; ++k) {
-    const double tap = taps[static_cast<std::size_t>(std::abs(k))];
     const int begin = std::max(0, -k), end = std::min(width, width - k);
     if (begin >= end) continue;
-    accumulate(in + begin + k, tap, sum.data() + begin, end - begin);
-    for (int x = begin; x < end; ++x) weight[static_cast<std::size_t>(x)] += tap;
+    accumulate(in + begin + k, taps[static_cast<std::size_t>(std::abs(k))], sum.data() + begin, end - begin);
   }
-  divide(sum.data(), weight.data(), out, width);
+  return sum;
 }
 
 }  // namespace
@@ -54,10 +53,13 @@ Image gaussian_blur(const Image& image, double sigma) {
   Image between(image.width(), image.height(), image.channels()), out = between;
   Progress silent;
   const auto rows = static_cast<std::size_t>(image.height());
+  const std::vector<Real> ones(static_cast<std::size_t>(image.width()), Real(1));
+  const std::vector<double> weights = row_sums(ones.data(), taps, image.width());
   for (int c = 0; c < image.channels(); ++c) {
     parallel_for(rows, silent, [&](std::size_t y) { blur_columns(image, taps, c, static_cast<int>(y), between); });
     parallel_for(rows, silent, [&](std::size_t y) {
-      blur_row(between.row(c, static_cast<int>(y)), taps, image.width(), out.row(c, static_cast<int>(y)));
+      const int row = static_cast<int>(y);
+      divide(row_sums(between.row(c, row), taps, image.width()).data(), weights.data(), out.row(c, row), image.width());
     });
   }
   return out;

@@ -1,7 +1,10 @@
 #include "core/sanitise.h"
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
+
+#include "core/parallel.h"
 
 namespace polyrecon {
 namespace {
@@ -34,21 +37,21 @@ bool neighbour_mean(const Image& image, const std::vector<unsigned char>& bad, i
 
 bool usable(Real value) { return std::abs(value) <= largest_value; }
 
-std::size_t count_unusable(const Image& image) {
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < image.pixels(); ++i) count += !pixel_usable(image, i);
-  return image.empty() ? 0 : count;
+bool has_usable_pixel(const Image& image) {
+  for (std::size_t i = 0; i < image.pixels(); ++i)
+    if (pixel_usable(image, i)) return true;
+  return false;
 }
 
 std::size_t mend(Image& image, int reach) {
   if (image.empty()) return 0;
   std::vector<unsigned char> bad(image.pixels(), 0);
+  for_rows(image.height(), [&](int y) {
+    for (std::size_t i = image.index(0, y); i < image.index(0, y + 1); ++i) bad[i] = !pixel_usable(image, i);
+  });
   std::vector<std::size_t> holes;
-  for (std::size_t i = 0; i < bad.size(); ++i)
-    if (!pixel_usable(image, i)) {
-      bad[i] = 1;
-      holes.push_back(i);
-    }
+  for (auto hole = bad.begin(); (hole = std::find(hole, bad.end(), 1)) != bad.end(); ++hole)
+    holes.push_back(static_cast<std::size_t>(hole - bad.begin()));
   const std::size_t replaced = holes.size();
   std::vector<double> mean;
   for (int ring = 0; ring < reach && !holes.empty(); ++ring) {

@@ -12,8 +12,8 @@ constexpr Real largest_value = Real(1e15);
 /// True for a finite value of a magnitude that can be computed with.
 bool usable(Real value);
 
-/// Pixels in which some channel is not usable.
-std::size_t count_unusable(const Image& image);
+/// Whether some pixel is usable in all channels.
+bool has_usable_pixel(const Image& image);
 
 /// Replaces unusable pixels by the mean of the usable ones around them, growing inwards from the border of a hole; at
 /// most `reach` pixels deep, deeper ones become 0. Returns how many pixels were replaced.

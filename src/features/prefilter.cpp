@@ -13,20 +13,28 @@ namespace {
 
 constexpr Real cut_exponent = 30;
 
+POLYRECON_SIMD void add_values(const Real* in, double* sum, int n) {
+  for (int i = 0; i < n; ++i) sum[i] += static_cast<double>(in[i]);
+}
+
 /// max(v, mean of v over 3 x 3): single pixels of too small a variance would refuse every neighbour.
 Image widened_variance(const Image& variance) {
-  Image out = variance;
-  Progress silent;
-  parallel_for(static_cast<std::size_t>(out.height()), silent, [&](std::size_t row) {
-    const int y = static_cast<int>(row);
-    for (int c = 0; c < out.channels(); ++c)
-      for (int x = 0; x < out.width(); ++x) {
-        const Rect around = intersect(grow({x, y, x + 1, y + 1}, 1), out.bounds());
-        double sum = 0;
-        for (int v = around.y0; v < around.y1; ++v)
-          for (int u = around.x0; u < around.x1; ++u) sum += static_cast<double>(variance.at(u, v, c));
-        out.at(x, y, c) = std::max(variance.at(x, y, c), static_cast<Real>(sum / static_cast<double>(around.area())));
+  Image out(variance.width(), variance.height(), variance.channels());
+  const int width = out.width();
+  for_rows(out.height(), [&](int y) {
+    const int top = std::max(y - 1, 0), bottom = std::min(y + 2, out.height());
+    std::vector<double> columns(static_cast<std::size_t>(width) + 2);  // one beyond either border
+    for (int c = 0; c < out.channels(); ++c) {
+      std::fill(columns.begin(), columns.end(), 0.0);
+      for (int v = top; v < bottom; ++v) add_values(variance.row(c, v), columns.data() + 1, width);
+      const Real* own = variance.row(c, y);
+      Real* wide = out.row(c, y);
+      for (int x = 0; x < width; ++x) {
+        const double* around = columns.data() + x;
+        const int count = (std::min(x + 2, width) - std::max(x - 1, 0)) * (bottom - top);
+        wide[x] = std::max(own[x], static_cast<Real>((around[0] + around[1] + around[2]) / count));
       }
+    }
   });
   return out;
 }
@@ -71,10 +79,6 @@ POLYRECON_SIMD void weights_of(Real* distance, Real inverse_square, int n) {
     const Real e = std::max(distance[i] * inverse_square, Real(0));
     distance[i] = static_cast<Real>(exp_minus(static_cast<float>(e < cut_exponent ? e : cut_exponent)));
   }
-}
-
-POLYRECON_SIMD void add_weights(const Real* weight, double* total, int n) {
-  for (int i = 0; i < n; ++i) total[i] += static_cast<double>(weight[i]);
 }
 
 POLYRECON_SIMD void accumulate(const Real* weight, const Real* in, double* out, int n) {
@@ -163,7 +167,7 @@ class TileFilter {
     weights_of(weight_.data(), static_cast<Real>(1 / (params_.bandwidth * params_.bandwidth)), tile_.width());
     const int x0 = std::max(0, -dx - tile_.x0), x1 = std::min(tile_.width(), source_.width() - dx - tile_.x0);
     if (x0 >= x1) return;
-    add_weights(weight_.data() + x0, total_.data() + at(x0, y), x1 - x0);
+    add_values(weight_.data() + x0, total_.data() + at(x0, y), x1 - x0);
     for (int c = 0; c < source_.channels(); ++c)
       accumulate(weight_.data() + x0, source_.row(c, tile_.y0 + y + dy) + tile_.x0 + x0 + dx,
                  sum_.data() + static_cast<std::size_t>(c) * tile_.area() + at(x0, y), x1 - x0);

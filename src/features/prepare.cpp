@@ -19,6 +19,14 @@ constexpr int mend_reach = 8;         // pixels; deeper holes carry no informati
 constexpr double sky_depth = 1e9;     // renderers write 1e10 or larger for a ray that hits nothing
 constexpr double noise_floor = 1e-5;  // noise below this part of a feature's own variance is not worth cleaning
 
+/// body(c, y) for every row of every channel; rows side by side.
+template <typename Body>
+void for_rows_of(const Image& image, const Body& body) {
+  for_rows(image.height(), [&](int y) {
+    for (int c = 0; c < image.channels(); ++c) body(c, y);
+  });
+}
+
 /// Mean over the usable, non-negative part of the beauty.
 double mean_brightness(const Image& beauty) {
   const double sum = ordered_sum(static_cast<std::size_t>(beauty.height()), [&](std::size_t y) {
@@ -134,31 +142,41 @@ Decision decide_on_feature(const FeatureLook& look, const Feature& feature, cons
 }
 
 void transform(const FeatureUse& use, Image& image) {
-  for (int c = 0; c < image.channels(); ++c) {
-    Real* values = image.plane(c);
-    for (std::size_t i = 0; i < image.pixels(); ++i) {
-      const auto v = static_cast<double>(values[i]);
-      values[i] = static_cast<Real>(use.half_depth > 0 ? std::max(v, 0.0) / (std::max(v, 0.0) + use.half_depth)
+  for_rows_of(image, [&](int c, int y) {
+    Real* values = image.row(c, y);
+    for (int x = 0; x < image.width(); ++x) {
+      const auto v = static_cast<double>(values[x]);
+      values[x] = static_cast<Real>(use.half_depth > 0 ? std::max(v, 0.0) / (std::max(v, 0.0) + use.half_depth)
                                                        : v * use.scale);
     }
-  }
+  });
 }
 
 /// Noise variance after transform(): times the squared slope of the transformation.
 void transform_variance(const FeatureUse& use, const Image& mean, Image& variance) {
-  for (int c = 0; c < variance.channels(); ++c) {
-    Real* values = variance.plane(c);
-    for (std::size_t i = 0; i < variance.pixels(); ++i) {
-      const double z = std::max(static_cast<double>(mean.plane(c)[i]), 0.0) + use.half_depth;
+  for_rows_of(variance, [&](int c, int y) {
+    const Real* means = mean.row(c, y);
+    Real* values = variance.row(c, y);
+    for (int x = 0; x < variance.width(); ++x) {
+      const double z = std::max(static_cast<double>(means[x]), 0.0) + use.half_depth;
       const double slope = use.half_depth > 0 ? use.half_depth / (z * z) : use.scale;
-      values[i] = static_cast<Real>(std::min(static_cast<double>(values[i]) * slope * slope, 1.0));
+      values[x] = static_cast<Real>(std::min(static_cast<double>(values[x]) * slope * slope, 1.0));
     }
-  }
+  });
 }
 
 void make_non_negative(Image& variance) {
-  for (int c = 0; c < variance.channels(); ++c)
-    for (std::size_t i = 0; i < variance.pixels(); ++i) variance.plane(c)[i] = std::max(variance.plane(c)[i], Real(0));
+  for_rows_of(variance, [&](int c, int y) {
+    Real* values = variance.row(c, y);
+    for (int x = 0; x < variance.width(); ++x) values[x] = std::max(values[x], Real(0));
+  });
+}
+
+void scale(Image& image, Real factor) {
+  for_rows_of(image, [&](int c, int y) {
+    Real* values = image.row(c, y);
+    for (int x = 0; x < image.width(); ++x) values[x] *= factor;
+  });
 }
 
 /// Both halves of a pass, taken from it and mended; split from the mean where the file has none. half_variance: of one
@@ -173,8 +191,7 @@ std::array<Image, 2> halves_of(Pass& pass, const Image& half_variance, std::uint
   mended += mend(mean, mend_reach);
   if (half_variance.empty()) return {mean, mean};
   Image variance = half_variance;
-  for (int c = 0; c < variance.channels(); ++c)
-    for (std::size_t i = 0; i < variance.pixels(); ++i) variance.plane(c)[i] *= Real(0.5);
+  scale(variance, Real(0.5));
   return split_halves(mean, variance, stream);
 }
 
@@ -184,19 +201,31 @@ Image feature_half_variance(Pass& pass, std::size_t& mended) {
     Image variance = std::move(pass.variance);
     mended += mend(variance, mend_reach);
     make_non_negative(variance);
-    for (int c = 0; c < variance.channels(); ++c)
-      for (std::size_t i = 0; i < variance.pixels(); ++i) variance.plane(c)[i] *= 2;
+    scale(variance, 2);
     return variance;
   }
   if (!pass.has_halves()) return {};
   Image variance = pass.half_a;
-  for (int c = 0; c < variance.channels(); ++c)
-    for (std::size_t i = 0; i < variance.pixels(); ++i) {
-      const Real d = pass.half_a.plane(c)[i] - pass.half_b.plane(c)[i];
-      variance.plane(c)[i] = d * d / 2;
-    }
+  for_rows_of(variance, [&](int c, int y) {
+    const Real* b = pass.half_b.row(c, y);
+    Real* values = variance.row(c, y);
+    for (int x = 0; x < variance.width(); ++x) values[x] = (values[x] - b[x]) * (values[x] - b[x]) / 2;
+  });
   mended += mend(variance, mend_reach);
   return variance;
+}
+
+/// Pixels in which some channel is below zero.
+std::size_t negative_pixels(const Image& image) {
+  return static_cast<std::size_t>(ordered_sum(static_cast<std::size_t>(image.height()), [&](std::size_t y) {
+    std::size_t count = 0;
+    for (int x = 0; x < image.width(); ++x) {
+      bool negative = false;
+      for (int c = 0; c < image.channels(); ++c) negative |= image.at(x, static_cast<int>(y), c) < 0;
+      count += negative;
+    }
+    return static_cast<double>(count);
+  }));
 }
 
 /// Halves of a colour pass that has none: it takes its share, pass / beauty, of what sets the beauty's halves apart.
@@ -219,8 +248,12 @@ std::array<Image, 2> split_like(const std::array<Image, 2>& beauty, const Pass& 
 }
 
 void append_channels(const Image& from, Image& to, int& channel) {
-  for (int c = 0; c < from.channels(); ++c, ++channel)
-    std::copy(from.plane(c), from.plane(c) + from.pixels(), to.plane(channel));
+  const int first = channel;
+  in_parallel(static_cast<std::size_t>(from.channels()), [&](std::size_t k) {
+    const int c = static_cast<int>(k);
+    std::copy(from.plane(c), from.plane(c) + from.pixels(), to.plane(first + c));
+  });
+  channel += from.channels();
 }
 
 std::array<Image, 2> prepared_feature(Feature feature, const FeatureUse& use, std::size_t stream,
@@ -253,7 +286,7 @@ Decision decide_on_cleaning(const std::string& feature, const Pass& pass, const 
 }  // namespace
 
 void require_usable(const Frame& frame) {
-  if (count_unusable(frame.beauty.mean) == frame.beauty.mean.pixels())
+  if (!has_usable_pixel(frame.beauty.mean))
     throw Error(ExitCode::CheckFailed, "layer '" + frame.beauty.name + "': no finite pixel; render the frame again");
 }
 
@@ -262,10 +295,12 @@ Preparation look_at(const Frame& frame, const Effects& effects) {
   Preparation out;
   const double brightness = mean_brightness(frame.beauty.mean);
   out.epsilon = brightness > 0 ? 0.09 * brightness * brightness : 1;
+  std::vector<FeatureLook> looks(frame.features.size());
+  in_parallel(looks.size(), [&](std::size_t i) { looks[i] = look_at_feature(frame.features[i]); });
   int channels = 0;
   for (std::size_t i = 0; i < frame.features.size(); ++i) {
     const Feature& feature = frame.features[i];
-    const FeatureLook look = look_at_feature(feature);
+    const FeatureLook& look = looks[i];
     Decision decision = decide_on_feature(look, feature, effects);
     if (decision.run && channels + feature.pass.mean.channels() > max_feature_channels) {
       decision.run = false;
@@ -296,11 +331,8 @@ Prepared prepare(Frame& frame, const Preparation& preparation, const Image& vari
   pair.variance = variance;
   mend(pair.variance, mend_reach);
   make_non_negative(pair.variance);
-  for (int c = 0; c < 3; ++c)
-    for (std::size_t i = 0; i < pair.variance.pixels(); ++i) {
-      pair.variance.plane(c)[i] *= 2;  // of a half, from that of the mean
-      if (frame.beauty.mean.plane(c)[i] < 0) out.negative_pixels += c == 0 || !(frame.beauty.mean.plane(c - 1)[i] < 0);
-    }
+  scale(pair.variance, 2);  // of a half, from that of the mean
+  out.negative_pixels = negative_pixels(frame.beauty.mean);
 
   const bool alpha = with_alpha && !frame.alpha.empty();
   const int channels = 3 + 3 * static_cast<int>(frame.aovs.size()) + (alpha ? 1 : 0);

@@ -19,8 +19,9 @@ void decode_file(const std::string& path) {
     for (int p = 0; p < file.parts(); ++p) {
       if (!info.parts[static_cast<std::size_t>(p)].readable()) continue;
       Imf::InputPart part(file, p);
+      NativeBand band(part.header());
       for (const auto& [y0, y1] : bands_of(part.header())) {
-        NativeBand band(part.header(), y0, y1);
+        band.take_lines(y0, y1);
         read_band(part, band);
       }
     }

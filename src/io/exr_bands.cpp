@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <string_view>
 
+#include "core/parallel.h"
+
 namespace polyrecon {
 namespace {
 
@@ -19,18 +21,26 @@ bool is_tiled(const Imf::Header& header) {
 
 std::size_t size_of(Imf::PixelType type) { return type == Imf::HALF ? 2 : 4; }
 
-std::size_t hash_of(const NativeChannel& channel) {
-  return std::hash<std::string_view>{}({channel.samples.data(), channel.samples.size()});
+std::vector<std::size_t> hashes_of(const NativeBand& band) {
+  std::vector<std::size_t> hashes(band.channels.size());
+  in_parallel(hashes.size(), [&](std::size_t c) {
+    const std::vector<char>& samples = band.channels[c].samples;
+    hashes[c] = std::hash<std::string_view>{}({samples.data(), samples.size()});
+  });
+  return hashes;
 }
 
-NativeBand::NativeBand(const Imf::Header& header, int first, int last_excluded)
-    : x0(header.dataWindow().min.x),
-      width(header.dataWindow().max.x - header.dataWindow().min.x + 1),
-      y0(first),
-      y1(last_excluded) {
-  const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(y1 - y0);
+NativeBand::NativeBand(const Imf::Header& header)
+    : x0(header.dataWindow().min.x), width(header.dataWindow().max.x - header.dataWindow().min.x + 1) {
   for (auto c = header.channels().begin(); c != header.channels().end(); ++c)
-    channels.push_back({c.name(), c.channel().type, std::vector<char>(pixels * size_of(c.channel().type))});
+    channels.push_back({c.name(), c.channel().type, {}});
+}
+
+void NativeBand::take_lines(int first, int last_excluded) {
+  y0 = first;
+  y1 = last_excluded;
+  const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(y1 - y0);
+  in_parallel(channels.size(), [&](std::size_t c) { channels[c].samples.resize(pixels * size_of(channels[c].type)); });
 }
 
 NativeChannel* NativeBand::find(const std::string& name) {
@@ -65,10 +75,11 @@ void read_band(Imf::InputPart& input, NativeBand& band) {
 
 void write_bands(Imf::MultiPartOutputFile& output, int part, const std::function<void(NativeBand&)>& make, int lines) {
   const Imf::Header& header = output.header(part);
+  NativeBand band(header);
   if (is_tiled(header)) {
     Imf::TiledOutputPart tiles(output, part);
     for (const auto& [y0, y1] : bands_of(header)) {
-      NativeBand band(header, y0, y1);
+      band.take_lines(y0, y1);
       make(band);
       tiles.setFrameBuffer(band.buffer());
       const int row = (y0 - header.dataWindow().min.y) / static_cast<int>(header.tileDescription().ySize);
@@ -78,7 +89,7 @@ void write_bands(Imf::MultiPartOutputFile& output, int part, const std::function
   }
   Imf::OutputPart scanlines(output, part);
   for (const auto& [y0, y1] : bands_of(header, lines)) {
-    NativeBand band(header, y0, y1);
+    band.take_lines(y0, y1);
     make(band);
     scanlines.setFrameBuffer(band.buffer());
     scanlines.writePixels(y1 - y0);

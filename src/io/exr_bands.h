@@ -20,21 +20,24 @@ struct NativeChannel {
   std::vector<char> samples;
 };
 
-/// 64 bits that tell the samples of two channels apart.
-std::size_t hash_of(const NativeChannel& channel);
-
 /// Some lines of all channels of a part, bit for bit.
 struct NativeBand {
   int x0 = 0, width = 0;
-  int y0 = 0, y1 = 0;  ///< Lines y0 .. y1 - 1 in the file's coordinates.
+  int y0 = 0, y1 = 0;  ///< Lines y0 .. y1 - 1 in the file's coordinates; none at first.
   std::vector<NativeChannel> channels;
 
-  NativeBand(const Imf::Header& header, int first, int last_excluded);
+  explicit NativeBand(const Imf::Header& header);
+  /// Makes room for other lines; memory is kept, since fresh pages for each band of a frame would take longer than
+  /// their samples do. What the samples are until they are filled is not told.
+  void take_lines(int first, int last_excluded);
   NativeChannel* find(const std::string& name);
   Imf::FrameBuffer buffer();
 };
 
 std::size_t size_of(Imf::PixelType type);
+
+/// Of each channel 64 bits that tell its samples from others.
+std::vector<std::size_t> hashes_of(const NativeBand& band);
 
 /// Of 9, for all that is written: zlib takes a fifth less time than at the usual 4, files grow by 4 %.
 constexpr int kZipLevel = 2;

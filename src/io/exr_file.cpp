@@ -15,6 +15,7 @@
 #include <fstream>
 
 #include "core/error.h"
+#include "core/parallel.h"
 #include "io/channel_reader.h"
 #include "io/exr_attributes.h"
 #include "io/exr_chunks.h"
@@ -149,8 +150,9 @@ void read_planes(const FileInfo& file, int part, const std::vector<std::string>&
     const std::vector<float>& band = reader.read(y, end);
     const std::size_t done = static_cast<std::size_t>(window.width()) * static_cast<std::size_t>(y - window.y0);
     const std::size_t plane = static_cast<std::size_t>(window.width()) * static_cast<std::size_t>(end - y);
-    for (std::size_t c = 0; c < channels.size(); ++c)
+    in_parallel(channels.size(), [&](std::size_t c) {
       std::copy_n(band.begin() + static_cast<std::ptrdiff_t>(plane * c), plane, planes[c] + done);
+    });
   }
 }
 

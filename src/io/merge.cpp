@@ -485,12 +485,13 @@ class Merger {
     const std::vector<std::string> channels = all_channels(layer);
     Imf::MultiPartInputFile container(first().file.path.c_str(), 0, false);
     Imf::InputPart input(container, layer.part);
-    NativeBand old(input.header(), band.y0, band.y1);
+    NativeBand old(input.header());
     old.channels.erase(std::remove_if(old.channels.begin(), old.channels.end(),
                                       [&](const NativeChannel& c) {
                                         return std::find(channels.begin(), channels.end(), c.name) == channels.end();
                                       }),
                        old.channels.end());
+    old.take_lines(band.y0, band.y1);
     read_band(input, old);
     for (NativeChannel& channel : old.channels)
       band.find(output_name(first(), layer, channel.name))->samples = std::move(channel.samples);

@@ -153,7 +153,7 @@ void store(NativeChannel& channel, std::size_t i, float value, std::size_t& satu
 /// Brings a band of the input into the form of the output: new samples in, old ones to their noisy names.
 void apply(const NewChannels& replaced, NativeBand& old, NativeBand& band, int window_y0, std::size_t& saturated) {
   for (NativeChannel& channel : band.channels)
-    if (NativeChannel* same = old.find(channel.name)) channel.samples = std::move(same->samples);
+    if (NativeChannel* same = old.find(channel.name)) channel.samples.swap(same->samples);
   const std::size_t begin = static_cast<std::size_t>(old.y0 - window_y0) * static_cast<std::size_t>(old.width);
   const std::size_t pixels = static_cast<std::size_t>(old.y1 - old.y0) * static_cast<std::size_t>(old.width);
   for (const auto& [name, source] : replaced) {
@@ -251,8 +251,9 @@ class Rewrite {
     }
   }
 
-  void make_band(Imf::InputPart& from, int p, NativeBand& band, std::size_t& saturated) {
-    NativeBand old(input_.header(p), band.y0, band.y1);
+  /// old: of the input; its memory is used.
+  void make_band(Imf::InputPart& from, int p, NativeBand& old, NativeBand& band, std::size_t& saturated) {
+    old.take_lines(band.y0, band.y1);
     try {
       read_band(from, old);
     } catch (const Iex::BaseExc& problem) {
@@ -265,20 +266,23 @@ class Rewrite {
 
   void write_changed(Imf::MultiPartOutputFile& output, int p) {
     Imf::InputPart from(input_, p);
+    NativeBand old(input_.header(p));
     write_bands(output, p, [&](NativeBand& band) {
-      make_band(from, p, band, saturated_);
-      for (const NativeChannel& channel : band.channels) hashes_.push_back(hash_of(channel));
+      make_band(from, p, old, band, saturated_);
+      const std::vector<std::size_t> hashes = hashes_of(band);
+      hashes_.insert(hashes_.end(), hashes.begin(), hashes.end());
     });
   }
 
   /// Decodes every band of the written part and compares it with what was remembered of it.
   bool same_samples(Imf::MultiPartInputFile& written, int p, std::vector<std::size_t>::const_iterator& expected) {
     Imf::InputPart back(written, p);
+    NativeBand found(back.header());
     for (const auto& [y0, y1] : bands_of(back.header())) {
-      NativeBand found(back.header(), y0, y1);
+      found.take_lines(y0, y1);
       read_band(back, found);
-      for (const NativeChannel& channel : found.channels)
-        if (expected == hashes_.cend() || hash_of(channel) != *expected++) return false;
+      for (const std::size_t hash : hashes_of(found))
+        if (expected == hashes_.cend() || hash != *expected++) return false;
     }
     return true;
   }
@@ -293,9 +297,10 @@ class Rewrite {
     if (!plain) return;
     Imf::InputPart from(input_, p);
     std::size_t ignored = 0;
+    NativeBand old(header), band(header);
     for (const auto& [y0, y1] : bands_of(header)) {
-      NativeBand band(header, y0, y1);
-      make_band(from, p, band, ignored);
+      band.take_lines(y0, y1);
+      make_band(from, p, old, band, ignored);
     }
   }
 

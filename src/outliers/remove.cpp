@@ -111,7 +111,8 @@ std::vector<Outlier> remove_outliers(HalfPair& pair, bool independent_halves, co
   const std::array<Replacement, 2> found{find(pair, 0, independent_halves, params, progress),
                                          find(pair, 1, independent_halves, params, progress)};
   // Sources are read from the untouched images: an outlier may stand beside another.
-  const HalfPair before = pair;
+  const std::array<Image, 2> color = pair.color;
+  const Image variance = pair.variance;
   std::vector<Outlier> outliers;
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x)
@@ -121,11 +122,11 @@ std::vector<Outlier> remove_outliers(HalfPair& pair, bool independent_halves, co
         const auto from = static_cast<std::size_t>(found[h].source[i]);
         Outlier outlier{x, y, {}};
         for (int c = 0; c < channels; ++c) {
-          const Real taken = before.color[h].plane(c)[i] - before.color[h].plane(c)[from];
-          pair.color[h].plane(c)[i] = before.color[h].plane(c)[from];
+          const Real taken = color[h].plane(c)[i] - color[h].plane(c)[from];
+          pair.color[h].plane(c)[i] = color[h].plane(c)[from];
           outlier.energy.push_back(0.5 * static_cast<double>(taken));
         }
-        for (int c = 0; c < 3; ++c) pair.variance.plane(c)[i] = before.variance.plane(c)[from];
+        for (int c = 0; c < 3; ++c) pair.variance.plane(c)[i] = variance.plane(c)[from];
         outliers.push_back(std::move(outlier));
       }
   return outliers;

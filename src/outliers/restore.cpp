@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
 #include "core/parallel.h"
 #include "core/sanitise.h"
@@ -15,7 +14,8 @@ namespace {
 constexpr double kMostGain = 0.5;
 
 /// Sum of term(value) over the usable pixels of a channel.
-double sum_of(const Image& image, int channel, const std::function<double(double)>& term) {
+template <typename Term>
+double sum_of(const Image& image, int channel, const Term& term) {
   return ordered_sum(static_cast<std::size_t>(image.height()), [&](std::size_t y) {
     double row = 0;
     const Real* values = image.row(channel, static_cast<int>(y));
@@ -33,11 +33,22 @@ double share_of(Real value) {
 
 double positive_part(Real value) { return usable(value) ? std::max(static_cast<double>(value), 0.0) : 0; }
 
-double greatest(const Image& image, int channel) {
-  double most = 0;
-  const Real* values = image.plane(channel);
-  for (std::size_t i = 0; i < image.pixels(); ++i) most = std::max(most, positive_part(values[i]));
-  return most;
+/// What energy given to all pixels of a channel is shared out by.
+struct Light {
+  double sum, squares;  ///< Of the positive parts.
+  double greatest;
+};
+
+Light light_of(const Image& image, int channel) {
+  std::vector<double> greatest(static_cast<std::size_t>(image.height()), 0.0);
+  for_rows(image.height(), [&](int y) {
+    const Real* values = image.row(channel, y);
+    double& most = greatest[static_cast<std::size_t>(y)];
+    for (int x = 0; x < image.width(); ++x) most = std::max(most, positive_part(values[x]));
+  });
+  return {sum_of(image, channel, [](double v) { return std::max(v, 0.0); }),
+          sum_of(image, channel, [](double v) { return v > 0 ? v * v : 0.0; }),
+          *std::max_element(greatest.begin(), greatest.end())};
 }
 
 /// Sums of a channel's shares over rectangles, by a summed-area table for each block of pixels: in one for the whole
@@ -46,10 +57,12 @@ class BoxSums {
  public:
   BoxSums(const Image& image, int channel)
       : width_(static_cast<std::size_t>(image.width())), sums_(image.pixels(), 0.0) {
-    for (int y = 0; y < image.height(); ++y)
-      for (int x = 0; x < image.width(); ++x)
-        at(x, y) = share_of(image.at(x, y, channel)) + before(x, y, x, y - 1) + before(x, y, x - 1, y) -
-                   before(x, y, x - 1, y - 1);
+    for_rows((image.height() + kBlock - 1) / kBlock, [&](int block) {
+      for (int y = block * kBlock; y < std::min((block + 1) * kBlock, image.height()); ++y)
+        for (int x = 0; x < image.width(); ++x)
+          at(x, y) = share_of(image.at(x, y, channel)) + before(x, y, x, y - 1) + before(x, y, x - 1, y) -
+                     before(x, y, x - 1, y - 1);
+    });
   }
   double sum(const Rect& r) const {
     double total = 0;
@@ -101,25 +114,24 @@ void add_box(std::vector<double>& corners, std::size_t row, const Rect& r, doubl
 }
 
 void integrate(std::vector<double>& corners, std::size_t row) {
-  for (std::size_t i = 0; i < corners.size(); ++i)
-    if (i % row != 0) corners[i] += corners[i - 1];
+  in_parallel(corners.size() / row, [&](std::size_t y) {
+    for (std::size_t i = y * row + 1; i < (y + 1) * row; ++i) corners[i] += corners[i - 1];
+  });
   for (std::size_t i = row; i < corners.size(); ++i) corners[i] += corners[i - row];
 }
 
 /// Adds energy[c] to the channels c = color, color + 3, ... in proportion to `color`'s yhat^2, or to yhat, or to both:
-/// see kMostGain. Nothing where no pixel of it is positive.
-void give_to_all(const std::vector<double>& energy, int color, Image& image) {
-  const double positive = sum_of(image, color, [](double v) { return std::max(v, 0.0); });
-  const double squares = sum_of(image, color, [](double v) { return v > 0 ? v * v : 0.0; });
-  if (!(squares > 0)) return;
-  const double most = std::abs(energy[static_cast<std::size_t>(color)]) * greatest(image, color) / squares;
+/// see kMostGain. light: of `color`. Nothing where no pixel of it is positive.
+void give_to_all(const std::vector<double>& energy, int color, const Light& light, Image& image) {
+  if (!(light.squares > 0)) return;
+  const double most = std::abs(energy[static_cast<std::size_t>(color)]) * light.greatest / light.squares;
   const double by_squares = std::clamp(2 - most / kMostGain, 0.0, 1.0);
   for_rows(image.height(), [&](int y) {
     std::vector<double> parts(static_cast<std::size_t>(image.width()));
     const Real* yhat = image.row(color, y);
     for (int x = 0; x < image.width(); ++x)
       parts[static_cast<std::size_t>(x)] =
-          by_squares * share_of(yhat[x]) / squares + (1 - by_squares) * positive_part(yhat[x]) / positive;
+          by_squares * share_of(yhat[x]) / light.squares + (1 - by_squares) * positive_part(yhat[x]) / light.sum;
     for (int c = color; c < static_cast<int>(energy.size()); c += 3) {
       Real* out = image.row(c, y);
       for (int x = 0; x < image.width(); ++x)
@@ -135,8 +147,9 @@ void restore_energy(const std::vector<Outlier>& outliers, double max_gain, Image
   const Image shape = image;  // yhat before anything is given back
   std::vector<BoxSums> sums;
   for (int c = 0; c < 3; ++c) sums.emplace_back(shape, c);
-  std::vector<Rect> areas;
-  for (const Outlier& outlier : outliers) areas.push_back(restoration_area(outlier, sums, max_gain, image.bounds()));
+  std::vector<Rect> areas(outliers.size());
+  in_parallel(areas.size(),
+              [&](std::size_t k) { areas[k] = restoration_area(outliers[k], sums, max_gain, image.bounds()); });
   const auto row = static_cast<std::size_t>(image.width()) + 1;
   std::vector<double> of_all(static_cast<std::size_t>(image.channels() / 3 * 3), 0.0);
   for (std::size_t c = 0; c < of_all.size(); ++c) {
@@ -158,7 +171,8 @@ void restore_energy(const std::vector<Outlier>& outliers, double max_gain, Image
         image.at(x, y, channel) += static_cast<Real>(share_of(shape.at(x, y, color)) * gains[x]);
     });
   }
-  for (int color = 0; color < 3; ++color) give_to_all(of_all, color, image);
+  if (std::all_of(of_all.begin(), of_all.end(), [](double energy) { return energy == 0; })) return;
+  for (int color = 0; color < 3; ++color) give_to_all(of_all, color, light_of(image, color), image);
 }
 
 std::vector<double> channel_sums(const Image& image) {
@@ -174,11 +188,11 @@ std::array<double, 3> restore_totals(const std::vector<double>& totals, double m
   std::array<double, 3> gains{};
   for (int color = 0; color < 3; ++color) {
     const auto c = static_cast<std::size_t>(color);
-    const double positive = sum_of(image, color, [](double v) { return std::max(v, 0.0); });
-    const double gain = positive > 0 ? missing[c] / positive : 0;
-    if (!(std::abs(gain) <= max_gain) || !(positive > 0)) continue;
+    const Light light = light_of(image, color);
+    const double gain = light.sum > 0 ? missing[c] / light.sum : 0;
+    if (!(std::abs(gain) <= max_gain) || !(light.sum > 0)) continue;
     gains[c] = gain;
-    give_to_all(missing, color, image);
+    give_to_all(missing, color, light, image);
   }
   return gains;
 }

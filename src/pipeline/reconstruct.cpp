@@ -55,22 +55,28 @@ Candidate solve_level(const HalfPair& pair, int level, const Params& params, std
 
 Image noisy_mean(const HalfPair& pair) {
   Image out = pair.color[0];
-  for (int c = 0; c < out.channels(); ++c)
-    for (std::size_t i = 0; i < out.pixels(); ++i)
-      out.plane(c)[i] = Real(0.5) * (out.plane(c)[i] + pair.color[1].plane(c)[i]);
+  for_rows(out.height(), [&](int y) {
+    for (int c = 0; c < out.channels(); ++c) {
+      const Real* other = pair.color[1].row(c, y);
+      Real* mean = out.row(c, y);
+      for (int x = 0; x < out.width(); ++x) mean[x] = Real(0.5) * (mean[x] + other[x]);
+    }
+  });
   return out;
 }
 
 /// The average of the halves; pixels without noise keep the input's exact value.
 Image average(const HalfPair& pair, const Candidate& solved) {
   Image out = solved.half[0];
-  for (int c = 0; c < out.channels(); ++c)
-    for (std::size_t i = 0; i < out.pixels(); ++i) {
-      const Real a = pair.color[0].plane(c)[i], b = pair.color[1].plane(c)[i];
-      bool noisy = a != b;
-      for (int k = 0; k < 3; ++k) noisy |= pair.variance.plane(k)[i] > 0;
-      out.plane(c)[i] = noisy ? Real(0.5) * (solved.half[0].plane(c)[i] + solved.half[1].plane(c)[i]) : a;
-    }
+  for_rows(out.height(), [&](int y) {
+    for (int c = 0; c < out.channels(); ++c)
+      for (int x = 0; x < out.width(); ++x) {
+        const Real a = pair.color[0].at(x, y, c), b = pair.color[1].at(x, y, c);
+        bool noisy = a != b;
+        for (int k = 0; k < 3; ++k) noisy |= pair.variance.at(x, y, k) > 0;
+        out.at(x, y, c) = noisy ? Real(0.5) * (solved.half[0].at(x, y, c) + solved.half[1].at(x, y, c)) : a;
+      }
+  });
   return out;
 }
 

@@ -34,6 +34,13 @@ POLYRECON_SIMD void exponential_weights(const Real* distance, Real inverse_squar
   }
 }
 
+POLYRECON_SIMD double sum_of(const Real* values, int n) {
+  double sum = 0;
+#pragma omp simd reduction(+ : sum)
+  for (int j = 0; j < n; ++j) sum += static_cast<double>(values[j]);
+  return sum;
+}
+
 }  // namespace
 
 void PatchDistances::load(const Image& guide, const Image& variance, const Rect& block, int window_radius,
@@ -102,12 +109,12 @@ void PatchDistances::window_of(int center_x, int center_y, Real limit, Window& w
     const Real* row =
         distance_.data() + static_cast<std::ptrdiff_t>(y - center_y + radius_) * pitch_ - center_x + radius_;
     for (int x = inside.x0; x < inside.x1; ++x) {
+      // Written whether it stays or not, as no processor foresees which: the next one takes its place.
       const Real d = row[x];
-      if (!(d < limit * patch_area)) continue;
       window.x[count] = x;
       window.y[count] = y;
       window.distance[count] = d > 0 ? d / patch_area : 0;
-      ++count;
+      count += d < limit * patch_area;
     }
   }
   window.count = static_cast<int>(count);
@@ -116,9 +123,7 @@ void PatchDistances::window_of(int center_x, int center_y, Real limit, Window& w
 double kernel_weights(const Window& window, Real bandwidth, Real* weight) {
   exponential_weights(window.distance.data(), 1 / (bandwidth * bandwidth), weight, window.padded);
   std::fill(weight + window.count, weight + window.padded, Real(0));
-  double sum = 0;
-  for (int j = 0; j < window.count; ++j) sum += static_cast<double>(weight[j]);
-  return sum;
+  return sum_of(weight, window.padded);
 }
 
 }  // namespace polyrecon
