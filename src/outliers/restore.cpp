@@ -9,9 +9,10 @@
 namespace polyrecon {
 namespace {
 
-/// Of the brightest pixel over the whole image: up to this all is given by squares, from twice this on each pixel's
-/// gain is the same, as where all but a few pixels are dark.
+/// Of a pixel, where the whole image takes part; more only where all must gain more.
 constexpr double kMostGain = 0.5;
+
+constexpr double kBelowAll = 1e-100;  ///< No positive value of an image is less.
 
 /// Sum of term(value) over the usable pixels of a channel.
 template <typename Term>
@@ -33,22 +34,52 @@ double share_of(Real value) {
 
 double positive_part(Real value) { return usable(value) ? std::max(static_cast<double>(value), 0.0) : 0; }
 
-/// What energy given to all pixels of a channel is shared out by.
-struct Light {
-  double sum, squares;  ///< Of the positive parts.
-  double greatest;
+/// How energy given to all pixels of a channel is shared out: yhat min(yhat, limit) / sum of that.
+struct Sharing {
+  double limit = 0, sum = 0;  ///< 0: no pixel is positive.
+
+  double part_of(Real value) const {
+    const double yhat = positive_part(value);
+    return yhat * std::min(yhat, limit) / sum;
+  }
 };
 
-Light light_of(const Image& image, int channel) {
-  std::vector<double> greatest(static_cast<std::size_t>(image.height()), 0.0);
+/// What is left to the pixels up to a limit, and what the others hold.
+struct Light {
+  double squares, above;
+};
+
+Light light_of(const Image& image, int channel, double limit) {
+  return {sum_of(image, channel, [&](double v) { return v > 0 && v <= limit ? v * v : 0.0; }),
+          sum_of(image, channel, [&](double v) { return v > limit ? v : 0.0; })};
+}
+
+double greatest(const Image& image, int channel) {
+  std::vector<double> of_row(static_cast<std::size_t>(image.height()), 0.0);
   for_rows(image.height(), [&](int y) {
     const Real* values = image.row(channel, y);
-    double& most = greatest[static_cast<std::size_t>(y)];
+    double& most = of_row[static_cast<std::size_t>(y)];
     for (int x = 0; x < image.width(); ++x) most = std::max(most, positive_part(values[x]));
   });
-  return {sum_of(image, channel, [](double v) { return std::max(v, 0.0); }),
-          sum_of(image, channel, [](double v) { return v > 0 ? v * v : 0.0; }),
-          *std::max_element(greatest.begin(), greatest.end())};
+  return *std::max_element(of_row.begin(), of_row.end());
+}
+
+/// By squares, which cost the least relative squared error, with no pixel's gain above kMostGain: what is brighter than
+/// the limit gains that, which is the least error under this bound (the limit falls until the gain is met; each step
+/// solves for it with the pixels known to lie above). Where the bound cannot be kept all gain alike.
+Sharing sharing_of(double energy, const Image& image, int channel) {
+  double limit = greatest(image, channel);
+  Light light = light_of(image, channel, limit);
+  while (std::abs(energy) * limit > kMostGain * (light.squares + limit * light.above) * (1 + 1e-9)) {
+    const double left = std::abs(energy) - kMostGain * light.above;
+    limit = left > 0 ? std::min(kMostGain * light.squares / left, limit * (1 - 1e-9)) : 0;
+    light = light_of(image, channel, limit);
+    if (light.squares > 0) continue;
+    limit = kBelowAll;
+    light = light_of(image, channel, limit);
+    break;
+  }
+  return {limit, light.squares + limit * light.above};
 }
 
 /// Sums of a channel's shares over rectangles, by a summed-area table for each block of pixels: in one for the whole
@@ -120,18 +151,15 @@ void integrate(std::vector<double>& corners, std::size_t row) {
   for (std::size_t i = row; i < corners.size(); ++i) corners[i] += corners[i - row];
 }
 
-/// Adds energy[c] to the channels c = color, color + 3, ... in proportion to `color`'s yhat^2, or to yhat, or to both:
-/// see kMostGain. light: of `color`. Nothing where no pixel of it is positive.
-void give_to_all(const std::vector<double>& energy, int color, const Light& light, Image& image) {
-  if (!(light.squares > 0)) return;
-  const double most = std::abs(energy[static_cast<std::size_t>(color)]) * light.greatest / light.squares;
-  const double by_squares = std::clamp(2 - most / kMostGain, 0.0, 1.0);
+/// Adds energy[c] to the channels c = color, color + 3, ... as sharing_of has it for `color`. Nothing where no pixel of
+/// that is positive.
+void give_to_all(const std::vector<double>& energy, int color, Image& image) {
+  const Sharing sharing = sharing_of(energy[static_cast<std::size_t>(color)], image, color);
+  if (!(sharing.sum > 0)) return;
   for_rows(image.height(), [&](int y) {
     std::vector<double> parts(static_cast<std::size_t>(image.width()));
-    const Real* yhat = image.row(color, y);
-    for (int x = 0; x < image.width(); ++x)
-      parts[static_cast<std::size_t>(x)] =
-          by_squares * share_of(yhat[x]) / light.squares + (1 - by_squares) * positive_part(yhat[x]) / light.sum;
+    std::transform(image.row(color, y), image.row(color, y) + image.width(), parts.begin(),
+                   [&](Real yhat) { return sharing.part_of(yhat); });
     for (int c = color; c < static_cast<int>(energy.size()); c += 3) {
       Real* out = image.row(c, y);
       for (int x = 0; x < image.width(); ++x)
@@ -172,7 +200,7 @@ void restore_energy(const std::vector<Outlier>& outliers, double max_gain, Image
     });
   }
   if (std::all_of(of_all.begin(), of_all.end(), [](double energy) { return energy == 0; })) return;
-  for (int color = 0; color < 3; ++color) give_to_all(of_all, color, light_of(image, color), image);
+  for (int color = 0; color < 3; ++color) give_to_all(of_all, color, image);
 }
 
 std::vector<double> channel_sums(const Image& image) {
@@ -188,11 +216,11 @@ std::array<double, 3> restore_totals(const std::vector<double>& totals, double m
   std::array<double, 3> gains{};
   for (int color = 0; color < 3; ++color) {
     const auto c = static_cast<std::size_t>(color);
-    const Light light = light_of(image, color);
-    const double gain = light.sum > 0 ? missing[c] / light.sum : 0;
-    if (!(std::abs(gain) <= max_gain) || !(light.sum > 0)) continue;
+    const double positive = sum_of(image, color, [](double v) { return std::max(v, 0.0); });
+    const double gain = positive > 0 ? missing[c] / positive : 0;
+    if (!(std::abs(gain) <= max_gain) || !(positive > 0)) continue;
     gains[c] = gain;
-    give_to_all(missing, color, light, image);
+    give_to_all(missing, color, image);
   }
   return gains;
 }
