@@ -41,11 +41,22 @@ double mean_brightness(const Image& beauty) {
   return sum / (3.0 * static_cast<double>(beauty.pixels()));
 }
 
+struct Range {
+  double low = std::numeric_limits<double>::max(), high = std::numeric_limits<double>::lowest();
+
+  void add(double v) {
+    low = std::min(low, v);
+    high = std::max(high, v);
+  }
+  bool holds(double v) const { return low <= v && v <= high; }
+  double largest() const { return std::max(std::abs(low), std::abs(high)); }
+};
+
 /// What a feature's values and noise look like over the frame.
 struct FeatureLook {
-  double low = std::numeric_limits<double>::max(), high = std::numeric_limits<double>::lowest();
-  double variance = 0;  ///< Of its values over the frame, mean over the channels.
-  double noise = 0;     ///< Mean of its own noise variance.
+  Range all, usual;     ///< Of its values; usual: without spikes.
+  double variance = 0;  ///< Of its usual values over the frame, mean over the channels.
+  double noise = 0;     ///< Mean of their own noise variance.
   std::size_t usable_pixels = 0, noisy_pixels = 0;
 };
 
@@ -58,21 +69,46 @@ double noise_at(const Pass& pass, int c, std::size_t i) {
   return std::isfinite(d) ? d * d / 4 : 0;
 }
 
+bool usable_value(const Feature& feature, Real value) {
+  return usable(value) && !(feature.kind == FeatureKind::Depth && static_cast<double>(value) >= sky_depth);
+}
+
+/// Where a channel's values lie but for spikes: from the 0.5 % quantile to that of 99.5 %, and as far again on either
+/// side. All where they hardly vary, since what does is no spike then.
+Range usual_range(const Feature& feature, int channel) {
+  constexpr std::size_t samples = 1 << 16;
+  const Image& mean = feature.pass.mean;
+  std::vector<Real> values;
+  for (std::size_t i = 0; i < mean.pixels(); i += std::max<std::size_t>(1, mean.pixels() / samples))
+    if (usable_value(feature, mean.plane(channel)[i])) values.push_back(mean.plane(channel)[i]);
+  const auto quantile = [&](std::size_t rank) {
+    std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(rank), values.end());
+    return static_cast<double>(values[rank]);
+  };
+  const std::size_t cut = values.size() / 200;
+  const double low = values.empty() ? 0 : quantile(cut), high = values.empty() ? 0 : quantile(values.size() - 1 - cut);
+  if (!(high > low)) return {std::numeric_limits<double>::lowest(), std::numeric_limits<double>::max()};
+  return {low - (high - low), high + (high - low)};
+}
+
 FeatureLook look_at_feature(const Feature& feature) {
   FeatureLook look;
   const Image& mean = feature.pass.mean;
   for (int c = 0; c < mean.channels(); ++c) {
+    const Range usual = usual_range(feature, c);
     const Real* values = mean.plane(c);
     double sum = 0, square = 0, noise = 0;
-    std::size_t count = 0, noisy = 0;
+    std::size_t pixels = 0, count = 0, noisy = 0;
     for (std::size_t i = 0; i < mean.pixels(); ++i) {
       const auto v = static_cast<double>(values[i]);
-      if (!usable(values[i]) || (feature.kind == FeatureKind::Depth && v >= sky_depth)) continue;
+      if (!usable_value(feature, values[i])) continue;
+      ++pixels;
+      look.all.add(v);
+      if (!usual.holds(v)) continue;
       ++count;
+      look.usual.add(v);
       sum += v;
       square += v * v;
-      look.low = std::min(look.low, v);
-      look.high = std::max(look.high, v);
       const double own_noise = noise_at(feature.pass, c, i);
       noise += own_noise;
       noisy += own_noise > 0;
@@ -81,7 +117,7 @@ FeatureLook look_at_feature(const Feature& feature) {
     const double n = static_cast<double>(count), m = sum / n;
     look.variance += std::max(0.0, square / n - m * m) / mean.channels();
     look.noise += noise / n / mean.channels();
-    look.usable_pixels = std::max(look.usable_pixels, count);
+    look.usable_pixels = std::max(look.usable_pixels, pixels);
     look.noisy_pixels = std::max(look.noisy_pixels, noisy);
   }
   return look;
@@ -135,7 +171,7 @@ Decision decide_on_feature(const FeatureLook& look, const Feature& feature, cons
   if (look.usable_pixels == 0) return {effect, false, "no finite value"};
   if (!effects.decide) return {effect, true, "asked for"};
   const bool has_sky = feature.kind == FeatureKind::Depth && look.usable_pixels < mean.pixels();
-  if (look.high - look.low <= 1e-6 * std::max(std::abs(look.high), std::abs(look.low)) && !has_sky)
+  if (look.all.high - look.all.low <= 1e-6 * look.all.largest() && !has_sky)
     return {effect, false, "constant", Spared::Columns, mean.channels()};
   if (look.noise > 0.9 * look.variance) return {effect, false, "nothing but noise", Spared::Columns, mean.channels()};
   return {effect, true, "varies over the frame"};
@@ -313,8 +349,7 @@ Preparation look_at(const Frame& frame, const Effects& effects) {
     use.index = i;
     const Decision cleaning = decide_on_cleaning(decision.effect, feature.pass, look, effects);
     use.clean = cleaning.run;
-    if (const double largest = std::max(std::abs(look.low), std::abs(look.high)); largest > 0)
-      use.scale = std::exp2(-std::ilogb(largest));
+    if (const double largest = look.usual.largest(); largest > 0) use.scale = std::exp2(-std::ilogb(largest));
     if (feature.kind == FeatureKind::Depth) use.half_depth = median_depth(feature.pass.mean);
     out.features.push_back(use);
     out.decisions.push_back(cleaning);

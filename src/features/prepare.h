@@ -16,7 +16,7 @@ namespace polyrecon {
 struct FeatureUse {
   std::size_t index = 0;  ///< Into Frame::features.
   bool clean = false;     ///< It is noisy: prefilter it (features/prefilter.h).
-  double scale = 1;       ///< Factor that brings its values to order 1, so that no square overflows.
+  double scale = 1;       ///< Factor that brings its values, but for spikes, to order 1.
   double half_depth = 0;  ///< Depth z enters as z / (z + half_depth): bounded, so that a sky at 1e10 fits; 0: as it is.
 };
 

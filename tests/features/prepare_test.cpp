@@ -57,6 +57,22 @@ TEST(LookAt, KeepsFeaturesThatVary) {
             "");
 }
 
+/// The sun in a mirror: one pixel of an albedo that is thousands, and its noise with it.
+TEST(LookAt, ASpikeIsNeitherTheScaleOfAFeatureNorItsNoise) {
+  Frame frame = make_scene(width, height, 0.1, 1).frame;
+  Feature& albedo = frame.features.front();
+  ASSERT_EQ(albedo.kind, FeatureKind::Albedo);
+  albedo.pass.variance = Image(width, height, 3, Real(1e-4));
+  const Preparation before = look_at(frame);
+  for (int c = 0; c < 3; ++c) {
+    albedo.pass.mean.at(5, 5, c) = Real(1000);
+    albedo.pass.variance.at(5, 5, c) = Real(1e6);
+  }
+  const Preparation after = look_at(frame);
+  ASSERT_EQ(after.features.size(), before.features.size());
+  EXPECT_EQ(after.features.front().scale, before.features.front().scale);
+}
+
 TEST(LookAt, CleansOnlyNoisyFeatures) {
   Frame frame = make_scene(width, height, 0.1, 1).frame;
   frame.features.resize(2);
