@@ -14,15 +14,16 @@ namespace polyrecon {
 /// rounding. Omega_o is a square around o that grows until the root mean square of the gain is at most max_gain, so
 /// that light stays where it fell as far as that cannot be seen. Layers beyond the first three channels (AOVs, three
 /// channels each) receive their e_o in the shape of the beauty, so that layers that add up still do; a last single
-/// channel (alpha) is left alone. Where Omega_o is the whole image, no pixel is to change by much more than a half: see
+/// channel (alpha) is left alone. Where Omega_o is the whole image, gains are bounded: see
 /// restore_totals. An outlier on an image that is all black gives its energy back where it was taken.
 void restore_energy(const std::vector<Outlier>& outliers, double max_gain, Image& image);
 
 /// The same for what the fit itself gained or lost, Omega being the whole image: every channel's sum becomes `totals`
 /// (one value a channel, as many as are to be restored). Only where that is at most max_gain of the channel; a larger
 /// difference is not rounding or the pull of the weights but content (an input of both signs, a hole that was mended),
-/// and stays. Where the brightest pixel would change by more than a half, the more of it the less goes by squares, and
-/// from twice that on all pixels gain alike. Returns the gain of each of the first three channels.
+/// and stays. No pixel changes by more than a half: those that would, the brightest, change by that, the others still
+/// by squares, which is the least relative squared error under this bound; where it cannot be kept all gain alike.
+/// Returns the gain of each of the first three channels.
 std::array<double, 3> restore_totals(const std::vector<double>& totals, double max_gain, Image& image);
 
 /// Sum of every channel over the usable pixels.
