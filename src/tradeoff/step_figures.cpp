@@ -5,14 +5,14 @@ namespace polyrecon {
 
 const std::array<StepFigures, step_count>& measured_steps() {
   static const std::array<StepFigures, step_count> figures{{
-      {0.129, 1.36},   // draft, order 0
-      {0.13, 1.327},   // draft
-      {0.344, 1.085},  // draft, stages 2
-      {0.299, 1.284},  // stages 1
+      {0.117, 1.356},  // draft, order 0
+      {0.121, 1.321},  // draft
+      {0.312, 1.084},  // draft, stages 2
+      {0.299, 1.282},  // stages 1
       {1, 1},          // standard
-      {1.2, 0.9858},   // order 3
-      {2.03, 0.9815},  // best, coverage 2
-      {2.64, 0.976},   // best
+      {1.17, 0.9864},  // order 3
+      {1.98, 0.9812},  // best, coverage 2
+      {2.62, 0.975},   // best
   }};
   return figures;
 }
