@@ -282,7 +282,8 @@ class Results:
 
     def __init__(self, path):
         self.path = path
-        self.rows = json.loads(path.read_text()) if path.exists() else []
+        kept = json.loads(path.read_text()) if path.exists() else []
+        self.rows = [{"draw": 1} | row for row in kept]  # files of before draws were told apart have none
 
     def add(self, row):
         self.rows.append(row)

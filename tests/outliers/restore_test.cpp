@@ -166,6 +166,19 @@ TEST(RestoreEnergy, ALampDoesNotTakeAllOfADarkRoom) {
   EXPECT_LT(static_cast<double>(image.at(20, 20, 0)), 5 * 1.6);
 }
 
+/// More than half of all light: the bound on a gain cannot be kept, so every pixel gains the same part of itself.
+TEST(RestoreEnergy, WhatNoBoundHoldsGoesToAllAlike) {
+  Image image(64, 48, 3, Real(0.1));
+  for (int c = 0; c < 3; ++c) image.at(20, 20, c) = Real(5);
+  const Image before = image;
+  const double energy = 0.8 * channel_sums(image).front();
+  restore_energy({{50, 30, {energy, energy, energy}}}, max_gain, image);
+  for (int c = 0; c < 3; ++c) {
+    EXPECT_NEAR(static_cast<double>(image.at(20, 20, c)), 5 * 1.8, 1e-4);
+    EXPECT_NEAR(static_cast<double>(image.at(3, 40, c)), 0.1 * 1.8, 1e-6);
+  }
+}
+
 /// Where the bound on a gain begins to count there is no step: a little more to restore changes each pixel a little.
 TEST(RestoreTotals, MeetsTheMostGainWithoutAStep) {
   double last = 0;
