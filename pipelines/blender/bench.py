@@ -263,13 +263,14 @@ def next_samples(tries, target):
 
 
 def next_threshold(tries, target):
-    """Rendering takes ~ threshold^-slope seconds; the slope is that of the last two tries."""
+    """Rendering takes ~ threshold^-slope seconds, 2 where the noise falls with the root of the samples; the slope is that of
+    the last two tries. Tries begin at a coarse one, as those are cheap, and go down in steps that a flat start cannot stretch."""
     if not tries:
-        return 0.05
-    last, slope = tries[-1], 1.5
+        return 0.1
+    last, slope = tries[-1], 2.0
     if len(tries) > 1 and last["knob"] != tries[-2]["knob"]:
         change = math.log(last["rendering"] / tries[-2]["rendering"]) / math.log(last["knob"] / tries[-2]["knob"])
-        slope = min(max(-change, 0.5), 4.0)
+        slope = min(max(-change, 1.0), 4.0)
     wanted = max(target - (last["seconds"] - last["rendering"]), 0.1)
     return last["knob"] * (last["rendering"] / wanted) ** (1 / slope)
 

@@ -82,6 +82,10 @@ class BlenderRenderer(Renderer):
         self._write(target, channels, counts, keep_all=own_passes)
 
     def extra(self, first, counts, target):
+        samples = int(counts.max())
+        if samples == counts.min():
+            self._write(target, self._render(first=first, samples=samples)[0], counts)
+            return samples
         sums, taken = {}, np.zeros(counts.shape)
         pieces = masks.plan(counts) if self.masked else regions.plan(counts, self._overhead_samples())
         for piece, channels in self._render_ahead(first, pieces):
@@ -117,7 +121,7 @@ class BlenderRenderer(Renderer):
         renderer.shutdown()
 
     def _render_piece(self, first, piece):
-        if piece.inside.shape == self.shape and piece.inside.all():
+        if piece.inside.shape == self.shape and piece.inside.all():  # the lowest count, of every pixel
             return self._render(first=first + piece.skip, samples=piece.samples)[0]
         job = {"first": first + piece.skip, "samples": piece.samples, "crop": piece.box}
         if not self.masked:
