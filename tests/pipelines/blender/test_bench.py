@@ -55,6 +55,7 @@ class Run(unittest.TestCase):
             before = {path: path.stat().st_mtime_ns for path in work.rglob("*.exr")}
             self.assertIn("| meadow | 0.5 s |", self.call(*words)[1])
             self.assertEqual({path: path.stat().st_mtime_ns for path in work.rglob("*.exr")}, before)
+            before.pop(work / "meadow" / "trial.exr", None)  # of a run that is not the nearest; the next one's takes its place
             self.call(*words, "--draws=2")
             self.assertEqual({path: path.stat().st_mtime_ns for path in before}, before)
             first, second = (min((r for r in json.loads((work / "results_wall.json").read_text()) if r["draw"] == draw),
