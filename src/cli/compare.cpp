@@ -14,7 +14,7 @@
 #include "cli/progress_output.h"
 #include "core/error.h"
 #include "io/atomic_file.h"
-#include "io/preview.h"
+#include "io/png_file.h"
 
 namespace polyrecon {
 namespace {
@@ -38,7 +38,7 @@ void run(const CompareOptions& o) {
   for (std::size_t i = 0; i + 1 < o.files.size(); ++i)
     for (Comparison& c : compare_files(open_layers(o.files[i]), reference, with_images, *progress))
       found.push_back(std::move(c));
-  if (!o.html.empty()) write_text_file(o.html, comparison_page(reference_path, found, o.display));
+  if (!o.html.empty()) write_bytes(o.html, comparison_page(reference_path, found, o.display));
   if (!o.picture.empty()) write_png(o.picture, comparison_picture(found, o.display));
   std::fputs((o.json ? comparison_json(reference_path, found).dump(2) + "\n" : comparison_text(found)).c_str(), stdout);
 }

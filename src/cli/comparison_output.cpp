@@ -6,6 +6,8 @@
 #include <cmath>
 #include <filesystem>
 
+#include "io/false_color.h"
+
 namespace polyrecon {
 namespace {
 

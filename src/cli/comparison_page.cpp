@@ -9,7 +9,8 @@
 
 #include "cli/comparison_output.h"
 #include "core/resample.h"
-#include "io/preview.h"
+#include "io/false_color.h"
+#include "io/png_file.h"
 #include "tradeoff/plot.h"
 
 namespace polyrecon {

@@ -132,7 +132,7 @@ void denoise_frame(const FrameFiles& files, LoadedFrame loaded, const DenoiseOpt
   report.seconds = loaded.read_seconds + seconds_since(start);
   report.peak_memory = peak_memory();
   report.reconstruction = result.report;
-  if (!files.report.empty()) write_text_file(files.report, report_json(report, in.source).dump(2) + "\n");
+  if (!files.report.empty()) write_bytes(files.report, report_json(report, in.source).dump(2) + "\n");
   print(o.quiet, report_text(report));
 }
 

@@ -16,6 +16,8 @@
 #include "cli/layers.h"
 #include "core/error.h"
 #include "io/color.h"
+#include "io/false_color.h"
+#include "io/png_file.h"
 
 namespace polyrecon {
 namespace {

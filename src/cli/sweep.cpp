@@ -120,8 +120,8 @@ void run(const SweepOptions& o) {
   Sweep sweep = run_sweep(inputs, o.groups, reference, std::move(peers), *progress);
   sweep.reference_name = file_name(o.reference);
   if (o.threads > 0) sweep.threads = o.threads;
-  write_text_file(o.output, page_of(sweep, POLYRECON_VERSION));
-  if (!o.csv.empty()) write_text_file(o.csv, csv_of(sweep));
+  write_bytes(o.output, page_of(sweep, POLYRECON_VERSION));
+  if (!o.csv.empty()) write_bytes(o.csv, csv_of(sweep));
   if (o.quiet) return;
   for (const Trial& trial : sweep.inputs.front().trials)
     std::fputs(

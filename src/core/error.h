@@ -32,4 +32,7 @@ class Error : public std::runtime_error {
   ExitCode code_;
 };
 
+/// text up to its first line break: library messages go into one-line errors.
+inline std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
+
 }  // namespace polyrecon

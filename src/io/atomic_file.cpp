@@ -20,7 +20,6 @@
 #include <system_error>
 
 #include "core/error.h"
-#include "io/exr_attributes.h"
 
 namespace polyrecon {
 namespace {
@@ -164,11 +163,11 @@ void remove_temporaries() {
     if (const char* path = slot.load()) ::unlink(path);
 }
 
-void write_text_file(const std::string& target, const std::string& text) {
-  const auto write = [&](const std::string& path) { std::ofstream(path, std::ios::binary) << text; };
+void write_bytes(const std::string& target, const std::string& bytes) {
+  const auto write = [&](const std::string& path) { std::ofstream(path, std::ios::binary) << bytes; };
   const auto verify = [&](const std::string& path) {
     std::ifstream file(path, std::ios::binary);
-    if (std::string(std::istreambuf_iterator<char>(file), {}) != text)
+    if (std::string(std::istreambuf_iterator<char>(file), {}) != bytes)
       throw Error(ExitCode::CannotWrite, target + ": cannot be read back, is the disk full?");
   };
   write_atomically(target, write, verify);

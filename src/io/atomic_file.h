@@ -17,8 +17,8 @@ void write_atomically(const std::string& target, const std::function<void(const 
 /// (async-signal-safe).
 void remove_temporaries();
 
-/// Writes text as it is by write_atomically.
-void write_text_file(const std::string& target, const std::string& text);
+/// Writes these bytes, text or other, by write_atomically.
+void write_bytes(const std::string& target, const std::string& bytes);
 
 /// Throws Error{CannotWrite} unless a file can be made beside target and take its name; leaves nothing behind.
 void check_writable(const std::string& target);

@@ -13,7 +13,6 @@
 #include <utility>
 
 #include "core/error.h"
-#include "io/exr_attributes.h"
 #include "io/plain_image_file.h"
 
 namespace polyrecon {

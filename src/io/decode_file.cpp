@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
-#include "io/exr_attributes.h"
 #include "io/exr_bands.h"
 #include "io/exr_file.h"
 

@@ -38,6 +38,4 @@ std::string attribute_text(const Imf::Attribute& attribute) {
   return {};
 }
 
-std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
-
 }  // namespace polyrecon

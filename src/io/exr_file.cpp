@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <exception>
 #include <filesystem>
 #include <fstream>
@@ -92,6 +93,15 @@ void describe_exr(FileInfo& file, const ReadLimits& limits) {
   for (const Imf::Header& header : headers) file.parts.push_back(describe_part(header));
 }
 
+/// Linear formats that renderers write; others are refused by name rather than guessed at.
+bool is_plain_image(const std::string& path) {
+  std::string extension = std::filesystem::path(path).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  static constexpr std::array known{".pfm", ".hdr", ".tif", ".tiff"};
+  return std::find(known.begin(), known.end(), extension) != known.end();
+}
+
 }  // namespace
 
 bool PartInfo::readable() const {
@@ -120,6 +130,8 @@ FileInfo describe_file(const std::string& path, const ReadLimits& limits) {
   file.bytes = size_of_existing(path);
   if (Imf::isOpenExrFile(path.c_str()))
     describe_exr(file, limits);
+  else if (!is_plain_image(path))
+    fail(path, "not an OpenEXR file");
   else
     describe_plain_image(file, limits);
   return file;

@@ -4,28 +4,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <cctype>
-#include <filesystem>
 #include <memory>
 
 #include "core/error.h"
-#include "io/exr_attributes.h"
 
 namespace polyrecon {
 namespace {
 
 [[noreturn]] void fail(const std::string& path, const std::string& what) {
   throw Error(ExitCode::BadInput, fmt::format("{}: {}", path, what));
-}
-
-/// Linear formats that renderers write; others are refused by name rather than guessed at.
-bool is_known_extension(const std::string& path) {
-  std::string extension = std::filesystem::path(path).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  static constexpr std::array known{".pfm", ".hdr", ".tif", ".tiff"};
-  return std::find(known.begin(), known.end(), extension) != known.end();
 }
 
 /// Rows of a PFM run bottom-up; some versions of OpenImageIO turn them only on request.
@@ -43,7 +30,6 @@ SampleType to_sample_type(const OIIO::TypeDesc& type) {
 }  // namespace
 
 void describe_plain_image(FileInfo& file, const ReadLimits& limits) {
-  if (!is_known_extension(file.path)) fail(file.path, "not an OpenEXR file");
   const auto input = open_image(file.path);
   if (!input) fail(file.path, fmt::format("cannot be read ({})", first_line(OIIO::geterror())));
   const OIIO::ImageSpec& spec = input->spec();

@@ -2,7 +2,6 @@
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imagebufalgo.h>
-#include <OpenImageIO/strutil.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,7 +10,7 @@
 #include <string>
 
 #include "core/error.h"
-#include "io/atomic_file.h"
+#include "io/false_color.h"
 
 namespace polyrecon {
 namespace {
@@ -165,30 +164,14 @@ Image stack(const std::vector<Image>& rows) {
 
 bool has_font() { return !font().empty(); }
 
-void write_png(const std::string& target, const Image& rgb) {
-  const auto write = [&](const std::string& path) {
-    const OIIO::ImageBuf buffer = buffer_of(rgb);
-    if (!buffer.write(path, OIIO::TypeDesc::UINT8, "png"))
-      throw Error(ExitCode::CannotWrite, target + ": " + buffer.geterror());
-  };
-  const auto verify = [&](const std::string& path) {
-    OIIO::ImageBuf back(path);
-    if (!back.read() || back.spec().width != rgb.width() || back.spec().height != rgb.height())
-      throw Error(ExitCode::CannotWrite, target + ": cannot be read back");
-  };
-  write_atomically(target, write, verify);
-}
-
-std::string png_data_uri(const Image& rgb) {
+std::string encode_png(const Image& rgb) {
   OIIO::Filesystem::IOVecOutput memory;
   OIIO::ImageBuf buffer = buffer_of(rgb);
   buffer.set_write_ioproxy(&memory);
   buffer.set_write_format(OIIO::TypeDesc::UINT8);
   if (!buffer.write("memory.png", OIIO::TypeDesc::UNKNOWN, "png"))
     throw Error(ExitCode::Internal, "a picture cannot be made into PNG: " + buffer.geterror());
-  const std::vector<unsigned char>& bytes = memory.buffer();
-  return "data:image/png;base64," +
-         OIIO::Strutil::base64_encode({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  return {memory.buffer().begin(), memory.buffer().end()};
 }
 
 }  // namespace polyrecon

@@ -26,11 +26,7 @@ Image stack(const std::vector<Image>& rows);
 /// Whether this machine has a font to write captions with.
 bool has_font();
 
-/// Writes rgb (3 channels, 0..1) as 8-bit PNG; the file takes its name only once it is whole.
-/// Throws Error{CannotWrite}; an older file is then untouched.
-void write_png(const std::string& target, const Image& rgb);
-
-/// rgb (3 channels, 0..1) as 8-bit PNG in a data URI: what a web page shows without a file beside it.
-std::string png_data_uri(const Image& rgb);
+/// The bytes of rgb (3 channels, 0..1) as 8-bit PNG.
+std::string encode_png(const Image& rgb);
 
 }  // namespace polyrecon

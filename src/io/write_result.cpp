@@ -26,7 +26,6 @@
 
 #include "core/error.h"
 #include "io/atomic_file.h"
-#include "io/exr_attributes.h"
 #include "io/exr_bands.h"
 #include "io/exr_raw.h"
 #include "io/exr_single_part.h"

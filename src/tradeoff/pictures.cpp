@@ -5,7 +5,8 @@
 
 #include "core/resample.h"
 #include "io/color.h"
-#include "io/preview.h"
+#include "io/false_color.h"
+#include "io/png_file.h"
 
 namespace polyrecon {
 namespace {

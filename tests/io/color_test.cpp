@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "io/false_color.h"
 #include "io/preview.h"
 
 namespace polyrecon {

@@ -5,6 +5,7 @@ run.sh beside it goes on where this ends: it installs the Debian packages in a f
 """
 
 import gzip
+import os
 import pathlib
 import re
 import shutil
@@ -14,6 +15,7 @@ import tempfile
 import unittest
 
 PROGRAM, BUILD, SAMPLES = (pathlib.Path(word).resolve() for word in sys.argv[1:4])
+MODULE = "polyrecon_pictures.so"
 CONSUMER = pathlib.Path(__file__).resolve().parent / "consumer"
 
 
@@ -46,12 +48,36 @@ class Install(Folder):
             float(re.search(r"relMSE (\S+)", run(PROGRAM, "compare", noisy, theirs)).group(1)), 1e-4, "nothing changed"
         )
 
+    def test_only_pictures_need_the_module_which_may_move_with_the_program(self):
+        run("cmake", "--install", BUILD, "--prefix", self.folder / "first", "--component", "program")
+        prefix = (self.folder / "first").rename(self.folder / "second")
+        program, clean, picture = prefix / "bin/polyrecon", self.folder / "clean.exr", self.folder / "clean.png"
+        run(program, "denoise", "-i", SAMPLES / "study_small_0.exr", "-o", clean, "--quality", "draft", "--quiet")
+        for words, expected in ((["inspect", clean], False), (["preview", clean, "-o", picture], True)):
+            debug = {**os.environ, "LD_DEBUG": "files"}
+            loaded = subprocess.run([program, *words], env=debug, capture_output=True, text=True).stderr
+            self.assertEqual("libOpenImageIO.so" in loaded, expected, words)
+        (module,) = prefix.rglob(MODULE)
+        # A signal handler removes the temporary files that the program knows of: the module must not have its own.
+        self.assertNotIn("remove_temporaries", run("nm", "--demangle", module))
+        module.unlink()
+        run(program, "inspect", clean)
+        without = subprocess.run([program, "preview", clean, "-o", picture], capture_output=True, text=True)
+        self.assertEqual(without.returncode, 4)
+        self.assertRegex(without.stderr, rf"\Apolyrecon: .*{MODULE}.*\n\Z")
+
 
 class DebianPackages(Folder):
     def setUp(self):
         super().setUp()
         run("cpack", "--config", BUILD / "CPackConfig.cmake", "-G", "DEB", "-B", self.folder)
         self.packages = {path.name.split("_")[0]: path for path in self.folder.glob("*.deb")}
+
+    def unpacked(self):
+        """The program of its package, and its module."""
+        run("dpkg-deb", "--extract", self.packages["polyrecon"], self.folder / "root")
+        (module,) = (self.folder / "root").rglob(MODULE)
+        return self.folder / "root/usr/bin/polyrecon", module
 
     def test_they_hold_what_debian_expects(self):
         self.assertEqual(sorted(self.packages), ["libpolyrecon-dev", "polyrecon"])
@@ -76,6 +102,7 @@ class DebianPackages(Folder):
             },
             set(names["polyrecon"]),
         )
+        self.assertTrue(any(name.endswith(f"/polyrecon/{MODULE}") for name in names["polyrecon"]), names["polyrecon"])
         library = names["libpolyrecon-dev"]
         self.assertIn("/usr/include/polyrecon/pipeline/reconstruct.h", library)
         self.assertTrue(any(name.endswith("/libpolyrecon_core.a") for name in library), library)
@@ -86,18 +113,18 @@ class DebianPackages(Folder):
         depends = run("dpkg-deb", "--field", self.packages["polyrecon"], "Depends")
         for word in ("libc6", "libopenimageio", "libopenexr", "libopencolorio", "libtbb", "libfmt", "fonts-dejavu-core"):
             self.assertIn(word, depends)
-        # Every library that the program loads belongs to one of them.
-        needed = re.findall(r"NEEDED\)\s+Shared library: \[(\S+)\]", run("readelf", "--dynamic", PROGRAM))
-        self.assertTrue(needed)
+        # Every library that the program and its module load belongs to one of them.
+        needed = re.findall(r"NEEDED\)\s+Shared library: \[(\S+)\]", run("readelf", "--dynamic", *self.unpacked()))
+        self.assertIn("libOpenImageIO.so", "".join(needed))
         for library in needed:
             owners = re.findall(r"^([\w.+-]+)(?::\w+)?: ", run("dpkg-query", "--search", f"*/{library}"), re.M)
             self.assertTrue(any(owner in depends for owner in owners), (library, owners, depends))
 
     def test_the_packed_program_and_pages_are_whole(self):
-        run("dpkg-deb", "--extract", self.packages["polyrecon"], self.folder / "root")
-        program = self.folder / "root" / "usr" / "bin" / "polyrecon"
+        program, module = self.unpacked()
         self.assertEqual(run(program, "--version"), run(PROGRAM, "--version"))
-        self.assertNotIn(".symtab", run("readelf", "--sections", program))
+        self.assertNotIn(".symtab", run("readelf", "--sections", program, module))
+        run(program, "preview", SAMPLES / "study_small_0.exr", "-o", self.folder / "look.png")
         page = gzip.decompress((self.folder / "root/usr/share/man/man1/polyrecon.1.gz").read_bytes())
         self.assertIn(b"Exit codes", page)
 

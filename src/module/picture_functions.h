@@ -1,0 +1,24 @@
+#pragma once
+
+#include "io/false_color.h"
+#include "io/plain_image_file.h"
+#include "io/preview.h"
+
+namespace polyrecon {
+
+/// All functions that need libOpenImageIO, as the program gets them from the module that it loads at the first call.
+struct PictureFunctions {
+  decltype(&polyrecon::false_color) false_color;
+  decltype(&polyrecon::flip_color) flip_color;
+  decltype(&polyrecon::describe_plain_image) describe_plain_image;
+  decltype(&polyrecon::read_plain_image) read_plain_image;
+  decltype(&polyrecon::compose) compose;
+  decltype(&polyrecon::stack) stack;
+  decltype(&polyrecon::has_font) has_font;
+  decltype(&polyrecon::encode_png) encode_png;
+};
+
+/// What the program looks up in the module.
+extern "C" const PictureFunctions polyrecon_picture_functions;
+
+}  // namespace polyrecon
