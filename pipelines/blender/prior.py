@@ -4,7 +4,7 @@ import numpy as np
 
 from ..loop import exr
 
-OVER_ROUND = 1.1  # seconds of add over those of a round's decision: docs/adaptive.md
+OVER_ROUND = 1.3  # seconds of add over those of a round's decision: docs/adaptive.md
 FEATURES = {"Denoising Albedo": "RGB", "Denoising Normal": "XYZ", "Denoising Depth": "Z"}
 
 
@@ -23,7 +23,7 @@ def add(merged, layer, session):
         source.unlink()
         target.unlink()
     priors.update({f"{layer}.Prior.{c}": (priors[f"{layer}.Prior A.{c}"] + priors[f"{layer}.Prior B.{c}"]) / 2 for c in "RGB"})
-    exr.write(merged, {**channels, **priors}, attributes)
+    exr.write(merged, {**channels, **priors}, attributes, compression="none")  # as it was
 
 
 def _half(channels, layer, half):

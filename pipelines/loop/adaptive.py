@@ -29,12 +29,10 @@ EVEN_PARTS = 2  # of a half in an even round: what they differ by tells the vari
 LEAST_CUT, LEAST_EVEN = 8, 1  # samples of a half that are cut so, and that are worth a pass
 EVEN_STEPS = 3  # slices that an even round takes at once: it is not as soon that another map pays
 EXTRA_OVER_UNIFORM = 1.3  # seconds of a sample in a masked pass over one in a whole pass, until they are measured: docs/adaptive.md
-# Seconds of a decision are JUDGING x (those of merging two parts)^JUDGING_POWER, until one was made: its reconstructions from
-# 480x270 to 1920x1080 within a quarter, the maps about half as much again. More than in proportion, as the start of a
-# program is a larger share of the merge.
-JUDGING, JUDGING_POWER = 8.4, 1.37
+# Seconds of a decision over those of merging two parts, until one was made: within a fifth from 480x270 to 1920x1080.
+JUDGING = 8.5
 # Seconds of the last merge and reconstruction, of all samples, and of the report, over those of a decision.
-LAST_OVER_ROUND = {"draft": 0.9, "standard": 1.6, "best": 3.9}
+LAST_OVER_ROUND = {"draft": 0.8, "standard": 1.9, "best": 4.4}
 
 
 @dataclasses.dataclass
@@ -150,7 +148,7 @@ class _Loop:
         merged.parent.mkdir(exist_ok=True)
         begin = time.monotonic()
         self.polyrecon.run("merge", *[self.journal.files(half)[0] for half in HALVES], "-o", merged, "--compression", "none", "--quiet")
-        self.judging = JUDGING * (time.monotonic() - begin) ** JUDGING_POWER
+        self.judging = JUDGING * (time.monotonic() - begin)
         merged.unlink()
 
     def even_pass(self):
