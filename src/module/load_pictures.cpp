@@ -16,6 +16,7 @@ namespace {
 /// Where the module is, as seen from the program, is fixed; both may be moved together. (/proc/self/exe says nothing
 /// where /proc is not mounted.)
 std::string module_path() {
+  // NOLINTNEXTLINE(performance-no-int-to-ptr): the system tells the address as a number
   const auto* program = reinterpret_cast<const char*>(::getauxval(AT_EXECFN));
   const auto folder = std::filesystem::canonical(program).parent_path();
   return (folder / POLYRECON_PICTURES).lexically_normal().string();
