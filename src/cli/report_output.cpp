@@ -117,10 +117,10 @@ std::string report_text(const RunReport& run) {
     text += line("neighbours in time",
                  fmt::format("{} frames, {:.2f} of a frame's weight on average", r.neighbours, r.neighbour_weight));
   text += line("windows", windows_text(r));
-  text +=
-      line("fallbacks",
-           fmt::format("{} rank-deficient windows, {} windows left out, {} pixels left to the input, {} pixels raised",
-                       r.rank_deficient_windows, r.dropped_windows, r.pixels_fallen_back_to_input, r.raised_pixels));
+  text += line("fallbacks", fmt::format("{} rank-deficient windows, {} windows left out, {} pixels left to the input, "
+                                        "{} pixels bound to their noise, {} raised",
+                                        r.rank_deficient_windows, r.dropped_windows, r.pixels_fallen_back_to_input,
+                                        r.bound_pixels, r.raised_pixels));
   text += line("input pixels", fmt::format("{} mended, {} negative", r.mended_pixels, r.negative_pixels));
   text += line("outliers", fmt::format("{}, energy moved {}", r.outliers, rgb_text(r.outlier_energy)));
   text += line("energy (mean RGB)", fmt::format("{} -> {} ({:+.3f} %)", rgb_text(r.energy_before),
@@ -159,6 +159,7 @@ Json report_json(const RunReport& run, const FrameSource& source) {
           {"fallbacks",
            {{"windows_left_out", r.dropped_windows},
             {"pixels_left_to_input", r.pixels_fallen_back_to_input},
+            {"pixels_bound", r.bound_pixels},
             {"pixels_raised", r.raised_pixels}}},
           {"mended_pixels", r.mended_pixels},
           {"negative_pixels", r.negative_pixels},

@@ -1,6 +1,7 @@
 #include "features/variance_floor.h"
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "core/parallel.h"
@@ -10,7 +11,7 @@ namespace polyrecon {
 namespace {
 
 constexpr int radius = 2, side = 2 * radius + 1;
-constexpr Real part_of_mean = Real(0.3);
+constexpr Real part_of_mean = Real(0.5);
 
 /// Median of five by a sorting network's middle, free of branches.
 inline Real median_of_5(Real a, Real b, Real c, Real d, Real e) {
@@ -20,12 +21,12 @@ inline Real median_of_5(Real a, Real b, Real c, Real d, Real e) {
   return e < low ? low : (e > high ? high : e);
 }
 
-/// Per column the median and the mean of five rows.
-POLYRECON_SIMD void columns_of_5(const Real* const* rows, Real* median, Real* mean, int n) {
+/// Per column the median and the mean square root of five rows.
+POLYRECON_SIMD void columns_of_5(const Real* const* rows, Real* median, Real* mean_root, int n) {
   for (int x = 0; x < n; ++x) {
     const Real a = rows[0][x], b = rows[1][x], c = rows[2][x], d = rows[3][x], e = rows[4][x];
     median[x] = median_of_5(a, b, c, d, e);
-    mean[x] = (a + b + c + d + e) * Real(0.2);
+    mean_root[x] = (std::sqrt(a) + std::sqrt(b) + std::sqrt(c) + std::sqrt(d) + std::sqrt(e)) * Real(0.2);
   }
 }
 
@@ -34,12 +35,15 @@ POLYRECON_SIMD void medians_along(const Real* in, Real* median, int n) {
   for (int x = 0; x < n; ++x) median[x] = median_of_5(in[x], in[x + 1], in[x + 2], in[x + 3], in[x + 4]);
 }
 
-/// of_columns, of_rows: median of the columns' medians, of the rows' medians. means: of columns, as for medians_along.
-POLYRECON_SIMD void floor_row(const Real* variance, const Real* of_columns, const Real* of_rows, const Real* means,
+/// of_columns, of_rows: median of the columns' medians, of the rows' medians. mean_roots: of columns, as for
+/// medians_along.
+POLYRECON_SIMD void floor_row(const Real* variance, const Real* of_columns, const Real* of_rows, const Real* mean_roots,
                               Real* out, int n) {
   for (int x = 0; x < n; ++x) {
     const Real median = Real(0.5) * (of_columns[x] + of_rows[x]);
-    const Real mean = (means[x] + means[x + 1] + means[x + 2] + means[x + 3] + means[x + 4]) * Real(0.2) * part_of_mean;
+    const Real root =
+        (mean_roots[x] + mean_roots[x + 1] + mean_roots[x + 2] + mean_roots[x + 3] + mean_roots[x + 4]) * Real(0.2);
+    const Real mean = part_of_mean * root * root;
     const Real least = median > mean ? median : mean;
     out[x] = variance[x] > least ? variance[x] : least;
   }
@@ -82,17 +86,17 @@ Image floor_variance(const Image& variance) {
     const int y = static_cast<int>(row);
     const auto columns = static_cast<std::size_t>(width);
     const std::size_t padded = columns + std::size_t{side} - 1;
-    std::vector<Real> medians(padded), means(padded), of_columns(columns), of_rows(columns), unused(columns);
+    std::vector<Real> medians(padded), mean_roots(padded), of_columns(columns), of_rows(columns), unused(columns);
     for (int c = 0; c < out.channels(); ++c) {
       const Real* rows[side];
       rows_around(row_medians, c, y, rows);
       columns_of_5(rows, of_rows.data(), unused.data(), width);
       rows_around(variance, c, y, rows);
-      columns_of_5(rows, medians.data() + radius, means.data() + radius, width);
+      columns_of_5(rows, medians.data() + radius, mean_roots.data() + radius, width);
       repeat_ends(medians);
-      repeat_ends(means);
+      repeat_ends(mean_roots);
       medians_along(medians.data(), of_columns.data(), width);
-      floor_row(variance.row(c, y), of_columns.data(), of_rows.data(), means.data(), out.row(c, y), width);
+      floor_row(variance.row(c, y), of_columns.data(), of_rows.data(), mean_roots.data(), out.row(c, y), width);
     }
   });
   return out;

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <functional>
+#include <limits>
 
 #include "core/parallel.h"
 
@@ -37,9 +40,17 @@ std::ptrdiff_t neighbour_of_median(std::vector<std::pair<double, std::ptrdiff_t>
   return middle->second;
 }
 
-/// Index of the pixel of median brightness around (x, y) if the pixel of half h is an outlier, else -1.
-std::ptrdiff_t replacement_of(const HalfPair& pair, std::size_t h, int x, int y, bool independent,
-                              const OutlierParams& p) {
+/// Whether what a pixel has in excess is within what its own noise allows: then it cannot be trusted.
+bool unreliable(const HalfPair& pair, std::size_t center, double excess, const OutlierParams& p) {
+  if (!p.variance_is_measured) return true;
+  double variance = 0;
+  for (int c = 0; c < 3; ++c) variance += static_cast<double>(pair.variance.plane(c)[center]) / 3;
+  return excess * excess < p.reliability * p.reliability * variance;
+}
+
+/// Where the pixel of half h stands far above what both halves hold around it: the neighbour of median brightness.
+std::ptrdiff_t against_neighbours(const HalfPair& pair, std::size_t h, int x, int y, bool independent,
+                                  const OutlierParams& p) {
   const Image &own = pair.color[h], &other = pair.color[1 - h];
   if (!stands_out(own, x, y, p.neighbourhood)) return -1;
   const std::size_t center = own.index(x, y);
@@ -66,12 +77,63 @@ std::ptrdiff_t replacement_of(const HalfPair& pair, std::size_t h, int x, int y,
   const double median = *middle;
   const double excess = value - median;
   const double height = independent ? p.height : 2 * p.height;
-  if (!(excess > height * (top - median))) return -1;
-  if (!p.variance_is_measured) return neighbour_of_median(neighbours);
-  double variance = 0;
-  for (int c = 0; c < 3; ++c) variance += static_cast<double>(pair.variance.plane(c)[center]) / 3;
-  if (!(excess * excess < p.reliability * p.reliability * variance)) return -1;
+  if (!(excess > height * (top - median)) || !unreliable(pair, center, excess, p)) return -1;
   return neighbour_of_median(neighbours);
+}
+
+/// The third largest difference between the halves around a pixel; the largest possible one where there are fewer.
+double third_difference(const Image& own, const Image& other, const Rect& around, std::size_t center) {
+  std::array<double, 3> largest;
+  largest.fill(std::numeric_limits<double>::infinity());
+  std::size_t count = 0;
+  for (int v = around.y0; v < around.y1; ++v)
+    for (int u = around.x0; u < around.x1; ++u) {
+      const std::size_t i = own.index(u, v);
+      if (i == center) continue;
+      double difference = std::abs(brightness(own, i) - brightness(other, i));
+      if (count < 3) {
+        largest[count++] = difference;
+        if (count == 3) std::sort(largest.begin(), largest.end(), std::greater<>());
+        continue;
+      }
+      for (double& l : largest)
+        if (difference > l) std::swap(difference, l);
+    }
+  return largest[2];
+}
+
+/// Where the pixel of half h stands far above the other half's, as no pixel around it does: beside an edge, whose
+/// bright side hides a spike from against_neighbours. Of the five neighbours that the other half takes for the most
+/// alike the one of median brightness; none where all are so unlike that putting one here could cost more than a third
+/// of the excess.
+std::ptrdiff_t against_other_half(const HalfPair& pair, std::size_t h, int x, int y, const OutlierParams& p) {
+  const Image &own = pair.color[h], &other = pair.color[1 - h];
+  const std::size_t center = own.index(x, y);
+  const double seen_by_other = brightness(other, center), excess = brightness(own, center) - seen_by_other;
+  if (!(excess > 0) || !unreliable(pair, center, excess, p)) return -1;
+  const Rect around = intersect(grow({x, y, x + 1, y + 1}, p.neighbourhood), own.bounds());
+  const double third = third_difference(own, other, around, center);
+  if (!(excess > p.height_over_other_half * third)) return -1;
+  std::vector<std::pair<double, std::ptrdiff_t>> alike, neighbours;
+  for (int v = around.y0; v < around.y1; ++v)
+    for (int u = around.x0; u < around.x1; ++u) {
+      const std::size_t i = own.index(u, v);
+      const double unlike = std::abs(brightness(other, i) - seen_by_other);
+      const bool spike = std::abs(brightness(own, i) - brightness(other, i)) > third;
+      if (i != center && !spike && 3 * unlike < excess) alike.emplace_back(unlike, static_cast<std::ptrdiff_t>(i));
+    }
+  if (alike.empty()) return -1;
+  std::sort(alike.begin(), alike.end());
+  alike.resize(std::min(alike.size(), std::size_t{5}));
+  for (const auto& [unlike, i] : alike) neighbours.emplace_back(brightness(own, static_cast<std::size_t>(i)), i);
+  return neighbour_of_median(neighbours);
+}
+
+/// Index of the pixel whose value takes the place of pixel (x, y) of half h if that is an outlier, else -1.
+std::ptrdiff_t replacement_of(const HalfPair& pair, std::size_t h, int x, int y, bool independent,
+                              const OutlierParams& p) {
+  const std::ptrdiff_t neighbour = against_neighbours(pair, h, x, y, independent, p);
+  return neighbour >= 0 || !independent ? neighbour : against_other_half(pair, h, x, y, p);
 }
 
 Replacement find(const HalfPair& pair, std::size_t h, bool independent, const OutlierParams& p, Progress& progress) {

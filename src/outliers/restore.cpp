@@ -14,33 +14,50 @@ constexpr double kMostGain = 0.5;
 
 constexpr double kBelowAll = 1e-100;  ///< No positive value of an image is less.
 
-/// Sum of term(value) over the usable pixels of a channel.
+double positive_part(Real value) { return usable(value) ? std::max(static_cast<double>(value), 0.0) : 0; }
+
+/// Sum of term(value, index of the pixel) over the usable pixels of a channel.
 template <typename Term>
 double sum_of(const Image& image, int channel, const Term& term) {
   return ordered_sum(static_cast<std::size_t>(image.height()), [&](std::size_t y) {
     double row = 0;
     const Real* values = image.row(channel, static_cast<int>(y));
-    for (int x = 0; x < image.width(); ++x)
-      if (usable(values[x])) row += term(static_cast<double>(values[x]));
+    const std::size_t first = image.index(0, static_cast<int>(y));
+    for (std::size_t x = 0; x < static_cast<std::size_t>(image.width()); ++x)
+      if (usable(values[x])) row += term(static_cast<double>(values[x]), first + x);
     return row;
   });
 }
 
-/// yhat^2 of a pixel. What is not positive receives nothing.
-double share_of(Real value) {
-  const double yhat = usable(value) ? static_cast<double>(value) : 0;
-  return yhat > 0 ? yhat * yhat : 0;
+/// u of every pixel, of the brightness (one channel, one table of sums): how far it takes part in what is given back.
+Image parts_of(const Image& variance, double quiet, const Image& image) {
+  Image part(image.width(), image.height(), 1);
+  for_rows(image.height(), [&](int y) {
+    for (int x = 0; x < image.width(); ++x) {
+      double sigma = 0, yhat = 0;
+      for (int c = 0; c < 3; ++c) {
+        sigma += std::sqrt(0.5 * static_cast<double>(variance.at(x, y, c)));  // of the mean of the halves
+        yhat += positive_part(image.at(x, y, c));
+      }
+      part.at(x, y, 0) = static_cast<Real>(sigma < quiet * yhat ? sigma / (quiet * yhat) : 1);
+    }
+  });
+  return part;
 }
 
-double positive_part(Real value) { return usable(value) ? std::max(static_cast<double>(value), 0.0) : 0; }
+/// u yhat^2 of a pixel. What is not positive receives nothing.
+double share_of(Real value, Real part) {
+  const double yhat = positive_part(value);
+  return static_cast<double>(part) * yhat * yhat;
+}
 
-/// How energy given to all pixels of a channel is shared out: yhat min(yhat, limit) / sum of that.
+/// How energy given to all pixels of a channel is shared out: u yhat min(yhat, limit) / sum of that.
 struct Sharing {
   double limit = 0, sum = 0;  ///< 0: no pixel is positive.
 
-  double part_of(Real value) const {
+  double of(Real value, Real part) const {
     const double yhat = positive_part(value);
-    return yhat * std::min(yhat, limit) / sum;
+    return static_cast<double>(part) * yhat * std::min(yhat, limit) / sum;
   }
 };
 
@@ -49,9 +66,10 @@ struct Light {
   double squares, above;
 };
 
-Light light_of(const Image& image, int channel, double limit) {
-  return {sum_of(image, channel, [&](double v) { return v > 0 && v <= limit ? v * v : 0.0; }),
-          sum_of(image, channel, [&](double v) { return v > limit ? v : 0.0; })};
+Light light_of(const Image& image, const Image& part, int channel, double limit) {
+  const auto u = [&](std::size_t i) { return static_cast<double>(part.plane(0)[i]); };
+  return {sum_of(image, channel, [&](double v, std::size_t i) { return v > 0 && v <= limit ? u(i) * v * v : 0.0; }),
+          sum_of(image, channel, [&](double v, std::size_t i) { return v > limit ? u(i) * v : 0.0; })};
 }
 
 double greatest(const Image& image, int channel) {
@@ -67,32 +85,32 @@ double greatest(const Image& image, int channel) {
 /// By squares, which cost the least relative squared error, with no pixel's gain above kMostGain: what is brighter than
 /// the limit gains that, which is the least error under this bound (the limit falls until the gain is met; each step
 /// solves for it with the pixels known to lie above). Where the bound cannot be kept all gain alike.
-Sharing sharing_of(double energy, const Image& image, int channel) {
+Sharing sharing_of(double energy, const Image& image, const Image& part, int channel) {
   double limit = greatest(image, channel);
-  Light light = light_of(image, channel, limit);
+  Light light = light_of(image, part, channel, limit);
   while (std::abs(energy) * limit > kMostGain * (light.squares + limit * light.above) * (1 + 1e-9)) {
     const double left = std::abs(energy) - kMostGain * light.above;
     limit = left > 0 ? std::min(kMostGain * light.squares / left, limit * (1 - 1e-9)) : 0;
-    light = light_of(image, channel, limit);
+    light = light_of(image, part, channel, limit);
     if (light.squares > 0) continue;
     limit = kBelowAll;
-    light = light_of(image, channel, limit);
+    light = light_of(image, part, channel, limit);
     break;
   }
   return {limit, light.squares + limit * light.above};
 }
 
-/// Sums of a channel's shares over rectangles, by a summed-area table for each block of pixels: in one for the whole
+/// Sums of term(x, y) over rectangles, by a summed-area table for each block of pixels: in one for the whole
 /// image the square of a sun would drown what its dark surroundings add.
 class BoxSums {
  public:
-  BoxSums(const Image& image, int channel)
+  template <typename Term>
+  BoxSums(const Image& image, const Term& term)
       : width_(static_cast<std::size_t>(image.width())), sums_(image.pixels(), 0.0) {
     for_rows((image.height() + kBlock - 1) / kBlock, [&](int block) {
       for (int y = block * kBlock; y < std::min((block + 1) * kBlock, image.height()); ++y)
         for (int x = 0; x < image.width(); ++x)
-          at(x, y) = share_of(image.at(x, y, channel)) + before(x, y, x, y - 1) + before(x, y, x - 1, y) -
-                     before(x, y, x - 1, y - 1);
+          at(x, y) = term(x, y) + before(x, y, x, y - 1) + before(x, y, x - 1, y) - before(x, y, x - 1, y - 1);
     });
   }
   double sum(const Rect& r) const {
@@ -119,16 +137,16 @@ class BoxSums {
   std::vector<double> sums_;
 };
 
-/// The square around an outlier over which the root mean square of every channel's gain, e_o / sqrt(|Omega| sum
-/// yhat^2), is small enough.
-Rect restoration_area(const Outlier& outlier, const std::vector<BoxSums>& sums, double max_gain, const Rect& bounds) {
+/// The square around an outlier over which the root mean square of every channel's gain, weighed by u,
+/// e_o / sqrt(sum u x sum u yhat^2), is small enough.
+Rect restoration_area(const Outlier& outlier, const std::vector<BoxSums>& sums, const BoxSums& taking_part,
+                      double max_gain, const Rect& bounds) {
   Rect area;
   for (int radius = 9;; radius += radius / 2) {
     area = intersect(grow({outlier.x, outlier.y, outlier.x + 1, outlier.y + 1}, radius), bounds);
     bool small = true;
     for (std::size_t c = 0; c < sums.size(); ++c)
-      small &=
-          std::abs(outlier.energy[c]) <= max_gain * std::sqrt(static_cast<double>(area.area()) * sums[c].sum(area));
+      small &= std::abs(outlier.energy[c]) <= max_gain * std::sqrt(taking_part.sum(area) * sums[c].sum(area));
     if (small || area == bounds) return area;
   }
 }
@@ -152,14 +170,14 @@ void integrate(std::vector<double>& corners, std::size_t row) {
 }
 
 /// Adds energy[c] to the channels c = color, color + 3, ... as sharing_of has it for `color`. Nothing where no pixel of
-/// that is positive.
-void give_to_all(const std::vector<double>& energy, int color, Image& image) {
-  const Sharing sharing = sharing_of(energy[static_cast<std::size_t>(color)], image, color);
+/// that takes part.
+void give_to_all(const std::vector<double>& energy, int color, const Image& part, Image& image) {
+  const Sharing sharing = sharing_of(energy[static_cast<std::size_t>(color)], image, part, color);
   if (!(sharing.sum > 0)) return;
   for_rows(image.height(), [&](int y) {
     std::vector<double> parts(static_cast<std::size_t>(image.width()));
-    std::transform(image.row(color, y), image.row(color, y) + image.width(), parts.begin(),
-                   [&](Real yhat) { return sharing.part_of(yhat); });
+    std::transform(image.row(color, y), image.row(color, y) + image.width(), part.row(0, y), parts.begin(),
+                   [&](Real yhat, Real u) { return sharing.of(yhat, u); });
     for (int c = color; c < static_cast<int>(energy.size()); c += 3) {
       Real* out = image.row(c, y);
       for (int x = 0; x < image.width(); ++x)
@@ -170,14 +188,18 @@ void give_to_all(const std::vector<double>& energy, int color, Image& image) {
 
 }  // namespace
 
-void restore_energy(const std::vector<Outlier>& outliers, double max_gain, Image& image) {
+void restore_energy(const std::vector<Outlier>& outliers, const Image& variance, double max_gain, Image& image) {
   if (outliers.empty()) return;
   const Image shape = image;  // yhat before anything is given back
+  const Image part = parts_of(variance, max_gain, image);
   std::vector<BoxSums> sums;
-  for (int c = 0; c < 3; ++c) sums.emplace_back(shape, c);
+  for (int c = 0; c < 3; ++c)
+    sums.emplace_back(shape, [&](int x, int y) { return share_of(shape.at(x, y, c), part.at(x, y, 0)); });
+  const BoxSums taking_part(shape, [&](int x, int y) { return static_cast<double>(part.at(x, y, 0)); });
   std::vector<Rect> areas(outliers.size());
-  in_parallel(areas.size(),
-              [&](std::size_t k) { areas[k] = restoration_area(outliers[k], sums, max_gain, image.bounds()); });
+  in_parallel(areas.size(), [&](std::size_t k) {
+    areas[k] = restoration_area(outliers[k], sums, taking_part, max_gain, image.bounds());
+  });
   const auto row = static_cast<std::size_t>(image.width()) + 1;
   std::vector<double> of_all(static_cast<std::size_t>(image.channels() / 3 * 3), 0.0);
   for (std::size_t c = 0; c < of_all.size(); ++c) {
@@ -196,31 +218,38 @@ void restore_energy(const std::vector<Outlier>& outliers, double max_gain, Image
     for_rows(image.height(), [&](int y) {
       const double* gains = gain.data() + static_cast<std::size_t>(y) * row;
       for (int x = 0; x < image.width(); ++x)
-        image.at(x, y, channel) += static_cast<Real>(share_of(shape.at(x, y, color)) * gains[x]);
+        image.at(x, y, channel) += static_cast<Real>(share_of(shape.at(x, y, color), part.at(x, y, 0)) * gains[x]);
     });
   }
   if (std::all_of(of_all.begin(), of_all.end(), [](double energy) { return energy == 0; })) return;
-  for (int color = 0; color < 3; ++color) give_to_all(of_all, color, image);
+  for (int color = 0; color < 3; ++color) give_to_all(of_all, color, part, image);
 }
 
 std::vector<double> channel_sums(const Image& image) {
   std::vector<double> sums;
-  for (int c = 0; c < image.channels(); ++c) sums.push_back(sum_of(image, c, [](double v) { return v; }));
+  for (int c = 0; c < image.channels(); ++c) sums.push_back(sum_of(image, c, [](double v, std::size_t) { return v; }));
   return sums;
 }
 
-std::array<double, 3> restore_totals(const std::vector<double>& totals, double max_gain, Image& image) {
+void restore_everywhere(const std::vector<double>& energy, const Image& variance, double quiet, Image& image) {
+  const Image part = parts_of(variance, quiet, image);
+  for (int color = 0; color < 3; ++color) give_to_all(energy, color, part, image);
+}
+
+std::array<double, 3> restore_totals(const std::vector<double>& totals, const Image& variance, double quiet,
+                                     double max_gain, Image& image) {
+  const Image part = parts_of(variance, quiet, image);
   const std::vector<double> found = channel_sums(image);
   std::vector<double> missing(totals.size());
   for (std::size_t c = 0; c < totals.size(); ++c) missing[c] = totals[c] - found[c];
   std::array<double, 3> gains{};
   for (int color = 0; color < 3; ++color) {
     const auto c = static_cast<std::size_t>(color);
-    const double positive = sum_of(image, color, [](double v) { return std::max(v, 0.0); });
+    const double positive = sum_of(image, color, [](double v, std::size_t) { return std::max(v, 0.0); });
     const double gain = positive > 0 ? missing[c] / positive : 0;
     if (!(std::abs(gain) <= max_gain) || !(positive > 0)) continue;
     gains[c] = gain;
-    give_to_all(missing, color, image);
+    give_to_all(missing, color, part, image);
   }
   return gains;
 }

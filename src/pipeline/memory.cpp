@@ -48,7 +48,7 @@ int channels_ahead(const FrameShape& shape, const Params& params) {
 }
 
 MemoryNeeds memory_needs(const FrameShape& shape, const Params& params) {
-  const std::size_t plane = shape.pixels * sizeof(Real), noise = 3;
+  const std::size_t plane = shape.pixels * sizeof(Real), noise = 3, reach = 3;
   // The frame's means of colours, alpha and sample count stay to the end.
   const std::size_t kept = count(shape.color_channels) + 2;
   const std::size_t candidate = 2 * count(shape.color_channels) + 7;  // halves, error, variance, order
@@ -59,7 +59,7 @@ MemoryNeeds memory_needs(const FrameShape& shape, const Params& params) {
   needs.prepare = with_gaps(
       program_bytes + plane * (count(shape.channels + shape.beside) + noise + pair_channels(shape) + in_preparation));
   // The pair and the results of this stage and the one before, with their coarser levels.
-  needs.held = with_gaps(program_bytes + plane * (kept + noise + count(shape.beside)) +
+  needs.held = with_gaps(program_bytes + plane * (kept + noise + reach + count(shape.beside)) +
                          plane * (pair_channels(shape) + 2 * candidate) * 4 / 3);
   needs.tile = with_gaps(
       std::min(smallest_tile_pixels(params), shape.pixels) *

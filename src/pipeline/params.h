@@ -18,6 +18,7 @@ struct Parts {
   bool cross_filter = true;      ///< A half is fitted with weights and features of the other one.
   bool shrinkage = true;         ///< Columns enter with the factor of least error, not whole (order_selection.h).
   bool variance_floor = true;    ///< features/variance_floor.h
+  bool noise_bound = true;       ///< blend/noise_bound.h
   bool raise_undershoot = true;  ///< blend/undershoot.h
   bool restore_totals = true;    ///< The result's channels are brought to the sums of the input's.
 };

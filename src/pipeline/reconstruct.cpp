@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "blend/levels.h"
+#include "blend/noise_bound.h"
 #include "blend/prior.h"
 #include "blend/undershoot.h"
 #include "core/parallel.h"
@@ -208,6 +209,7 @@ Result reconstruct(Frame& frame, const std::vector<TimedNeighbour>& neighbours, 
     if (!params.effects.outliers) return {};
     return remove_outliers(pair, prepared.independent_halves, outlier_params(noise), progress);
   });
+  const Image reach = params.parts.noise_bound ? noise_reach(pair.variance) : Image();
   if (params.parts.variance_floor)
     pair.variance = floor_variance(pair.variance);  // now: an outlier's variance must not spread to its neighbours
   note_outliers(outliers, params.effects, report);
@@ -221,6 +223,10 @@ Result reconstruct(Frame& frame, const std::vector<TimedNeighbour>& neighbours, 
   Candidate solved = timed(report, progress, "polynomials", fit_steps(frame, params),
                            [&] { return solve_level(pair, 0, params, memory, counters, progress); });
   note_fits(counters, report);
+  const BoundLight bound = timed(report, progress, "noise bound", 1, [&] {
+    return reach.empty() ? BoundLight() : bind_to_noise(pair, reach, max_total_gain, solved);
+  });
+  report.bound_pixels = bound.pixels;
   const double left_alone = share_left_alone(pair, params);
   report.decisions.push_back(decide_on_pixels(left_alone, params));
   estimate_savings(frame, params.cleaning, left_alone, report.stages.back().seconds, report.decisions);
@@ -234,8 +240,10 @@ Result reconstruct(Frame& frame, const std::vector<TimedNeighbour>& neighbours, 
   Image image = timed(report, progress, "energy", 1, [&] {
     Image out = average(pair, solved);
     if (params.parts.raise_undershoot) report.raised_pixels = raise_undershoot(noisy_mean(pair), out);
-    restore_energy(outliers, max_restored_gain, out);
-    if (params.parts.restore_totals) report.restored_gain = restore_totals(totals, max_total_gain, out);
+    restore_energy(outliers, pair.variance, max_restored_gain, out);
+    if (bound.pixels > 0) restore_everywhere(bound.energy, pair.variance, max_restored_gain, out);
+    if (params.parts.restore_totals)
+      report.restored_gain = restore_totals(totals, pair.variance, max_restored_gain, max_total_gain, out);
     return out;
   });
   result.beauty = channels_of(image, 0, 3);

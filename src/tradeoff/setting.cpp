@@ -106,6 +106,7 @@ void add_parts(const Frame& frame, Settings& list) {
   without("no variance floor", [](Setting& s) { s.params.parts.variance_floor = false; });
   if (std::any_of(frame.features.begin(), frame.features.end(), is_noisy))
     without("no feature cleaning", [](Setting& s) { s.params.effects.cleaning = false; });
+  without("no noise bound", [](Setting& s) { s.params.parts.noise_bound = false; });
   without("no raising of undershoot", [](Setting& s) { s.params.parts.raise_undershoot = false; });
   without("totals not restored", [](Setting& s) { s.params.parts.restore_totals = false; });
   without("order by least error alone", [](Setting& s) { s.params.order_tolerance = 0; });

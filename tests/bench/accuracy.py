@@ -33,6 +33,7 @@ PARTS = (
     ("outlier handling", "no outlier removal"),
     ("variance floor", "no variance floor"),
     ("feature cleaning", "no feature cleaning"),
+    ("noise bound", "no noise bound"),
     ("raising of undershoot", "no raising of undershoot"),
     ("totals restored", "totals not restored"),
     ("all features", "without features"),

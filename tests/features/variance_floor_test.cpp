@@ -22,12 +22,12 @@ TEST(FloorVariance, AZeroAmongNoiseBecomesTheMedianAround) {
   EXPECT_EQ(out.at(4, 4, 1), variance.at(4, 4, 1));
 }
 
-TEST(FloorVariance, ASpikeLendsThreeTenthsOfTheMeanToItsNeighbours) {
+TEST(FloorVariance, ASpikeLendsHalfTheSquareOfTheMeanDeviationToItsNeighbours) {
   Image variance(9, 9, 1);
   variance.at(4, 4, 0) = 50;
   const Image out = floor_variance(variance);
   EXPECT_EQ(out.at(4, 4, 0), Real(50));
-  EXPECT_NEAR(static_cast<double>(out.at(2, 3, 0)), 0.3 * 50 / 25, 1e-6);
+  EXPECT_NEAR(static_cast<double>(out.at(2, 3, 0)), 0.5 * 50 / (25 * 25), 1e-6);
   EXPECT_EQ(out.at(1, 4, 0), Real(0));
 }
 
@@ -60,14 +60,14 @@ TEST(FloorVariance, IsAboutTheMedianOfTheNeighbourhood) {
   for (int y = 2; y < 62; y += 5)
     for (int x = 2; x < 62; x += 5) {
       std::vector<Real> around;
-      double mean = 0;
+      double mean_deviation = 0;
       for (int v = y - 2; v <= y + 2; ++v)
         for (int u = x - 2; u <= x + 2; ++u) {
           around.push_back(holes.at(u, v, 0));
-          mean += static_cast<double>(holes.at(u, v, 0)) / 25;
+          mean_deviation += std::sqrt(static_cast<double>(holes.at(u, v, 0))) / 25;
         }
       std::nth_element(around.begin(), around.begin() + 12, around.end());
-      expected += std::max(static_cast<double>(around[12]), 0.3 * mean);
+      expected += std::max(static_cast<double>(around[12]), 0.5 * mean_deviation * mean_deviation);
       found += static_cast<double>(out.at(x, y, 0));
     }
   EXPECT_NEAR(found / expected, 1, 0.05);

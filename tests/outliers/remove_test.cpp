@@ -105,6 +105,28 @@ TEST(RemoveOutliers, SpikesOnBlackGo) {
   expect_balance(before, pair, outliers);
 }
 
+/// A wall six times as bright beside the pixel hides the spike from a comparison of brightness; the other half does
+/// not.
+TEST(RemoveOutliers, ASpikeBesideAnEdgeGoes) {
+  HalfPair pair =
+      test::pair_of(test::image_of(size, size, 3, [](int x, int, int) { return x < 21 ? 0.1 : 0.6; }), 0.002, 1);
+  put_spike(pair, 1, 20, 20, 0.65);
+  const HalfPair before = pair;
+  const auto outliers = removed(pair);
+  ASSERT_EQ(outliers.size(), 1u);
+  EXPECT_EQ(outliers[0].x, 20);
+  EXPECT_NEAR(static_cast<double>(pair.color[1].at(20, 20, 0)), 0.1, 0.02);  // by a pixel of its own side
+  expect_balance(before, pair, outliers);
+}
+
+/// Nothing around is like what the other half holds: no neighbour could stand in.
+TEST(RemoveOutliers, ASpikeWithoutAnyLikeNeighbourStays) {
+  HalfPair pair = test::pair_of(
+      test::image_of(size, size, 3, [](int x, int y, int) { return x == 20 && y == 20 ? 0.1 : 0.6; }), 0.002, 1);
+  put_spike(pair, 1, 20, 20, 0.6);
+  EXPECT_TRUE(removed(pair).empty());
+}
+
 TEST(Case26, SpikesThatAreTheLightStay) {
   // An interior lit by hidden lamps: one pixel in 20 of either half holds all the light.
   HalfPair pair = test::pair_of(Image(size, size, 3), 0, 1);

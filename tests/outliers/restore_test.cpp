@@ -15,6 +15,9 @@ Image smooth_image(int channels) {
                         [](int x, int y, int c) { return 0.5 + 0.01 * x + 0.02 * y + 0.1 * (c % 3); });
 }
 
+/// Noise that no gain shows beside: every pixel takes part in full.
+Image loud(const Image& image) { return Image(image.width(), image.height(), 3, Real(1e30)); }
+
 /// sum of each channel after = before + what the outliers hold, to 1e-6 of the sum.
 void expect_energy(const Image& before, const Image& after, const std::vector<Outlier>& outliers) {
   for (int c = 0; c < before.channels(); ++c) {
@@ -32,14 +35,14 @@ TEST(RestoreEnergy, GivesBackExactlyWhatWasTaken) {
   for (int k = 0; k < 40; ++k)
     outliers.push_back({random.below(64), random.below(48), {random.uniform(), random.uniform(), random.uniform()}});
   Image after = before;
-  restore_energy(outliers, max_gain, after);
+  restore_energy(outliers, loud(after), max_gain, after);
   expect_energy(before, after, outliers);
   EXPECT_TRUE(test::all_finite(after));
 }
 
 TEST(RestoreEnergy, NothingTakenNothingGiven) {
   Image image = smooth_image(3);
-  restore_energy({}, max_gain, image);
+  restore_energy({}, loud(image), max_gain, image);
   EXPECT_TRUE(test::same_bits(image, smooth_image(3)));
 }
 
@@ -47,7 +50,7 @@ TEST(RestoreEnergy, NothingTakenNothingGiven) {
 TEST(RestoreEnergy, EveryPixelsGainIsProportionalToItsBrightness) {
   const Image before = smooth_image(3);
   Image after = before;
-  restore_energy({{30, 20, {5, 5, 5}}}, max_gain, after);
+  restore_energy({{30, 20, {5, 5, 5}}}, loud(after), max_gain, after);
   for (int c = 0; c < 3; ++c) {
     double squares = 0, squared_gains = 0;
     int pixels = 0;
@@ -73,7 +76,7 @@ TEST(RestoreEnergy, MoreThanTheGainAllowsGoesToTheWholeImage) {
   const Image before = smooth_image(3);
   Image after = before;
   const std::vector<Outlier> outliers{{30, 20, {1000, 1000, 1000}}};  // the whole image holds about 4000
-  restore_energy(outliers, max_gain, after);
+  restore_energy(outliers, loud(after), max_gain, after);
   expect_energy(before, after, outliers);
   EXPECT_GT(static_cast<double>(after.at(0, 0, 0)) / static_cast<double>(before.at(0, 0, 0)), 1.02);
   EXPECT_GT(static_cast<double>(after.at(63, 47, 0)) / static_cast<double>(before.at(63, 47, 0)), 1.02);
@@ -83,7 +86,7 @@ TEST(RestoreEnergy, MoreThanTheGainAllowsGoesToTheWholeImage) {
 TEST(RestoreEnergy, CostsTheLeastRelativeError) {
   const Image before = smooth_image(3);
   Image after = before;
-  restore_energy({{30, 20, {500, 500, 500}}}, max_gain, after);
+  restore_energy({{30, 20, {500, 500, 500}}}, loud(after), max_gain, after);
   std::vector<double> d, yhat;
   for (std::size_t i = 0; i < before.pixels(); ++i) {
     yhat.push_back(static_cast<double>(before.plane(0)[i]));
@@ -105,7 +108,7 @@ TEST(RestoreEnergy, WhatIsBrightTakesMost) {
   Image image = smooth_image(3);
   for (int c = 0; c < 3; ++c) image.at(10, 10, c) = Real(300);
   const Image before = image;
-  restore_energy({{30, 20, {50, 50, 50}}}, max_gain, image);
+  restore_energy({{30, 20, {50, 50, 50}}}, loud(image), max_gain, image);
   expect_energy(before, image, {{30, 20, {50, 50, 50}}});
   EXPECT_GT(static_cast<double>(image.at(10, 10, 0)), 345);
   EXPECT_LT(static_cast<double>(image.at(50, 40, 0)) / static_cast<double>(before.at(50, 40, 0)), 1.002);
@@ -113,7 +116,7 @@ TEST(RestoreEnergy, WhatIsBrightTakesMost) {
 
 TEST(RestoreEnergy, OnBlackItGoesBackToItsPlace) {
   Image image(20, 20, 3);
-  restore_energy({{7, 8, {1, 2, 3}}}, max_gain, image);
+  restore_energy({{7, 8, {1, 2, 3}}}, loud(image), max_gain, image);
   for (int c = 0; c < 3; ++c) {
     EXPECT_EQ(static_cast<double>(image.at(7, 8, c)), c + 1);
     EXPECT_EQ(test::sum_of(image, c), c + 1);
@@ -125,7 +128,7 @@ TEST(RestoreEnergy, OneBlackChannelGetsItsEnergyBackToo) {
   std::fill(image.plane(2), image.plane(2) + image.pixels(), Real(0));
   const Image before = image;
   const std::vector<Outlier> outliers{{7, 8, {1, 2, 3}}, {40, 30, {0.5, 0.5, 0.5}}};
-  restore_energy(outliers, max_gain, image);
+  restore_energy(outliers, loud(image), max_gain, image);
   expect_energy(before, image, outliers);
 }
 
@@ -134,7 +137,7 @@ TEST(RestoreEnergy, NegativePixelsDoNotGrow) {
   image.at(30, 21, 0) = Real(-0.5);
   const Image before = image;
   const std::vector<Outlier> outliers{{30, 20, {5, 5, 5}}};
-  restore_energy(outliers, max_gain, image);
+  restore_energy(outliers, loud(image), max_gain, image);
   EXPECT_EQ(image.at(30, 21, 0), Real(-0.5));
   expect_energy(before, image, outliers);
 }
@@ -144,7 +147,7 @@ TEST(RestoreEnergy, ASunDoesNotDrownTheDark) {
   Image image(200, 150, 3, Real(1e-3));
   for (int c = 0; c < 3; ++c) image.at(20, 20, c) = Real(1e6);
   const Image before = image;
-  restore_energy({{150, 100, {1e-3, 1e-3, 1e-3}}}, max_gain, image);
+  restore_energy({{150, 100, {1e-3, 1e-3, 1e-3}}}, loud(image), max_gain, image);
   for (int c = 0; c < 3; ++c) {
     double given = 0;
     for (int y = 91; y < 110; ++y)
@@ -161,7 +164,7 @@ TEST(RestoreEnergy, ALampDoesNotTakeAllOfADarkRoom) {
   for (int c = 0; c < 3; ++c) image.at(20, 20, c) = Real(5);
   const Image before = image;
   const std::vector<Outlier> outliers{{50, 30, {60, 60, 60}}};
-  restore_energy(outliers, max_gain, image);
+  restore_energy(outliers, loud(image), max_gain, image);
   expect_energy(before, image, outliers);
   EXPECT_LT(static_cast<double>(image.at(20, 20, 0)), 5 * 1.6);
 }
@@ -172,7 +175,7 @@ TEST(RestoreEnergy, WhatNoBoundHoldsGoesToAllAlike) {
   for (int c = 0; c < 3; ++c) image.at(20, 20, c) = Real(5);
   const Image before = image;
   const double energy = 0.8 * channel_sums(image).front();
-  restore_energy({{50, 30, {energy, energy, energy}}}, max_gain, image);
+  restore_energy({{50, 30, {energy, energy, energy}}}, loud(image), max_gain, image);
   for (int c = 0; c < 3; ++c) {
     EXPECT_NEAR(static_cast<double>(image.at(20, 20, c)), 5 * 1.8, 1e-4);
     EXPECT_NEAR(static_cast<double>(image.at(3, 40, c)), 0.1 * 1.8, 1e-6);
@@ -187,7 +190,7 @@ TEST(RestoreTotals, MeetsTheMostGainWithoutAStep) {
     for (int c = 0; c < 3; ++c) image.at(20, 20, c) = Real(5);
     std::vector<double> totals = channel_sums(image);
     for (double& total : totals) total *= factor;
-    restore_totals(totals, 0.05, image);
+    restore_totals(totals, loud(image), max_gain, 0.05, image);
     const double bright = static_cast<double>(image.at(20, 20, 0));
     EXPECT_LT(bright, 5 * 1.51);
     if (factor > 1) {
@@ -204,11 +207,67 @@ TEST(RestoreTotals, NoPixelBecomesNegative) {
     for (int c = 0; c < 3; ++c) image.at(20, 20, c) = Real(5);
     std::vector<double> totals = channel_sums(image);
     for (double& total : totals) total *= factor;
-    restore_totals(totals, 0.05, image);
+    restore_totals(totals, loud(image), max_gain, 0.05, image);
     for (int c = 0; c < 3; ++c) {
       EXPECT_NEAR(channel_sums(image)[static_cast<std::size_t>(c)], totals[static_cast<std::size_t>(c)], 1e-3);
       EXPECT_NEAR(static_cast<double>(image.at(20, 20, c)), factor > 1 ? 7.5 : 2.5, 1e-3);  // the most it may
     }
+  }
+}
+
+/// A sky of one colour is known exactly: all that was taken goes to the pixels that carry noise.
+TEST(RestoreEnergy, PixelsWithoutNoiseTakeNoPart) {
+  Image image = smooth_image(3);
+  const Image before = image;
+  const Image variance = test::image_of(64, 48, 3, [](int x, int, int) { return x < 32 ? 0 : 1e-4; });
+  const std::vector<Outlier> outliers{{30, 20, {5, 6, 7}}, {60, 20, {700, 700, 700}}};  // a square's, and all pixels'
+  restore_energy(outliers, variance, max_gain, image);
+  expect_energy(before, image, outliers);
+  EXPECT_TRUE(test::same_bits(crop(image, {0, 0, 32, 48}), crop(before, {0, 0, 32, 48})));
+}
+
+/// Of two pixels of one brightness that with half of the noise that would hide the gain takes half as much.
+TEST(RestoreEnergy, LittleNoiseTakesPartByItsMeasure) {
+  Image image(40, 40, 3, Real(1));
+  const double hidden = 2 * max_gain * max_gain;  // variance of a half whose mean has max_gain as standard deviation
+  const Image variance = test::image_of(40, 40, 3, [&](int x, int, int) { return x < 20 ? 4 * hidden : hidden / 4; });
+  restore_energy({{20, 20, {2, 2, 2}}}, variance, max_gain, image);
+  const double much = static_cast<double>(image.at(16, 20, 0)) - 1,
+               little = static_cast<double>(image.at(24, 20, 0)) - 1;
+  EXPECT_NEAR(little / much, 0.5, 1e-3);
+}
+
+TEST(RestoreEnergy, WithoutAnyNoiseItGoesBackToItsPlace) {
+  Image image = smooth_image(3);
+  const Image before = image;
+  restore_energy({{7, 8, {1, 2, 3}}}, Image(64, 48, 3), max_gain, image);
+  for (int c = 0; c < 3; ++c)
+    EXPECT_NEAR(static_cast<double>(image.at(7, 8, c)), static_cast<double>(before.at(7, 8, c)) + c + 1, 1e-5);
+}
+
+TEST(RestoreEverywhere, BringsAnyEnergyToTheSumsOfAllChannels) {
+  for (const double part : {-0.3, 0.01, 0.3}) {
+    Image image = smooth_image(6);
+    std::vector<double> energy = channel_sums(image);
+    for (double& e : energy) e *= part;
+    const std::vector<double> before = channel_sums(image);
+    restore_everywhere(energy, loud(image), max_gain, image);
+    const std::vector<double> after = channel_sums(image);
+    for (std::size_t c = 0; c < 6; ++c) EXPECT_NEAR(after[c] / (before[c] * (1 + part)), 1, 1e-6) << c;
+  }
+}
+
+TEST(RestoreTotals, PixelsWithoutNoiseKeepTheirValue) {
+  Image image = smooth_image(3);
+  const Image before = image;
+  std::vector<double> totals = channel_sums(image);
+  for (double& total : totals) total *= 1.01;
+  restore_totals(totals, test::image_of(64, 48, 3, [](int x, int, int) { return x < 32 ? 0 : 1; }), max_gain, 0.05,
+                 image);
+  EXPECT_TRUE(test::same_bits(crop(image, {0, 0, 32, 48}), crop(before, {0, 0, 32, 48})));
+  for (int c = 0; c < 3; ++c) {
+    const double total = totals[static_cast<std::size_t>(c)];
+    EXPECT_NEAR(channel_sums(image)[static_cast<std::size_t>(c)] / total, 1, 1e-6);
   }
 }
 
@@ -221,7 +280,7 @@ TEST(RestoreEnergy, LayersThatAddUpStillDo) {
   const Image before = image;
   const std::vector<Outlier> outliers{{30, 20, {5, 6, 7, 4, 6, 0, 1, 0, 7}},
                                       {0, 40, {1, 1, 1, 0.5, 0.25, 1, 0.5, 0.75, 0}}};
-  restore_energy(outliers, max_gain, image);
+  restore_energy(outliers, loud(image), max_gain, image);
   expect_energy(before, image, outliers);
   for (int c = 0; c < 3; ++c)
     for (std::size_t i = 0; i < image.pixels(); ++i)
@@ -232,7 +291,7 @@ TEST(RestoreEnergy, LayersThatAddUpStillDo) {
 TEST(RestoreEnergy, AlphaIsLeftAlone) {
   Image image = smooth_image(4);
   const Image before = image;
-  restore_energy({{30, 20, {5, 5, 5, 0}}}, max_gain, image);
+  restore_energy({{30, 20, {5, 5, 5, 0}}}, loud(image), max_gain, image);
   for (std::size_t i = 0; i < image.pixels(); ++i) ASSERT_EQ(image.plane(3)[i], before.plane(3)[i]);
 }
 

