@@ -205,11 +205,13 @@ Result reconstruct(Frame& frame, const std::vector<TimedNeighbour>& neighbours, 
   report.mended_pixels = prepared.mended_pixels;
   report.negative_pixels = prepared.negative_pixels;
   const std::vector<double> totals = color_totals(frame);
+  // Of the noise as it is told: where an outlier goes from one half, the other may still be as wrong as that noise. An
+  // estimate knows regions, no single pixels.
+  const Image reach = params.parts.noise_bound && noise.measured ? noise_reach(pair.variance) : Image();
   const auto outliers = timed(report, progress, "outliers", rows * 2, [&]() -> std::vector<Outlier> {
     if (!params.effects.outliers) return {};
     return remove_outliers(pair, prepared.independent_halves, outlier_params(noise), progress);
   });
-  const Image reach = params.parts.noise_bound ? noise_reach(pair.variance) : Image();
   if (params.parts.variance_floor)
     pair.variance = floor_variance(pair.variance);  // now: an outlier's variance must not spread to its neighbours
   note_outliers(outliers, params.effects, report);
