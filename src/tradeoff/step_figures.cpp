@@ -5,14 +5,14 @@ namespace polyrecon {
 
 const std::array<StepFigures, step_count>& measured_steps() {
   static const std::array<StepFigures, step_count> figures{{
-      {0.117, 1.356},  // draft, order 0
-      {0.121, 1.321},  // draft
-      {0.312, 1.084},  // draft, stages 2
-      {0.299, 1.282},  // stages 1
+      {0.115, 1.302},  // draft, order 0
+      {0.132, 1.27},   // draft
+      {0.292, 1.078},  // draft, stages 2
+      {0.298, 1.229},  // stages 1
       {1, 1},          // standard
-      {1.17, 0.9864},  // order 3
-      {1.98, 0.9812},  // best, coverage 2
-      {2.62, 0.975},   // best
+      {1.22, 0.9909},  // order 3
+      {1.86, 0.9823},  // best, coverage 2
+      {2.5, 0.9815},   // best
   }};
   return figures;
 }
