@@ -225,14 +225,14 @@ Result reconstruct(Frame& frame, const std::vector<TimedNeighbour>& neighbours, 
   Candidate solved = timed(report, progress, "polynomials", fit_steps(frame, params),
                            [&] { return solve_level(pair, 0, params, memory, counters, progress); });
   note_fits(counters, report);
-  const BoundLight bound = timed(report, progress, "noise bound", 1, [&] {
-    return reach.empty() ? BoundLight() : bind_to_noise(pair, reach, max_total_gain, solved);
-  });
-  report.bound_pixels = bound.pixels;
   const double left_alone = share_left_alone(pair, params);
   report.decisions.push_back(decide_on_pixels(left_alone, params));
   estimate_savings(frame, params.cleaning, left_alone, report.stages.back().seconds, report.decisions);
 
+  const BoundLight bound = timed(report, progress, "noise bound", 1, [&] {
+    return reach.empty() ? BoundLight() : bind_to_noise(pair, reach, max_total_gain, solved);
+  });
+  report.bound_pixels = bound.pixels;
   result.error = timed(report, progress, "error map", 1, [&] { return make_error_map(pair, noise.variance, solved); });
   result.order = solved.order;
   if (!frame.prior.mean.empty())
