@@ -29,7 +29,8 @@ double sum_of(const Image& image, int channel, const Term& term) {
   });
 }
 
-/// u of every pixel, of the brightness (one channel, one table of sums): how far it takes part in what is given back.
+/// kappa of every pixel, of the brightness (one channel, one table of sums): how far it takes part in what is given
+/// back.
 Image parts_of(const Image& variance, double quiet, const Image& image) {
   Image part(image.width(), image.height(), 1);
   for_rows(image.height(), [&](int y) {
@@ -45,13 +46,13 @@ Image parts_of(const Image& variance, double quiet, const Image& image) {
   return part;
 }
 
-/// u yhat^2 of a pixel. What is not positive receives nothing.
+/// kappa yhat^2 of a pixel. What is not positive receives nothing.
 double share_of(Real value, Real part) {
   const double yhat = positive_part(value);
   return static_cast<double>(part) * yhat * yhat;
 }
 
-/// How energy given to all pixels of a channel is shared out: u yhat min(yhat, limit) / sum of that.
+/// How energy given to all pixels of a channel is shared out: kappa yhat min(yhat, limit) / sum of that.
 struct Sharing {
   double limit = 0, sum = 0;  ///< 0: no pixel is positive.
 
@@ -67,9 +68,9 @@ struct Light {
 };
 
 Light light_of(const Image& image, const Image& part, int channel, double limit) {
-  const auto u = [&](std::size_t i) { return static_cast<double>(part.plane(0)[i]); };
-  return {sum_of(image, channel, [&](double v, std::size_t i) { return v > 0 && v <= limit ? u(i) * v * v : 0.0; }),
-          sum_of(image, channel, [&](double v, std::size_t i) { return v > limit ? u(i) * v : 0.0; })};
+  const auto kappa = [&](std::size_t i) { return static_cast<double>(part.plane(0)[i]); };
+  return {sum_of(image, channel, [&](double v, std::size_t i) { return v > 0 && v <= limit ? kappa(i) * v * v : 0.0; }),
+          sum_of(image, channel, [&](double v, std::size_t i) { return v > limit ? kappa(i) * v : 0.0; })};
 }
 
 double greatest(const Image& image, int channel) {
@@ -137,8 +138,8 @@ class BoxSums {
   std::vector<double> sums_;
 };
 
-/// The square around an outlier over which the root mean square of every channel's gain, weighed by u,
-/// e_o / sqrt(sum u x sum u yhat^2), is small enough.
+/// The square around an outlier over which the root mean square of every channel's gain, weighed by kappa,
+/// e_o / sqrt(sum kappa x sum kappa yhat^2), is small enough.
 Rect restoration_area(const Outlier& outlier, const std::vector<BoxSums>& sums, const BoxSums& taking_part,
                       double max_gain, const Rect& bounds) {
   Rect area;
@@ -177,7 +178,7 @@ void give_to_all(const std::vector<double>& energy, int color, const Image& part
   for_rows(image.height(), [&](int y) {
     std::vector<double> parts(static_cast<std::size_t>(image.width()));
     std::transform(image.row(color, y), image.row(color, y) + image.width(), part.row(0, y), parts.begin(),
-                   [&](Real yhat, Real u) { return sharing.of(yhat, u); });
+                   [&](Real yhat, Real kappa) { return sharing.of(yhat, kappa); });
     for (int c = color; c < static_cast<int>(energy.size()); c += 3) {
       Real* out = image.row(c, y);
       for (int x = 0; x < image.width(); ++x)

@@ -9,23 +9,23 @@
 namespace polyrecon {
 
 /// Gives back what remove_outliers took: equations (10) and (11) with a gain that is proportional to the pixel's
-/// brightness, yhat(i) += e_o u yhat(i)^2 / sum over Omega_o of u yhat^2, which of all ways to add e_o costs the least
-/// relative squared error, sum (d / yhat)^2 / u (docs/accuracy.md); the sum of every channel is what it was to double
-/// rounding. u = min(1, sigma / (max_gain yhat)), sigma being the standard deviation of the input's noise: a pixel that
-/// carries less noise than the gain would show (a sky of one colour) is known better than to take part in full. Omega_o
-/// is a square around o that grows until the root mean square of the gain, weighed by u, is at most max_gain, so
-/// that light stays where it fell as far as that cannot be seen. Layers beyond the first three channels (AOVs, three
-/// channels each) receive their e_o in the shape of the beauty, so that layers that add up still do; a last single
-/// channel (alpha) is left alone. Where Omega_o is the whole image, gains are bounded: see restore_everywhere. An
-/// outlier on an image that is all black, or free of noise, gives its energy back where it was taken. variance: of the
-/// noise of one half of the input, 3 channels (HalfPair::variance).
+/// brightness, yhat(i) += e_o kappa yhat(i)^2 / sum over Omega_o of kappa yhat^2, which of all ways to add e_o costs
+/// the least relative squared error, sum (d / yhat)^2 / kappa (docs/accuracy.md); the sum of every channel is what it
+/// was to double rounding. kappa = min(1, sigma / (max_gain yhat)), sigma being the standard deviation of the input's
+/// noise: a pixel that carries less noise than the gain would show (a sky of one colour) is known better than to take
+/// part in full. Omega_o is a square around o that grows until the root mean square of the gain, weighed by kappa, is
+/// at most max_gain, so that light stays where it fell as far as that cannot be seen. Layers beyond the first three
+/// channels (AOVs, three channels each) receive their e_o in the shape of the beauty, so that layers that add up still
+/// do; a last single channel (alpha) is left alone. Where Omega_o is the whole image, gains are bounded: see
+/// restore_everywhere. An outlier on an image that is all black, or free of noise, gives its energy back where it was
+/// taken. variance: of the noise of one half of the input, 3 channels (HalfPair::variance).
 void restore_energy(const std::vector<Outlier>& outliers, const Image& variance, double max_gain, Image& image);
 
 /// The same with Omega the whole image, for energy that has no place of its own (blend/noise_bound.h): one value per
 /// colour channel. No pixel changes by more than a half: those that would, the brightest, change by that, the others
 /// still by squares, which is the least relative squared error under this bound; where it cannot be kept all gain
-/// alike. Here, too, a pixel takes part by u: quiet is the relative noise below which it does less. Nothing where no
-/// pixel of the colour takes part.
+/// alike. Here, too, a pixel takes part by kappa: quiet is the relative noise below which it does less. Nothing where
+/// no pixel of the colour takes part.
 void restore_everywhere(const std::vector<double>& energy, const Image& variance, double quiet, Image& image);
 
 /// The same for what the fit itself gained or lost: every channel's sum becomes `totals` (one value a channel, as many
