@@ -263,13 +263,17 @@ void work_block(Blending& b, const Rect& block, Scratch& s, std::vector<BlendSum
   s.weight.resize(static_cast<std::size_t>(s.window.stride));
   s.fit.resize(static_cast<std::size_t>(s.window.stride) * b.responses());
   s.distances.load(*b.source.guide, *b.source.guide_variance, block, p.radius, p.patch_radius);
-  const Real widest = *std::max_element(p.bandwidths.begin(), p.bandwidths.end());
+  std::vector<Real> limits;
+  for (const Real bandwidth : p.bandwidths) limits.push_back(cut_exponent * bandwidth * bandwidth);
   const WindowSource source{b.source.response, b.source.noise_variance, b.source.features, b.source.guess};
   for (std::size_t k = 0; k < s.center_x.size(); ++k) {
-    s.distances.window_of(s.center_x[k], s.center_y[k], cut_exponent * widest * widest, s.window);
+    s.distances.window_of(s.center_x[k], s.center_y[k], limits, s.window);
     if (s.window.count == 0) continue;
     gather(source, b.layout, s.center_x[k], s.center_y[k], p.radius, s.window);
-    for (std::size_t h = 0; h < p.bandwidths.size(); ++h) fit_window(b, s, p.bandwidths[h], sums[h]);
+    for (std::size_t h = 0; h < p.bandwidths.size(); ++h) {
+      s.window.take(s.window.within[h]);
+      if (s.window.count > 0) fit_window(b, s, p.bandwidths[h], sums[h]);
+    }
   }
 }
 
@@ -287,8 +291,8 @@ void sweep(Blending& b, Progress& progress, const IsCenter& is_center) {
       thread_local Scratch scratch;
       scratch.center_x.clear();
       scratch.center_y.clear();
-      for (int y = mine[i].y0; y < mine[i].y1; ++y)
-        for (int x = mine[i].x0; x < mine[i].x1; ++x)
+      for (int x = mine[i].x0; x < mine[i].x1; ++x)  // by columns: see PatchDistances
+        for (int y = mine[i].y0; y < mine[i].y1; ++y)
           if (is_center(x, y)) {
             scratch.center_x.push_back(x);
             scratch.center_y.push_back(y);
@@ -380,13 +384,11 @@ std::vector<BlendedFit> fit_and_blend(const FitSource& source, const std::vector
   const auto needed = reached(active, width, height, params.radius);
   // Like patches weigh 1, so sums at the limit itself are common: they count as covered, whatever their rounding.
   const double least_coverage = params.coverage * (1 - 1e-4);
-  const std::size_t widest = static_cast<std::size_t>(
-      std::max_element(params.bandwidths.begin(), params.bandwidths.end()) - params.bandwidths.begin());
   // A coarse lattice of centres first; then, on ever finer ones, pixels that only unlike centres cover so far: they
   // would get a bad blend, and become centres themselves.
   std::vector<unsigned char> is_center(active.size(), 0), done(active.size(), 0);
   for (int step = params.stride; step >= 1; step /= 2) {
-    const BlendPlane& plane = b.planes[widest];
+    const BlendPlane& plane = b.planes.back();  // of the widest
     for (int y = 0; y < height; ++y)
       for (int x = 0; x < width; ++x) {
         const std::size_t i = source.response->index(x, y);

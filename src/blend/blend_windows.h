@@ -15,7 +15,7 @@ struct FitParams {
   int radius = 9;                ///< Of the window Omega_c, pixels.
   int stride = 2;                ///< Distance of the first lattice of window centres, pixels.
   int patch_radius = 1;          ///< Of the patches whose distance weighs the window.
-  std::vector<Real> bandwidths;  ///< h of the kernel K_h; one blended image each.
+  std::vector<Real> bandwidths;  ///< h of the kernel K_h, rising; one blended image each.
   int max_order = 2;             ///< Highest Taylor order offered, 0..4.
   double order_tolerance = 0;    ///< See select_order.
   double coverage = 1;           ///< Where the kernel weights sum to less, centres of finer lattices are added.

@@ -1,5 +1,7 @@
 #include "pipeline/params.h"
 
+#include <algorithm>
+
 #include "core/error.h"
 
 namespace polyrecon {
@@ -42,8 +44,10 @@ void validate(const Params& params) {
   require(params.max_order >= 0 && params.max_order <= BasisLayout::max_order, "the order must be 0 to 4");
   require(params.temporal.radius >= 0 && params.temporal.radius <= 8, "the frame radius must be 0 to 8 frames");
   require(!params.first_bandwidths.empty() && !params.later_bandwidths.empty(), "each stage needs a bandwidth");
-  for (const auto* bandwidths : {&params.first_bandwidths, &params.later_bandwidths, &params.guided_bandwidths})
+  for (const auto* bandwidths : {&params.first_bandwidths, &params.later_bandwidths, &params.guided_bandwidths}) {
     for (const Real h : *bandwidths) require(h > 0, "a bandwidth must be positive");
+    require(std::is_sorted(bandwidths->begin(), bandwidths->end()), "bandwidths must rise");
+  }
 }
 
 }  // namespace polyrecon

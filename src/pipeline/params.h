@@ -32,7 +32,7 @@ struct Params {
   int patch_radius = 1;            ///< Of the patches that weigh a window; 0..4.
   int estimated_patch_radius = 2;  ///< The same where the noise is estimated from the image: it knows no single pixels.
   int max_order = 2;               ///< Highest Taylor order offered to the selection, 0..4.
-  std::vector<Real> first_bandwidths{Real(0.7)};              ///< Stage 1.
+  std::vector<Real> first_bandwidths{Real(0.7)};              ///< Stage 1. Rising, as the others.
   std::vector<Real> later_bandwidths{Real(0.35), Real(0.7)};  ///< Later stages, weights from the noisy half.
   std::vector<Real> guided_bandwidths{Real(0.5), Real(1)};    ///< Later stages, weights from the stage before.
   double order_tolerance = 0.02;  ///< Orders are averaged whose estimated errors are within this of the least.

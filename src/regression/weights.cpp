@@ -13,8 +13,6 @@ namespace {
 /// than the rounding of float data, at any exposure.
 constexpr Real relative_epsilon = Real(1e-10);
 
-constexpr int row_lanes = 8;  ///< Rows around a centre are padded to whole vectors of this many samples.
-
 /// Adds the noise-aware squared differences between pixel a and a row of pixels; a and b: the planes of `load`.
 POLYRECON_SIMD void add_differences(const Real* a, const Real* const* b, Real* out, int n) {
   const Real ar = a[0], ag = a[1], ab = a[2], an = a[3], as = a[4];
@@ -24,6 +22,10 @@ POLYRECON_SIMD void add_differences(const Real* a, const Real* const* b, Real* o
     const Real noise = an + (an < bn[j] ? an : bn[j]);
     out[j] += (dr * dr + dg * dg + db * db - noise) / (as + bs[j]);
   }
+}
+
+POLYRECON_SIMD void add_row(const Real* row, Real* out, int n) {
+  for (int j = 0; j < n; ++j) out[j] += row[j];
 }
 
 POLYRECON_SIMD void exponential_weights(const Real* distance, Real inverse_square, Real* weight, int n) {
@@ -65,56 +67,97 @@ void PatchDistances::load(const Image& guide, const Image& variance, const Rect&
       *out[3]++ = noise;
       *out[4]++ = noise + relative_epsilon * square + std::numeric_limits<Real>::min();
     }
+  pitch_ = 2 * (window_radius + patch_radius) + 1;
+  strip_.resize(planes * static_cast<std::size_t>(loaded_.height()) * static_cast<std::size_t>(pitch_));
+  summed_.resize(static_cast<std::size_t>(2 * patch_radius + 1));
+  distance_.resize(static_cast<std::size_t>(window_samples()));
+  sums_.resize(summed_.size() * distance_.size());
+  column_ = nowhere;
 }
 
-void PatchDistances::surround(int center_x, int center_y) {
-  const int reach = radius_ + patch_radius_, side = 2 * reach + 1;
-  pitch_ = (side + row_lanes - 1) / row_lanes * row_lanes;
-  const std::size_t size = static_cast<std::size_t>(side) * static_cast<std::size_t>(pitch_);
-  const auto width = static_cast<std::size_t>(loaded_.width());
-  const std::size_t first = static_cast<std::size_t>(center_y - reach - loaded_.y0) * width +
-                            static_cast<std::size_t>(center_x - reach - loaded_.x0);
-  around_.resize(planes * size);
-  for (std::size_t p = 0; p < planes; ++p)
-    for (std::size_t y = 0; y < static_cast<std::size_t>(side); ++y)
-      std::copy_n(loaded_planes_.data() + p * loaded_.area() + first + y * width, side,
-                  around_.data() + p * size + y * static_cast<std::size_t>(pitch_));
+int PatchDistances::window_samples() const { return 2 * radius_ * pitch_ + 2 * radius_ + 1; }
+
+std::size_t PatchDistances::slot_of(int y) const {
+  return static_cast<std::size_t>((y - loaded_.y0) % (2 * patch_radius_ + 1));
 }
 
-void PatchDistances::sum_patches() {
-  const int side = 2 * radius_ + 1, patch = 2 * patch_radius_ + 1;
-  const std::size_t size = around_.size() / planes;
-  const int pixels = (side - 1) * pitch_ + side;  // ends with the last pixel of the last row: the next plane follows
-  distance_.assign(static_cast<std::size_t>(pixels), Real(0));
-  for (int py = 0; py < patch; ++py)
-    for (int px = 0; px < patch; ++px) {
-      const auto center = static_cast<std::size_t>((radius_ + py) * pitch_ + radius_ + px);
-      const Real* b[planes];
-      Real a[planes];
-      for (std::size_t p = 0; p < planes; ++p) {
-        a[p] = around_[p * size + center];
-        b[p] = around_.data() + p * size + static_cast<std::ptrdiff_t>(py) * pitch_ + px;
-      }
-      add_differences(a, b, distance_.data(), pixels);
+void PatchDistances::begin_column(int center_x) {
+  column_ = center_x;
+  copied_from_ = copied_to_ = nowhere;
+  std::fill(summed_.begin(), summed_.end(), nowhere);
+}
+
+void PatchDistances::copy_rows(int y0, int y1) {
+  if (y0 < copied_from_ || y0 > copied_to_) copied_from_ = copied_to_ = y0;
+  const std::size_t size = strip_.size() / planes;
+  for (int y = copied_to_; y < y1; ++y) {
+    const auto row = static_cast<std::size_t>(y - loaded_.y0);
+    const Real* from =
+        loaded_planes_.data() + row * static_cast<std::size_t>(loaded_.width()) + column_ - pitch_ / 2 - loaded_.x0;
+    Real* to = strip_.data() + row * static_cast<std::size_t>(pitch_);
+    for (std::size_t p = 0; p < planes; ++p) std::copy_n(from + p * loaded_.area(), pitch_, to + p * size);
+  }
+  copied_to_ = std::max(copied_to_, y1);
+}
+
+const Real* PatchDistances::row_sums(int y) {
+  const int samples = window_samples();
+  Real* const sums = sums_.data() + slot_of(y) * static_cast<std::size_t>(samples);
+  if (summed_[slot_of(y)] == y) return sums;
+  summed_[slot_of(y)] = y;
+  copy_rows(y - radius_, y + radius_ + 1);
+  std::fill(sums, sums + samples, Real(0));
+  const std::size_t size = strip_.size() / planes;
+  const Real* const first = strip_.data() + static_cast<std::ptrdiff_t>(y - radius_ - loaded_.y0) * pitch_;
+  for (int px = 0; px <= 2 * patch_radius_; ++px) {
+    const Real* b[planes];
+    Real a[planes];
+    for (std::size_t p = 0; p < planes; ++p) {
+      b[p] = first + p * size + px;
+      a[p] = b[p][radius_ * pitch_ + radius_];
     }
+    add_differences(a, b, sums, samples);
+  }
+  return sums;
 }
 
-void PatchDistances::window_of(int center_x, int center_y, Real limit, Window& window) {
-  surround(center_x, center_y);
-  sum_patches();
+void PatchDistances::sum_patches(int center_y) {
+  const int samples = window_samples();
+  const Real* const top = row_sums(center_y - patch_radius_);
+  std::copy(top, top + samples, distance_.begin());
+  for (int y = center_y - patch_radius_ + 1; y <= center_y + patch_radius_; ++y)
+    add_row(row_sums(y), distance_.data(), samples);
+}
+
+void PatchDistances::window_of(int center_x, int center_y, const std::vector<Real>& limits, Window& window) {
+  if (center_x != column_) begin_column(center_x);
+  sum_patches(center_y);
+  window.count = 0;
+  window.within.clear();
+  Real from = std::numeric_limits<Real>::lowest();
+  for (const Real limit : limits) {
+    list_pixels(center_x, center_y, from, limit, window);
+    window.within.push_back(window.count);
+    from = limit;
+  }
+}
+
+void PatchDistances::list_pixels(int center_x, int center_y, Real from, Real limit, Window& window) const {
   const auto patch_area = static_cast<Real>((2 * patch_radius_ + 1) * (2 * patch_radius_ + 1));
+  const Real least = from * patch_area, end = limit * patch_area;
   const Rect inside = intersect(grow({center_x, center_y, center_x + 1, center_y + 1}, radius_), bounds_);
-  std::size_t count = 0;
+  auto count = static_cast<std::size_t>(window.count);
   for (int y = inside.y0; y < inside.y1; ++y) {
     const Real* row =
         distance_.data() + static_cast<std::ptrdiff_t>(y - center_y + radius_) * pitch_ - center_x + radius_;
     for (int x = inside.x0; x < inside.x1; ++x) {
-      // Written whether it stays or not, as no processor foresees which: the next one takes its place.
+      // Written whether it stays or not, as no processor foresees which: the next one takes its place. Columns have
+      // room for one pixel more than the window.
       const Real d = row[x];
       window.x[count] = x;
       window.y[count] = y;
       window.distance[count] = d > 0 ? d / patch_area : 0;
-      count += d < limit * patch_area;
+      count += static_cast<std::size_t>(d >= least) & static_cast<std::size_t>(d < end);
     }
   }
   window.count = static_cast<int>(count);

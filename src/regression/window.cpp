@@ -56,7 +56,7 @@ void taylor_columns(int order, int center_x, int center_y, int radius, const Win
 
 void Window::reserve(int radius, int columns, int channels) {
   const int side = 2 * radius + 1;
-  stride = (side * side + lanes - 1) / lanes * lanes;
+  stride = (side * side + lanes - 1) / lanes * lanes;  // side is odd: there is one row more, at least
   const auto rows = static_cast<std::size_t>(stride);
   x.resize(rows);
   y.resize(rows);
@@ -69,10 +69,15 @@ void Window::reserve(int radius, int columns, int channels) {
   guess.resize(rows * 3);
 }
 
+void Window::take(int pixels) {
+  assert(pixels <= stride);
+  count = pixels;
+  padded = (count + lanes - 1) / lanes * lanes;
+}
+
 void gather(const WindowSource& source, const BasisLayout& layout, int center_x, int center_y, int radius,
             Window& window) {
-  assert(window.count <= window.stride);
-  window.padded = (window.count + Window::lanes - 1) / Window::lanes * Window::lanes;
+  window.take(window.count);
   for (auto j = static_cast<std::size_t>(window.count); j < static_cast<std::size_t>(window.padded); ++j) {
     window.x[j] = center_x;
     window.y[j] = center_y;

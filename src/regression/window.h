@@ -14,15 +14,16 @@ inline constexpr double least_variation = 2e-4;
 
 /// The pixels of one window Omega_c that may carry weight, gathered from the images into contiguous columns. Reused
 /// from centre to centre, so that the inner loops neither allocate nor jump through memory. Rows beyond count (up to
-/// padded) repeat the centre and always have weight 0.
+/// padded) are other pixels of the window or repeat its centre, and always have weight 0.
 struct Window {
   static constexpr int lanes = 16;  ///< Columns are padded to a multiple of this, for the vector units.
 
   BasisLayout layout{0, 0};  ///< Of the design's columns.
 
-  int count = 0;   ///< Pixels in the window.
-  int padded = 0;  ///< count rounded up to a multiple of lanes.
-  int stride = 0;  ///< Distance between columns; at least padded.
+  int count = 0;            ///< Pixels in the window.
+  int padded = 0;           ///< count rounded up to a multiple of lanes.
+  int stride = 0;           ///< Distance between columns; at least padded, and more than pixels in the whole window.
+  std::vector<int> within;  ///< How many of the pixels, from the first, lie within each limit of the distance.
 
   std::vector<int> x, y;             ///< Position of each pixel in the image.
   std::vector<int> offset;           ///< Its index in a plane of the image.
@@ -36,6 +37,8 @@ struct Window {
 
   /// Makes room for windows of the given radius.
   void reserve(int radius, int columns, int channels);
+  /// Lets only the first pixels of those gathered take part.
+  void take(int pixels);
 };
 
 /// What a window is gathered from; all images of one size.

@@ -11,7 +11,11 @@
 namespace polyrecon::bench {
 namespace {
 
-constexpr int window_pixels = 361;  // (2 * 9 + 1)^2: the window of the default radius
+/// Of a window of the default radius.
+int window_pixels() {
+  const int side = 2 * Params{}.radius + 1;
+  return side * side;
+}
 
 void count_windows(benchmark::State& state, std::size_t windows) {
   state.SetLabel("items are windows");
@@ -38,11 +42,11 @@ void patch_distances(benchmark::State& state) {
   for ([[maybe_unused]] const auto pass : state) {
     distances.load(pair.color[1], pair.variance, block, params.radius, params.patch_radius);
     for (std::size_t k = 0; k < centers.x.size(); ++k)
-      distances.window_of(centers.x[k], centers.y[k], cut_exponent, window);
+      distances.window_of(centers.x[k], centers.y[k], {cut_exponent}, window);
   }
   count_windows(state, centers.x.size());
   // add_differences: 13 operations on 7 samples of a pixel, for each pixel of the patch.
-  const double differences = window_pixels * (2 * params.patch_radius + 1) * (2 * params.patch_radius + 1);
+  const double differences = window_pixels() * (2 * params.patch_radius + 1) * (2 * params.patch_radius + 1);
   count_work(state, centers.x.size(), 13 * differences, 7 * sizeof(Real) * differences);
 }
 BENCHMARK(patch_distances)->ArgName("stride")->Arg(1)->Arg(4)->Unit(benchmark::kMicrosecond);
@@ -63,7 +67,7 @@ Problem problem_of(const BasisLayout& layout) {
 }
 
 bool is_whole(benchmark::State& state, const Problem& problem, const NestedFactor& factor) {
-  const bool whole = problem.window.count == window_pixels && factor.rank == factor.columns;
+  const bool whole = problem.window.count == window_pixels() && factor.rank == factor.columns;
   if (!whole) state.SkipWithError("the synthetic window is smaller or of less rank than it is meant to be");
   return whole;
 }

@@ -64,7 +64,7 @@ void each_window(const HalfPair& pair, const std::function<void(Weighed&)>& use)
       for (int y = block.y0; y < block.y1; y += step)
         for (int x = block.x0; x < block.x1; x += step)
           for (const Real bandwidth : params.later_bandwidths) {
-            distances.window_of(x, y, cut_exponent * bandwidth * bandwidth, w.window);
+            distances.window_of(x, y, {cut_exponent * bandwidth * bandwidth}, w.window);
             if (w.window.count == 0) continue;
             gather(source, layout, x, y, params.radius, w.window);
             w.weight_sum = kernel_weights(w.window, bandwidth, w.weight.data());

@@ -55,7 +55,7 @@ Window window_at(const Pictures& p, int cx, int cy, int radius, int patch_radius
   distances.load(p.guide, p.variance, {0, 0, width, height}, radius, patch_radius);
   Window window;
   window.reserve(radius, 1, 3);
-  distances.window_of(cx, cy, limit, window);
+  distances.window_of(cx, cy, {limit}, window);
   window.padded = (window.count + Window::lanes - 1) / Window::lanes * Window::lanes;
   return window;
 }
@@ -135,6 +135,48 @@ TEST(PatchDistances, TheLimitLeavesPixelsOut) {
   EXPECT_EQ(some.count, below);
   EXPECT_GT(below, 0);
   EXPECT_LT(below, all.count);
+}
+
+TEST(PatchDistances, LimitsShareOneList) {
+  const Pictures p = noisy_pictures();
+  PatchDistances distances;
+  distances.load(p.guide, p.variance, {0, 0, width, height}, 4, 1);
+  Window all, some;
+  all.reserve(4, 1, 3);
+  some.reserve(4, 1, 3);
+  const std::vector<Real> limits{Real(0.3), Real(0.8), everything};
+  distances.window_of(6, 5, limits, all);
+  ASSERT_EQ(all.within.size(), 3u);
+  EXPECT_LT(all.within[0], all.within[1]);
+  EXPECT_LT(all.within[1], all.within[2]);
+  EXPECT_EQ(all.within[2], all.count);
+  int before = 0;
+  for (std::size_t k = 0; k < limits.size(); ++k) {
+    distances.window_of(6, 5, {limits[k]}, some);
+    EXPECT_EQ(all.within[k], some.count);
+    for (; before < all.within[k]; ++before) {
+      const auto j = static_cast<std::size_t>(before);
+      EXPECT_LT(all.distance[j], limits[k]);
+      EXPECT_GE(all.distance[j], k > 0 ? limits[k - 1] : Real(0));
+    }
+  }
+}
+
+TEST(PatchDistances, HaveTheSameBitsInAnyOrderOfTheCentres) {
+  const Pictures p = noisy_pictures();
+  PatchDistances shared;
+  shared.load(p.guide, p.variance, {0, 0, width, height}, 3, 2);
+  Window window;
+  window.reserve(3, 1, 3);
+  const int order[] = {0, 1, 4, 3, 9, 10, 2, 2, 5, 0};  // rows: forth, back, far, again
+  for (const int x : {5, 6, 5})
+    for (const int y : order) {
+      shared.window_of(x, y, {everything}, window);
+      const Window alone = window_at(p, x, y, 3, 2, everything);
+      ASSERT_EQ(window.count, alone.count);
+      for (std::size_t j = 0; j < static_cast<std::size_t>(window.count); ++j)
+        ASSERT_EQ(window.distance[j], alone.distance[j]) << x << " " << y;
+    }
 }
 
 TEST(KernelWeights, AreTheExponentialCutAtItsEnd) {
