@@ -67,29 +67,33 @@ struct Scratch {
   PatchDistances distances;
   Window window;
   NestedFactor factor;
-  std::vector<Real> weight, fit;
+  std::vector<Real> weight;
+  std::vector<Real> fit;  ///< yhat, window.padded rows of fit_pitch values.
+  std::size_t fit_pitch = 0;
   std::vector<int> center_x, center_y;
 };
 
-POLYRECON_SIMD void add_scaled(Real* y, const Real* x, Real factor, int n) {
-  for (int j = 0; j < n; ++j) y[j] += factor * x[j];
-}
+constexpr std::size_t responses_at_once = vector_lanes;
 
-constexpr std::size_t columns_at_once = 4;
-
-/// y_c += four columns, each times its factor for that y, from left to right; the columns are loaded once for all
-/// three.
-POLYRECON_SIMD void add_columns(Real* const* y, const Real* const* x, const Real (*factor)[columns_at_once], int n) {
-  Real *y0 = y[0], *y1 = y[1], *y2 = y[2];
-  const Real *x0 = x[0], *x1 = x[1], *x2 = x[2], *x3 = x[3];
-  const Real f00 = factor[0][0], f01 = factor[0][1], f02 = factor[0][2], f03 = factor[0][3];
-  const Real f10 = factor[1][0], f11 = factor[1][1], f12 = factor[1][2], f13 = factor[1][3];
-  const Real f20 = factor[2][0], f21 = factor[2][1], f22 = factor[2][2], f23 = factor[2][3];
-#pragma omp simd
-  for (int j = 0; j < n; ++j) {
-    y0[j] = y0[j] + f00 * x0[j] + f01 * x1[j] + f02 * x2[j] + f03 * x3[j];
-    y1[j] = y1[j] + f10 * x0[j] + f11 * x1[j] + f12 * x2[j] + f13 * x3[j];
-    y2[j] = y2[j] + f20 * x0[j] + f21 * x1[j] + f22 * x2[j] + f23 * x3[j];
+/// fit(j) = origin + sum_a f_a q_a(j) for all pixels and eight responses, which stand side by side.
+POLYRECON_SIMD void evaluate_at_once(const Real* q, std::size_t pitch, const Real (*factor)[responses_at_once],
+                                     int columns, const Real* origin, int rows, Real* fit, std::size_t fit_pitch) {
+  constexpr std::size_t at_once = 4;  // pixels: factors are loaded once for all of them
+  const Reals start = *reinterpret_cast<const StoredReals*>(origin);
+  for (int j = 0; j < rows; j += at_once, q += at_once * pitch, fit += at_once * fit_pitch) {
+    const Real *q0 = q, *q1 = q + pitch, *q2 = q1 + pitch, *q3 = q2 + pitch;
+    Reals s0 = start, s1 = start, s2 = start, s3 = start;
+    for (int a = 0; a < columns; ++a) {
+      const Reals f = *reinterpret_cast<const StoredReals*>(factor[a]);
+      s0 += q0[a] * f;
+      s1 += q1[a] * f;
+      s2 += q2[a] * f;
+      s3 += q3[a] * f;
+    }
+    *reinterpret_cast<StoredReals*>(fit) = s0;
+    *reinterpret_cast<StoredReals*>(fit + fit_pitch) = s1;
+    *reinterpret_cast<StoredReals*>(fit + 2 * fit_pitch) = s2;
+    *reinterpret_cast<StoredReals*>(fit + 3 * fit_pitch) = s3;
   }
 }
 
@@ -124,105 +128,67 @@ std::array<ColumnStatistics, 3> column_statistics(Scratch& s, bool first_stage) 
   return channels;
 }
 
-/// sum_a g_a z_a q_a of the three channels of the beauty, added to s.fit.
-void evaluate_beauty(Scratch& s, const OrderChoice& choice, const std::array<ColumnStatistics, 3>& beauty) {
-  const auto stride = static_cast<std::size_t>(s.window.stride);
-  Real* const fit[3] = {s.fit.data(), s.fit.data() + stride, s.fit.data() + 2 * stride};
-  const Real* column[columns_at_once];
-  Real factor[3][columns_at_once] = {};
-  std::size_t held = 0;
-  const auto add_held = [&] {
-    for (std::size_t k = held; k < columns_at_once; ++k) {
-      column[k] = s.factor.q.data();
-      for (Real(&of_channel)[columns_at_once] : factor) of_channel[k] = 0;
-    }
-    add_columns(fit, column, factor, s.window.padded);
-    held = 0;
-  };
-  for (std::size_t a = 0; a < static_cast<std::size_t>(s.factor.columns); ++a) {
-    bool used = false;
-    for (std::size_t c = 0; c < 3; ++c) {
-      factor[c][held] = static_cast<Real>(choice.factor[a] * beauty[c].z[a]);
-      used |= factor[c][held] != 0;
-    }
-    if (!used) continue;
-    column[held++] = s.factor.q.data() + a * stride;
-    if (held == columns_at_once) add_held();
-  }
-  if (held > 0) add_held();
-}
-
 /// yhat of every response channel at every pixel of the window: sum_a g_a z_a q_a and the value that gather took away.
 void evaluate(Scratch& s, const OrderChoice& choice, std::size_t responses,
               const std::array<ColumnStatistics, 3>& beauty) {
-  const auto stride = static_cast<std::size_t>(s.window.stride);
-  for (std::size_t c = 0; c < responses; ++c) {
-    Real* fit = s.fit.data() + c * stride;
-    std::fill(fit, fit + s.window.padded, s.window.origin[c]);
-  }
-  evaluate_beauty(s, choice, beauty);
   std::array<double, BasisLayout::max_columns> z{};
-  for (std::size_t c = 3; c < responses; ++c) {
-    project(s.factor, s.window, s.weight.data(), s.window.response.data() + c * stride, z.data());
-    for (std::size_t a = 0; a < static_cast<std::size_t>(s.factor.columns); ++a)
-      if (choice.factor[a] * z[a] != 0)
-        add_scaled(s.fit.data() + c * stride, s.factor.q.data() + a * stride,
-                   static_cast<Real>(choice.factor[a] * z[a]), s.window.padded);
+  for (std::size_t first = 0; first < responses; first += responses_at_once) {
+    Real factor[BasisLayout::max_columns][responses_at_once] = {}, origin[responses_at_once] = {};
+    for (std::size_t k = 0; k < std::min(responses_at_once, responses - first); ++k) {
+      const std::size_t c = first + k;
+      const Real* const y = s.window.response.data() + c * static_cast<std::size_t>(s.window.stride);
+      if (c >= 3) project(s.factor, s.window, s.weight.data(), y, z.data());
+      const double* const coefficient = c < 3 ? beauty[c].z.data() : z.data();
+      for (std::size_t a = 0; a < static_cast<std::size_t>(s.factor.columns); ++a)
+        factor[a][k] = static_cast<Real>(choice.factor[a] * coefficient[a]);
+      origin[k] = s.window.origin[c];
+    }
+    evaluate_at_once(s.factor.q.data(), static_cast<std::size_t>(s.window.pitch), factor, s.factor.columns, origin,
+                     s.window.padded, s.fit.data() + first, s.fit_pitch);
   }
 }
 
-/// Sum of the magnitudes; not finite where one of them is not.
-POLYRECON_SIMD double magnitude_of(const Real* values, int n) {
-  double sum = 0;
-#pragma omp simd reduction(+ : sum)
-  for (int j = 0; j < n; ++j) sum += std::abs(static_cast<double>(values[j]));
-  return sum;
-}
-
-bool all_finite(const Scratch& s, std::size_t responses) {
-  for (std::size_t c = 0; c < responses; ++c)
-    if (!std::isfinite(magnitude_of(s.fit.data() + c * static_cast<std::size_t>(s.window.stride), s.window.count)))
-      return false;
-  return true;
-}
-
-POLYRECON_SIMD double energy_of(const Real* weight, const Real* fit, int n) {
-  double sum = 0;
-#pragma omp simd reduction(+ : sum)
-  for (int j = 0; j < n; ++j) {
-    const double f = fit[j];
+/// Whether all responses of the pixels are finite, and sum_i w_i yhat(i)^2 of the three of the beauty.
+POLYRECON_SIMD bool energies_of_fit(const Real* fit, std::size_t pitch, std::size_t responses, const Real* weight,
+                                    int count, double* energy) {
+  Doubles sum = {}, rest = {};
+  for (int j = 0; j < count; ++j, fit += pitch) {
+    const Doubles f = __builtin_convertvector(*reinterpret_cast<const StoredReals*>(fit), Doubles);
     sum += static_cast<double>(weight[j]) * f * f;
+    rest += f * 0.0;  // NaN where it is not finite
+    for (std::size_t first = responses_at_once; first < responses; first += responses_at_once)
+      rest += __builtin_convertvector(*reinterpret_cast<const StoredReals*>(fit + first), Doubles) * 0.0;
   }
-  return sum;
+  bool finite = true;
+  for (int k = 0; k < vector_lanes; ++k) finite &= rest[k] == 0;
+  for (int c = 0; c < 3; ++c) energy[c] = sum[c];
+  return finite;
 }
 
 constexpr std::size_t constants = 8;  ///< Channels of BlendSums that a window has one value of.
 
-POLYRECON_SIMD void add_pixels(const Window& window, const Real* weight, const Real* fit, std::size_t responses,
-                               const double* constant, BlendSums& sums) {
-  const auto stride = static_cast<std::size_t>(window.stride);
+POLYRECON_SIMD void add_pixels(const Window& window, const Real* weight, const Real* fit, std::size_t pitch,
+                               std::size_t responses, const double* constant, BlendSums& sums) {
   for (std::size_t j = 0; j < static_cast<std::size_t>(window.count); ++j) {
     const double w = static_cast<double>(weight[j]);
     if (w == 0) continue;
     double* out = sums.at(window.x[j], window.y[j]);
-    for (std::size_t c = 0; c < responses; ++c) out[c] += w * static_cast<double>(fit[c * stride + j]);
+    for (std::size_t c = 0; c < responses; ++c) out[c] += w * static_cast<double>(fit[j * pitch + c]);
     for (std::size_t k = 0; k < constants; ++k) out[responses + k] += w * constant[k];
   }
 }
 
-/// weight_sum: of the window's weights; epsilon as in FitSource.
-void blend(const Scratch& s, const OrderChoice& choice, double weight_sum, double epsilon, std::size_t responses,
+/// energy: weighted mean of yhat^2; epsilon as in FitSource.
+void blend(const Scratch& s, const OrderChoice& choice, const double* energy, double epsilon, std::size_t responses,
            BlendSums& sums) {
-  const auto stride = static_cast<std::size_t>(s.window.stride);
   double constant[constants];
   for (std::size_t c = 0; c < 3; ++c) {
-    const double energy = energy_of(s.weight.data(), s.fit.data() + c * stride, s.window.padded) / weight_sum + epsilon;
-    constant[c] = std::sqrt((choice.error[c] - choice.variance[c]) / energy);
+    constant[c] = std::sqrt((choice.error[c] - choice.variance[c]) / (energy[c] + epsilon));
     constant[3 + c] = choice.variance[c];
   }
   constant[6] = choice.order;
   constant[7] = 1;
-  add_pixels(s.window, s.weight.data(), s.fit.data(), responses, constant, sums);
+  add_pixels(s.window, s.weight.data(), s.fit.data(), s.fit_pitch, responses, constant, sums);
 }
 
 /// The image sized state of one call.
@@ -248,20 +214,23 @@ void fit_window(Blending& b, Scratch& s, Real bandwidth, BlendSums& sums) {
   evaluate(s, choice, b.responses(), statistics);
   ++b.counters.windows;
   if (s.factor.rank < layout.columns()) ++b.counters.rank_deficient;
-  if (!all_finite(s, b.responses())) {
+  double energy[3];
+  if (!energies_of_fit(s.fit.data(), s.fit_pitch, b.responses(), s.weight.data(), s.window.count, energy)) {
     // A window whose fit overflowed says nothing; its pixels are left to the other windows and, last, to the input.
     ++b.counters.dropped;
     return;
   }
   ++b.counters.per_model[static_cast<std::size_t>(choice.model)];
-  blend(s, choice, weight_sum, b.source.epsilon, b.responses(), sums);
+  for (double& e : energy) e /= weight_sum;
+  blend(s, choice, energy, b.source.epsilon, b.responses(), sums);
 }
 
 void work_block(Blending& b, const Rect& block, Scratch& s, std::vector<BlendSums>& sums) {
   const FitParams& p = b.params;
   s.window.reserve(p.radius, b.layout.columns(), b.source.response->channels());
   s.weight.resize(static_cast<std::size_t>(s.window.stride));
-  s.fit.resize(static_cast<std::size_t>(s.window.stride) * b.responses());
+  s.fit_pitch = (b.responses() + responses_at_once - 1) / responses_at_once * responses_at_once;
+  s.fit.resize(static_cast<std::size_t>(s.window.stride) * s.fit_pitch);
   s.distances.load(*b.source.guide, *b.source.guide_variance, block, p.radius, p.patch_radius);
   std::vector<Real> limits;
   for (const Real bandwidth : p.bandwidths) limits.push_back(cut_exponent * bandwidth * bandwidth);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "core/real.h"
+
 // The inner loops are plain C++ that the compiler vectorises. POLYRECON_SIMD builds a function once for each x86-64
 // level and picks one when the program starts, so one binary uses AVX-512 where there is any and runs without.
 #if defined(POLYRECON_SIMD_CLONES) && defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
@@ -7,3 +9,17 @@
 #else
 #define POLYRECON_SIMD
 #endif
+
+namespace polyrecon {
+
+/// Where a loop must keep sums apart in registers, it says so: eight numbers, which the compiler spreads over as many
+/// registers as its level of x86-64 asks for (a vector extension that GCC and Clang share). In memory they stand
+/// anywhere.
+constexpr int vector_lanes = 8;
+using Doubles = double __attribute__((vector_size(vector_lanes * sizeof(double))));
+using Reals = Real __attribute__((vector_size(vector_lanes * sizeof(Real))));
+using StoredDoubles =
+    double __attribute__((vector_size(vector_lanes * sizeof(double)), aligned(alignof(double)), may_alias));
+using StoredReals = Real __attribute__((vector_size(vector_lanes * sizeof(Real)), aligned(alignof(Real)), may_alias));
+
+}  // namespace polyrecon

@@ -17,9 +17,9 @@ constexpr double half_difference_sigma =
 /// Of a fit whose weights are 1: the trace of H, which is the rank but for columns that count in part.
 double degrees_of_freedom(const NestedFactor& factor, const Window& window) {
   double trace = 0;
-  for (std::size_t a = 0; a < static_cast<std::size_t>(factor.columns); ++a)
-    for (std::size_t j = 0; j < static_cast<std::size_t>(window.count); ++j) {
-      const double q = factor.q[a * static_cast<std::size_t>(window.stride) + j];
+  for (std::size_t j = 0; j < static_cast<std::size_t>(window.count); ++j)
+    for (std::size_t a = 0; a < static_cast<std::size_t>(factor.columns); ++a) {
+      const double q = factor.q[j * static_cast<std::size_t>(window.pitch) + a];
       trace += q * q;
     }
   return trace;
@@ -52,7 +52,7 @@ void residual_variance(const Image& y, const Image& features, int cx, int cy, Wi
     for (std::size_t j = 0; j < static_cast<std::size_t>(window.count); ++j) {
       double rest = static_cast<double>(values[j]);
       for (std::size_t a = 0; a < static_cast<std::size_t>(factor.columns); ++a)
-        rest -= z[a] * static_cast<double>(factor.q[a * static_cast<std::size_t>(window.stride) + j]);
+        rest -= z[a] * static_cast<double>(factor.q[j * static_cast<std::size_t>(window.pitch) + a]);
       residual += rest * rest;
     }
     out[c] = freedom > 0.5 ? static_cast<Real>(residual / freedom) : Real(-1);

@@ -5,13 +5,131 @@
 
 #include "core/simd.h"
 
+// A pixel's columns stand side by side, and the sums over pixels are kept eight columns at a time in registers: a tile.
+// So no sum ends within a vector, which for the small windows of finer lattices was most of the work, and a sum is
+// loaded and stored once a window.
 namespace polyrecon {
 namespace {
 
-constexpr int max_columns = BasisLayout::max_columns;
+constexpr int tile = vector_lanes;
+constexpr int max_tiles = (BasisLayout::max_columns + tile - 1) / tile;
+constexpr int max_columns = max_tiles * tile;
 /// Part of the limit (of squares) below which a column goes: with its penalty it would count for 1e-5 of itself.
 constexpr double as_good_as_nothing = 3e-3;
-using Matrix = double[max_columns][max_columns];
+
+/// By rows, of whole tiles.
+struct Matrix {
+  double at[max_columns][max_columns];
+};
+
+int tiles_of(int columns) { return (columns + tile - 1) / tile; }
+
+/// sums[k][b] = sum_j w_j x_k(j) y_b(j) for eight columns x and eight y of rows that are pitch apart.
+POLYRECON_SIMD void tile_of_gram(const double* x, const double* y, std::size_t pitch, const Real* weight, int rows,
+                                 double (*sums)[max_columns]) {
+  Doubles s[tile] = {};
+  for (int j = 0; j < rows; ++j, x += pitch, y += pitch) {
+    const Doubles wy = static_cast<double>(weight[j]) * *reinterpret_cast<const StoredDoubles*>(y);
+#pragma GCC unroll 8
+    for (int k = 0; k < tile; ++k) s[k] += x[k] * wy;
+  }
+  for (int k = 0; k < tile; ++k) *reinterpret_cast<StoredDoubles*>(sums[k]) = s[k];
+}
+
+/// The Gram matrix X^T W X, from the diagonal's tiles to the right.
+void gram_matrix(const Window& window, const Real* weight, int tiles, Matrix& gram) {
+  for (int a = 0; a < tiles * tile; a += tile)
+    for (int b = a; b < tiles * tile; b += tile)
+      tile_of_gram(window.design.data() + a, window.design.data() + b, static_cast<std::size_t>(window.pitch), weight,
+                   window.padded, reinterpret_cast<double(*)[max_columns]>(&gram.at[a][b]));
+}
+
+/// row -= factor_c row_c for all rows c above it.
+template <int tiles>
+POLYRECON_SIMD void subtract_rows(const Matrix& rows, const double* factor, int above, double* row) {
+  Doubles s[tiles];
+  for (int t = 0; t < tiles; ++t) s[t] = *reinterpret_cast<const StoredDoubles*>(row + t * tile);
+  for (int c = 0; c < above; ++c)
+    for (int t = 0; t < tiles; ++t) s[t] -= factor[c] * *reinterpret_cast<const StoredDoubles*>(rows.at[c] + t * tile);
+  for (int t = 0; t < tiles; ++t) *reinterpret_cast<StoredDoubles*>(row + t * tile) = s[t];
+}
+
+/// What is left of a column beside those before it.
+struct Remainder {
+  double inverse_length = 0;  ///< 1 / (length with the penalty); 0 where the column is as good as dependent.
+  bool independent = false;   ///< More is left than the limits ask for.
+};
+
+/// rest and own: the squares of what is left of column a and of all of it; weight_sum: of the window.
+Remainder remainder_of(double rest, double own, double weight_sum, bool is_feature, const DependenceLimits& limits) {
+  const double little = std::max(limits.remainder * limits.remainder * own,
+                                 is_feature ? limits.variation * limits.variation * weight_sum : 0.0);
+  const double square = rest + little * (little / rest);
+  // The length and its inverse must be values of the storage type, or q overflows.
+  const bool keep =
+      rest > as_good_as_nothing * little && std::isnormal(rest) && std::isnormal(static_cast<Real>(std::sqrt(square)));
+  return {keep ? 1 / std::sqrt(square) : 0, keep && rest > little};
+}
+
+/// Factors the Gram matrix into R^T R, row by row from the top, and sets factor.kept and rank. inverse becomes R^-1:
+/// row b tells how much of column b each column of Q takes.
+template <int tiles>
+void invert_factor(const Matrix& gram, const BasisLayout& layout, const DependenceLimits& limits, NestedFactor& factor,
+                   Matrix& inverse) {
+  Matrix r, left_of;  // R; and row a: what Q's column a takes of each column of the design
+  for (int a = 0; a < factor.columns; ++a) {
+    double above[max_columns];  // column a of R
+    for (int c = 0; c < a; ++c) above[c] = r.at[c][a];
+    std::copy(gram.at[a] + a / tile * tile, gram.at[a] + tiles * tile, r.at[a] + a / tile * tile);
+    std::fill(r.at[a], r.at[a] + a / tile * tile, 0.0);
+    subtract_rows<tiles>(r, above, a, r.at[a]);
+    std::fill(left_of.at[a], left_of.at[a] + tiles * tile, 0.0);
+    left_of.at[a][a] = 1;
+    subtract_rows<tiles>(left_of, above, a, left_of.at[a]);
+    const bool is_feature = a >= 1 && a <= layout.features();
+    const Remainder left = remainder_of(r.at[a][a], gram.at[a][a], gram.at[0][0], is_feature, limits);
+    factor.kept[static_cast<std::size_t>(a)] = left.inverse_length > 0;
+    factor.rank += left.independent;
+    for (int b = 0; b < tiles * tile; ++b) {
+      r.at[a][b] = left.inverse_length > 0 ? r.at[a][b] * left.inverse_length : 0;
+      left_of.at[a][b] *= left.inverse_length;
+    }
+  }
+  for (int b = 0; b < factor.columns; ++b)
+    for (int a = 0; a < tiles * tile; ++a) inverse.at[b][a] = a < factor.columns ? left_of.at[a][b] : 0;
+}
+
+/// Eight columns of q = X R^-1 for all pixels: of the first `columns` of X, which are all that these take of.
+POLYRECON_SIMD void tile_of_q(const double* x, std::size_t pitch, const double (*inverse)[max_columns], int columns,
+                              int rows, Real* q) {
+  constexpr int at_once = 4;  // pixels: a row of the inverse is loaded once for all of them
+  for (int j = 0; j < rows; j += at_once, x += at_once * pitch, q += at_once * pitch) {
+    const double *x0 = x, *x1 = x + pitch, *x2 = x1 + pitch, *x3 = x2 + pitch;
+    Doubles s0 = {}, s1 = {}, s2 = {}, s3 = {};
+    for (int b = 0; b < columns; ++b) {
+      const Doubles r = *reinterpret_cast<const StoredDoubles*>(inverse[b]);
+      s0 += x0[b] * r;
+      s1 += x1[b] * r;
+      s2 += x2[b] * r;
+      s3 += x3[b] * r;
+    }
+    *reinterpret_cast<StoredReals*>(q) = __builtin_convertvector(s0, StoredReals);
+    *reinterpret_cast<StoredReals*>(q + pitch) = __builtin_convertvector(s1, StoredReals);
+    *reinterpret_cast<StoredReals*>(q + 2 * pitch) = __builtin_convertvector(s2, StoredReals);
+    *reinterpret_cast<StoredReals*>(q + 3 * pitch) = __builtin_convertvector(s3, StoredReals);
+  }
+}
+
+template <int tiles>
+void factorise_tiles(const Window& window, const Real* weight, NestedFactor& factor, const DependenceLimits& limits) {
+  Matrix gram, inverse;
+  gram_matrix(window, weight, tiles, gram);
+  invert_factor<tiles>(gram, window.layout, limits, factor, inverse);
+  for (int a = 0; a < tiles * tile; a += tile)
+    tile_of_q(window.design.data(), static_cast<std::size_t>(window.pitch),
+              reinterpret_cast<const double(*)[max_columns]>(&inverse.at[0][a]), std::min(a + tile, factor.columns),
+              window.padded, factor.q.data() + a);
+}
 
 POLYRECON_SIMD void multiply(const Real* a, const Real* b, double* product, int rows) {
   for (int j = 0; j < rows; ++j) product[j] = static_cast<double>(a[j]) * static_cast<double>(b[j]);
@@ -21,183 +139,68 @@ POLYRECON_SIMD void multiply_by(const Real* factor, double* y, int rows) {
   for (int j = 0; j < rows; ++j) y[j] *= static_cast<double>(factor[j]);
 }
 
-/// Inner products of four columns with two: each load serves two or four products, the sums fit the registers.
-POLYRECON_SIMD void products_4x2(const double* const* x, const double* const* y, int rows, double* sums) {
-  const double *x0 = x[0], *x1 = x[1], *x2 = x[2], *x3 = x[3], *y0 = y[0], *y1 = y[1];
-  double s00 = 0, s01 = 0, s10 = 0, s11 = 0, s20 = 0, s21 = 0, s30 = 0, s31 = 0;
-#pragma omp simd reduction(+ : s00, s01, s10, s11, s20, s21, s30, s31)
-  for (int j = 0; j < rows; ++j) {
-    s00 += x0[j] * y0[j];
-    s01 += x0[j] * y1[j];
-    s10 += x1[j] * y0[j];
-    s11 += x1[j] * y1[j];
-    s20 += x2[j] * y0[j];
-    s21 += x2[j] * y1[j];
-    s30 += x3[j] * y0[j];
-    s31 += x3[j] * y1[j];
-  }
-  const double all[8] = {s00, s01, s10, s11, s20, s21, s30, s31};
-  std::copy(all, all + 8, sums);
+/// sums[a] = sum_j w_j q_a(j) y(j) for eight columns.
+POLYRECON_SIMD void tile_sums(const Real* q, std::size_t pitch, const Real* weight, const Real* y, int rows,
+                              double* sums) {
+  Doubles s = {};
+  for (int j = 0; j < rows; ++j, q += pitch)
+    s += static_cast<double>(weight[j]) * static_cast<double>(y[j]) *
+         __builtin_convertvector(*reinterpret_cast<const StoredReals*>(q), Doubles);
+  *reinterpret_cast<StoredDoubles*>(sums) = s;
 }
 
-/// gram[a][b] = sum_j x_a(j) x_b(j) for b <= a.
-void gram_matrix(const double* columns, int count, int rows, std::size_t stride, double (*gram)[max_columns]) {
-  const auto column = [&](int a) { return columns + static_cast<std::size_t>(std::min(a, count - 1)) * stride; };
-  for (int a = 0; a < count; a += 4) {
-    const double* x[4] = {column(a), column(a + 1), column(a + 2), column(a + 3)};
-    for (int b = 0; b < std::min(a + 4, count); b += 2) {
-      const double* y[2] = {column(b), column(b + 1)};
-      double sums[8];
-      products_4x2(x, y, rows, sums);
-      for (int k = 0; k < 8; ++k)
-        if (a + k / 2 < count && b + k % 2 < count) gram[a + k / 2][b + k % 2] = sums[k];
+/// The same, weighted before, for six or three y, and then for three with the squares of q.
+template <bool with_guess>
+POLYRECON_SIMD void tile_sums_of_beauty(const Real* q, std::size_t pitch, const double* y, std::size_t stride, int rows,
+                                        double (*sums)[tile]) {
+  Doubles z0 = {}, z1 = {}, z2 = {}, g0 = {}, g1 = {}, g2 = {}, v0 = {}, v1 = {}, v2 = {};
+  const double *y0 = y, *y1 = y + stride, *y2 = y1 + stride, *m0 = y2 + stride, *m1 = m0 + stride, *m2 = m1 + stride;
+  const double *n0 = m2 + stride, *n1 = n0 + stride, *n2 = n1 + stride;
+  for (int j = 0; j < rows; ++j, q += pitch) {
+    const Doubles p = __builtin_convertvector(*reinterpret_cast<const StoredReals*>(q), Doubles);
+    const Doubles square = p * p;
+    z0 += y0[j] * p;
+    z1 += y1[j] * p;
+    z2 += y2[j] * p;
+    if (with_guess) {
+      g0 += m0[j] * p;
+      g1 += m1[j] * p;
+      g2 += m2[j] * p;
     }
+    v0 += n0[j] * square;
+    v1 += n1[j] * square;
+    v2 += n2[j] * square;
   }
-}
-
-POLYRECON_SIMD double weighted_dot(const Real* w, const Real* a, const Real* b, int rows) {
-  double sum = 0;
-#pragma omp simd reduction(+ : sum)
-  for (int j = 0; j < rows; ++j)
-    sum += static_cast<double>(w[j]) * static_cast<double>(a[j]) * static_cast<double>(b[j]);
-  return sum;
-}
-
-POLYRECON_SIMD void subtract_scaled(Real* y, const Real* x, Real factor, int rows) {
-  for (int j = 0; j < rows; ++j) y[j] -= factor * x[j];
-}
-
-POLYRECON_SIMD void square_roots(const Real* in, Real* out, int rows) {
-  for (int j = 0; j < rows; ++j) out[j] = std::sqrt(in[j]);
-}
-
-/// y -= sum of four columns, each times its factor: y is loaded and stored once.
-POLYRECON_SIMD void subtract_four(Real* y, const Real* const* x, const Real* factor, int rows) {
-  const Real *x0 = x[0], *x1 = x[1], *x2 = x[2], *x3 = x[3];
-  const Real f0 = factor[0], f1 = factor[1], f2 = factor[2], f3 = factor[3];
-  for (int j = 0; j < rows; ++j) y[j] -= f0 * x0[j] + f1 * x1[j] + f2 * x2[j] + f3 * x3[j];
-}
-
-POLYRECON_SIMD void scale(Real* y, Real factor, int rows) {
-  for (int j = 0; j < rows; ++j) y[j] *= factor;
-}
-
-/// What is left of a column beside those before it.
-struct Remainder {
-  double inverse_length = 0;  ///< 1 / (length with the penalty); 0 where the column is as good as dependent.
-  bool independent = false;   ///< More is left than the limits ask for.
-};
-
-Remainder remainder_of(const Matrix& gram, const Matrix& l, int a, const BasisLayout& layout,
-                       const DependenceLimits& limits) {
-  double rest = gram[a][a];
-  for (int b = 0; b < a; ++b) rest -= l[a][b] * l[a][b];
-  const bool is_feature = a >= 1 && a <= layout.features();
-  const double weight_sum = gram[0][0];  // column 0 is 1 everywhere
-  const double little = std::max(limits.remainder * limits.remainder * gram[a][a],
-                                 is_feature ? limits.variation * limits.variation * weight_sum : 0.0);
-  const double square = rest + little * (little / rest);
-  // The length and its inverse must be values of the storage type, or q overflows.
-  const bool keep =
-      rest > as_good_as_nothing * little && std::isnormal(rest) && std::isnormal(static_cast<Real>(std::sqrt(square)));
-  return {keep ? 1 / std::sqrt(square) : 0, keep && rest > little};
-}
-
-/// The inner product of column b > a with the part of column a that is orthogonal to those before it.
-double cholesky_entry(const Matrix& gram, const Matrix& l, int a, int b) {
-  double sum = gram[b][a];
-  for (int c = 0; c < a; ++c) sum -= l[b][c] * l[a][c];
-  return sum;
-}
-
-void normalised_remainder(const Window& window, const Matrix& l, int a, double inverse, NestedFactor& factor) {
-  const auto stride = static_cast<std::size_t>(window.stride);
-  const Real* xa = window.design.data() + static_cast<std::size_t>(a) * stride;
-  Real* qa = factor.q.data() + static_cast<std::size_t>(a) * stride;
-  std::copy(xa, xa + window.padded, qa);
-  const auto q = [&](int b) { return factor.q.data() + static_cast<std::size_t>(b) * stride; };
-  int b = 0;
-  for (; b + 4 <= a; b += 4) {
-    const Real* const four[4] = {q(b), q(b + 1), q(b + 2), q(b + 3)};
-    const Real factors[4] = {static_cast<Real>(l[a][b]), static_cast<Real>(l[a][b + 1]), static_cast<Real>(l[a][b + 2]),
-                             static_cast<Real>(l[a][b + 3])};
-    subtract_four(qa, four, factors, window.padded);
-  }
-  for (; b < a; ++b) subtract_scaled(qa, q(b), static_cast<Real>(l[a][b]), window.padded);
-  scale(qa, static_cast<Real>(inverse), window.padded);
-}
-
-/// sums[c][k] = sum_j q_k(j) y_c(j) for two columns q and three y, or of the squares of q.
-template <bool squared>
-POLYRECON_SIMD void sums_2x3(const Real* q0, const Real* q1, const double* y, std::size_t stride, int rows,
-                             double* sums) {
-  const double *y0 = y, *y1 = y + stride, *y2 = y1 + stride;
-  double s00 = 0, s01 = 0, s10 = 0, s11 = 0, s20 = 0, s21 = 0;
-#pragma omp simd reduction(+ : s00, s01, s10, s11, s20, s21)
-  for (int j = 0; j < rows; ++j) {
-    const double p0 = q0[j], p1 = q1[j], u = squared ? p0 * p0 : p0, v = squared ? p1 * p1 : p1;
-    s00 += u * y0[j];
-    s01 += v * y0[j];
-    s10 += u * y1[j];
-    s11 += v * y1[j];
-    s20 += u * y2[j];
-    s21 += v * y2[j];
-  }
-  const double all[6] = {s00, s01, s10, s11, s20, s21};
-  std::copy(all, all + 6, sums);
-}
-
-/// out[c][a] = sum_j q_a(j)^power y_c(j) for all columns.
-template <bool squared>
-void column_sums(const NestedFactor& factor, const double* y, std::size_t stride, int rows, double* const* out) {
-  for (int a = 0; a < factor.columns; a += 2) {
-    const Real* const q = factor.q.data() + static_cast<std::size_t>(a) * stride;
-    const bool two = a + 1 < factor.columns;
-    double sums[6];
-    sums_2x3<squared>(q, two ? q + stride : q, y, stride, rows, sums);
-    for (std::size_t c = 0; c < 3; ++c) {
-      out[c][a] = sums[2 * c];
-      if (two) out[c][a + 1] = sums[2 * c + 1];
-    }
-  }
+  const Doubles all[9] = {z0, z1, z2, g0, g1, g2, v0, v1, v2};
+  for (int k = 0; k < 9; ++k) *reinterpret_cast<StoredDoubles*>(sums[k]) = all[k];
 }
 
 }  // namespace
 
 void factorise(const Window& window, int columns, const Real* weight, NestedFactor& factor,
                const DependenceLimits& limits) {
-  const auto stride = static_cast<std::size_t>(window.stride);
   factor.columns = columns;
   factor.rank = 0;
-  factor.q.resize(stride * static_cast<std::size_t>(columns));
-  factor.root.resize(stride);
-  factor.scratch.resize(stride * static_cast<std::size_t>(std::max(columns, 3)));
-  square_roots(weight, factor.root.data(), window.padded);
-  // The Gram matrix of S X: that of (W X) and X, rounded apart, need not be positive definite.
-  for (int a = 0; a < columns; ++a) {
-    const std::size_t offset = static_cast<std::size_t>(a) * stride;
-    multiply(factor.root.data(), window.design.data() + offset, factor.scratch.data() + offset, window.padded);
-  }
-  Matrix gram, l;
-  gram_matrix(factor.scratch.data(), columns, window.padded, stride, gram);
-  for (int a = 0; a < columns; ++a) {
-    const Remainder left = remainder_of(gram, l, a, window.layout, limits);
-    const bool keep = left.inverse_length > 0;
-    Real* const qa = factor.q.data() + static_cast<std::size_t>(a) * stride;
-    if (keep)
-      normalised_remainder(window, l, a, left.inverse_length, factor);
-    else
-      std::fill(qa, qa + window.padded, Real(0));
-    factor.kept[static_cast<std::size_t>(a)] = keep;
-    factor.rank += left.independent;
-    for (int b = a + 1; b < columns; ++b) l[b][a] = keep ? cholesky_entry(gram, l, a, b) * left.inverse_length : 0;
+  factor.q.resize(static_cast<std::size_t>(window.stride) * static_cast<std::size_t>(window.pitch));
+  factor.scratch.resize(9 * static_cast<std::size_t>(window.stride));
+  static_assert(max_tiles == 4);
+  switch (tiles_of(columns)) {
+    case 1:
+      return factorise_tiles<1>(window, weight, factor, limits);
+    case 2:
+      return factorise_tiles<2>(window, weight, factor, limits);
+    case 3:
+      return factorise_tiles<3>(window, weight, factor, limits);
+    default:
+      return factorise_tiles<4>(window, weight, factor, limits);
   }
 }
 
 void project(const NestedFactor& factor, const Window& window, const Real* weight, const Real* y, double* z) {
-  for (int a = 0; a < factor.columns; ++a) {
-    const Real* qa = factor.q.data() + static_cast<std::size_t>(a) * static_cast<std::size_t>(window.stride);
-    z[a] = factor.kept[static_cast<std::size_t>(a)] ? weighted_dot(weight, qa, y, window.padded) : 0;
+  for (int a = 0; a < factor.columns; a += tile) {
+    double sums[tile];
+    tile_sums(factor.q.data() + a, static_cast<std::size_t>(window.pitch), weight, y, window.padded, sums);
+    std::copy_n(sums, std::min(tile, factor.columns - a), z + a);
   }
 }
 
@@ -205,19 +208,25 @@ void project_beauty(NestedFactor& factor, const Window& window, const Real* weig
                     double* const* guess_z, double* const* s2) {
   const auto stride = static_cast<std::size_t>(window.stride);
   double* const scaled = factor.scratch.data();
-  const auto weigh = [&](const std::vector<Real>& channels) {
+  const auto weigh = [&](const std::vector<Real>& channels, std::size_t first) {
     for (std::size_t c = 0; c < 3; ++c)
-      multiply(weight, channels.data() + c * stride, scaled + c * stride, window.padded);
+      multiply(weight, channels.data() + c * stride, scaled + (first + c) * stride, window.padded);
   };
-  weigh(window.response);
-  column_sums<false>(factor, scaled, stride, window.padded, z);
-  if (with_guess) {
-    weigh(window.guess);
-    column_sums<false>(factor, scaled, stride, window.padded, guess_z);
+  weigh(window.response, 0);
+  if (with_guess) weigh(window.guess, 3);
+  weigh(window.noise_variance, 6);
+  for (std::size_t c = 6; c < 9; ++c) multiply_by(weight, scaled + c * stride, window.padded);
+  for (int a = 0; a < factor.columns; a += tile) {
+    double sums[9][tile];
+    const auto sum = with_guess ? tile_sums_of_beauty<true> : tile_sums_of_beauty<false>;
+    sum(factor.q.data() + a, static_cast<std::size_t>(window.pitch), scaled, stride, window.padded, sums);
+    const int count = std::min(tile, factor.columns - a);
+    for (std::size_t c = 0; c < 3; ++c) {
+      std::copy_n(sums[c], count, z[c] + a);
+      if (with_guess) std::copy_n(sums[3 + c], count, guess_z[c] + a);
+      std::copy_n(sums[6 + c], count, s2[c] + a);
+    }
   }
-  weigh(window.noise_variance);
-  for (std::size_t c = 0; c < 3; ++c) multiply_by(weight, scaled + c * stride, window.padded);
-  column_sums<true>(factor, scaled, stride, window.padded, s2);
 }
 
 }  // namespace polyrecon

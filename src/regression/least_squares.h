@@ -22,9 +22,9 @@ struct NestedFactor {
   int columns = 0;
   int rank = 0;                                       ///< Columns that count for more than half of themselves.
   std::array<bool, BasisLayout::max_columns> kept{};  ///< False where nothing is left to speak of.
-  std::vector<Real> q;                                ///< columns x window.stride; dropped columns are zero.
-  std::vector<Real> root;                             ///< sqrt(w), the diagonal of S.
-  std::vector<double> scratch;                        ///< Weighted columns.
+  std::vector<Real> q;  ///< window.padded rows of window.pitch values, a pixel's columns side by side, then zeros
+                        ///< to a multiple of vector_lanes; dropped columns are zero.
+  std::vector<double> scratch;  ///< Weighted responses.
 };
 
 /// Where a column, depending on those before it, counts for half: docs/stability.md has what speaks for these values.
@@ -34,7 +34,8 @@ struct DependenceLimits {
 };
 
 /// Factorises the window's design under the weights w (window.padded of them, >= 0, zero beyond window.count). The Gram
-/// matrix is summed in double and factored by Cholesky in the order of the columns.
+/// matrix is summed in double and factored by Cholesky in the order of the columns; q is the design times the inverse
+/// of the triangle that this leaves.
 void factorise(const Window& window, int columns, const Real* weight, NestedFactor& factor,
                const DependenceLimits& limits = {});
 

@@ -1,6 +1,7 @@
 #include "regression/window.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 
@@ -17,38 +18,54 @@ void gather_channel(const Image& image, int channel, const Window& window, Real 
   gather_plane(image.plane(channel), window.offset.data(), minus, column, window.padded);
 }
 
-bool is_flat(const Real* column, int n) {
-  return std::all_of(column, column + n, [](Real x) { return std::abs(x) < Real(least_variation); });
+bool is_flat(const Real* plane, const int* offset, Real center, int n) {
+  return std::all_of(offset, offset + n, [&](int at) { return std::abs(plane[at] - center) < Real(least_variation); });
 }
 
-POLYRECON_SIMD void first_order_columns(const int* x, const int* y, int center_x, int center_y, Real scale, Real* dx,
-                                        Real* dy, int n) {
-  for (int j = 0; j < n; ++j) {
-    dx[j] = static_cast<Real>(x[j] - center_x) * scale;
-    dy[j] = static_cast<Real>(y[j] - center_y) * scale;
+/// The features that vary over the window: where their planes begin, and their values at the centre.
+struct VaryingFeatures {
+  int count = 0;
+  std::array<const Real*, BasisLayout::max_features> plane;
+  std::array<Real, BasisLayout::max_features> center;
+};
+
+VaryingFeatures varying_features(const Image& features, int number, int center_x, int center_y, const Window& window) {
+  VaryingFeatures out;
+  for (int f = 0; f < number; ++f) {
+    const Real* plane = features.plane(f);
+    const Real center = features.at(center_x, center_y, f);
+    if (is_flat(plane, window.offset.data(), center, window.count)) continue;
+    out.plane[static_cast<std::size_t>(out.count)] = plane;
+    out.center[static_cast<std::size_t>(out.count++)] = center;
   }
+  return out;
 }
 
-POLYRECON_SIMD void multiply(const Real* a, const Real* b, Real* product, int n) {
-  for (int j = 0; j < n; ++j) product[j] = a[j] * b[j];
-}
-
-/// Columns (dx/r)^(o-b) (dy/r)^b for b = 0..o, o = 1..order: each from the columns of one order below.
-void taylor_columns(int order, int center_x, int center_y, int radius, const Window& window, Real* column) {
-  if (order == 0) return;
-  const auto stride = static_cast<std::size_t>(window.stride);
-  const int n = window.padded;
-  Real *const dx = column, *const dy = column + stride;
-  first_order_columns(window.x.data(), window.y.data(), center_x, center_y,
-                      Real(1) / static_cast<Real>(std::max(radius, 1)), dx, dy, n);
-  const Real* below = column;
-  column += 2 * stride;
+/// Terms dx^(o-b) dy^b for b = 0..o, o = 1..order: each from those of one order below.
+double* taylor_terms(int order, double dx, double dy, double* term) {
+  if (order == 0) return term;
+  double* below = term;
+  *term++ = dx;
+  *term++ = dy;
   for (int o = 2; o <= order; ++o) {
-    Real* const first = column;
-    for (int b = 0; b < o; ++b, column += stride) multiply(below + static_cast<std::size_t>(b) * stride, dx, column, n);
-    multiply(below + static_cast<std::size_t>(o - 1) * stride, dy, column, n);
-    column += stride;
+    double* const first = term;
+    for (int b = 0; b < o; ++b) *term++ = static_cast<Real>(below[b] * dx);
+    *term++ = static_cast<Real>(below[o - 1] * dy);
     below = first;
+  }
+  return term;
+}
+
+void gather_design(const VaryingFeatures& features, int center_x, int center_y, int radius, Window& window) {
+  const Real scale = Real(1) / static_cast<Real>(std::max(radius, 1));
+  for (std::size_t j = 0; j < static_cast<std::size_t>(window.padded); ++j) {
+    double* const row = window.design.data() + j * static_cast<std::size_t>(window.pitch);
+    row[0] = 1;
+    for (std::size_t f = 0; f < static_cast<std::size_t>(features.count); ++f)
+      row[1 + f] = features.plane[f][window.offset[j]] - features.center[f];
+    double* const end = taylor_terms(window.layout.order(), static_cast<Real>(window.x[j] - center_x) * scale,
+                                     static_cast<Real>(window.y[j] - center_y) * scale, row + 1 + features.count);
+    std::fill(end, row + window.pitch, 0.0);
   }
 }
 
@@ -62,7 +79,8 @@ void Window::reserve(int radius, int columns, int channels) {
   y.resize(rows);
   offset.resize(rows);
   distance.resize(rows);
-  design.resize(rows * static_cast<std::size_t>(columns));
+  pitch = (columns + vector_lanes - 1) / vector_lanes * vector_lanes;
+  design.resize(rows * static_cast<std::size_t>(pitch));
   response.resize(rows * static_cast<std::size_t>(channels));
   origin.resize(static_cast<std::size_t>(channels));
   noise_variance.resize(rows * 3);
@@ -86,18 +104,9 @@ void gather(const WindowSource& source, const BasisLayout& layout, int center_x,
   for (std::size_t j = 0; j < static_cast<std::size_t>(window.padded); ++j)
     window.offset[j] = static_cast<int>(source.response->index(window.x[j], window.y[j]));
   const auto stride = static_cast<std::size_t>(window.stride);
-  Real* column = window.design.data();
-  std::fill(column, column + window.padded, Real(1));
-  column += stride;
-  int varying = 0;
-  for (int f = 0; f < layout.features(); ++f) {
-    gather_channel(*source.features, f, window, source.features->at(center_x, center_y, f), column);
-    if (is_flat(column, window.count)) continue;
-    column += stride;
-    ++varying;
-  }
-  window.layout = BasisLayout(varying, layout.order());
-  taylor_columns(layout.order(), center_x, center_y, radius, window, column);
+  const VaryingFeatures features = varying_features(*source.features, layout.features(), center_x, center_y, window);
+  window.layout = BasisLayout(features.count, layout.order());
+  gather_design(features, center_x, center_y, radius, window);
   for (int c = 0; c < source.response->channels(); ++c) {
     const Real origin = source.response->at(center_x, center_y, c);
     window.origin[static_cast<std::size_t>(c)] = origin;

@@ -20,15 +20,17 @@ struct Window {
 
   BasisLayout layout{0, 0};  ///< Of the design's columns.
 
-  int count = 0;            ///< Pixels in the window.
-  int padded = 0;           ///< count rounded up to a multiple of lanes.
-  int stride = 0;           ///< Distance between columns; at least padded, and more than pixels in the whole window.
+  int count = 0;   ///< Pixels in the window.
+  int padded = 0;  ///< count rounded up to a multiple of lanes.
+  int stride = 0;  ///< Distance between columns; at least padded, and more than pixels in the whole window.
+  int pitch = 0;   ///< Distance between rows of the design; its columns rounded up to a multiple of vector_lanes.
   std::vector<int> within;  ///< How many of the pixels, from the first, lie within each limit of the distance.
 
   std::vector<int> x, y;             ///< Position of each pixel in the image.
   std::vector<int> offset;           ///< Its index in a plane of the image.
   std::vector<Real> distance;        ///< Patch distance of each pixel to the centre, >= 0.
-  std::vector<Real> design;          ///< Columns of the model at each pixel, layout.columns() x stride.
+  std::vector<double> design;        ///< The model's columns at each pixel, stride rows of pitch values: those of
+                                     ///< layout.columns() as Real has them, then zeros.
   std::vector<Real> response;        ///< y at each pixel minus y at the centre, channels x stride.
   std::vector<Real> origin;          ///< y at the centre, channels.
   std::vector<Real> noise_variance;  ///< sigma^2 at each pixel, 3 x stride.

@@ -1,9 +1,11 @@
 #include <benchmark/benchmark.h>
 
+#include <cmath>
 #include <vector>
 
 #include "bench/synthetic.h"
 #include "blend/blend_windows.h"
+#include "core/simd.h"
 #include "pipeline/params.h"
 #include "regression/least_squares.h"
 #include "regression/weights.h"
@@ -84,12 +86,13 @@ void factorise_window(benchmark::State& state) {
   if (!is_whole(state, problem, factor)) return;
   state.counters["columns"] = layout.columns();
   count_windows(state, 1);
-  // Columns times sqrt(w) to double; the triangle of the Gram matrix, 8 products of 6 columns at a time; columns less
-  // those before them, four at a time, and scaled.
+  // The triangle of the Gram matrix, a tile of 8 x 8 at a time; q, 8 columns at a time from those up to them.
   const double n = problem.window.padded, k = layout.columns(), pairs = k * (k - 1) / 2;
-  const double weighing = n * k * (2 * sizeof(Real) + sizeof(double)), gram = n * (pairs + k) * 6 / 8 * sizeof(double);
-  const double remainders = n * (pairs * 6 / 4 + 4 * k) * sizeof(Real);
-  count_work(state, 1, n * (k + 2 * (pairs + k) + 2 * pairs + k), weighing + gram + remainders);
+  const double tiles = std::ceil(k / vector_lanes),
+               gram = tiles * (tiles + 1) / 2 * (16 * sizeof(double) + sizeof(Real));
+  double q = 0;
+  for (double t = 1; t <= tiles; ++t) q += std::min(8 * t, k) * sizeof(double) + 8 * sizeof(Real);
+  count_work(state, 1, n * (k + 4 * (pairs + k)), n * (gram + q));
 }
 BENCHMARK(factorise_window)->ArgName("order")->Arg(2)->Arg(4)->Unit(benchmark::kMicrosecond);
 
@@ -109,11 +112,11 @@ void project_beauty_window(benchmark::State& state) {
   }
   state.counters["columns"] = layout.columns();
   count_windows(state, 1);
-  // Nine channels times the weights, three of them twice; nine sums for each column, of two columns and three channels
-  // at a time, three of them of the columns' squares.
+  // Nine channels times the weights, three of them twice; nine sums for each column, of 8 columns at a time, three of
+  // them of the columns' squares.
   const double n = problem.window.padded, k = layout.columns();
   const double weighing = n * (9 * (2 * sizeof(Real) + sizeof(double)) + 3 * (sizeof(Real) + 2 * sizeof(double)));
-  const double summing = n * 3 * (k / 2) * (2 * sizeof(Real) + 3 * sizeof(double));
+  const double summing = n * std::ceil(k / vector_lanes) * (vector_lanes * sizeof(Real) + 9 * sizeof(double));
   count_work(state, 1, n * (12 + 9 * 2 * k + k), weighing + summing);
 }
 BENCHMARK(project_beauty_window)->ArgName("order")->Arg(2)->Arg(4)->Unit(benchmark::kMicrosecond);

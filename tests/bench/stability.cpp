@@ -69,7 +69,7 @@ void each_window(const HalfPair& pair, const std::function<void(Weighed&)>& use)
             gather(source, layout, x, y, params.radius, w.window);
             w.weight_sum = kernel_weights(w.window, bandwidth, w.weight.data());
             w.s = columns_of(w.weight, 1, w.window).col(0).cwiseSqrt();
-            w.sx = w.s.asDiagonal() * columns_of(w.window.design, w.window.layout.columns(), w.window);
+            w.sx = w.s.asDiagonal() * test::rows_of(w.window.design, w.window.layout.columns(), w.window);
             w.sy = w.s.asDiagonal() * columns_of(w.window.response, 3, w.window).col(1);
             use(w);
           }
@@ -94,7 +94,7 @@ double residual_ratio(const Weighed& w, const MatrixXd& sx, const VectorXd& resi
 /// The problem that factorise solves, with the rows of its penalties.
 test::Penalised problem_of(const Weighed& w, const DependenceLimits& limits) {
   const auto columns = static_cast<int>(w.sx.cols());
-  return test::penalised(columns_of(w.window.design, columns, w.window), w.s.cwiseAbs2(), limits,
+  return test::penalised(test::rows_of(w.window.design, columns, w.window), w.s.cwiseAbs2(), limits,
                          w.window.layout.features());
 }
 
@@ -105,7 +105,7 @@ double ours(const Weighed& w, const DependenceLimits& limits, NestedFactor& fact
   project(factor, w.window, w.weight.data(), w.window.response.data() + w.window.stride, z.data());
   const test::Penalised problem = problem_of(w, limits);
   VectorXd residual(problem.augmented.rows());
-  residual << w.sy - w.s.asDiagonal() * (columns_of(factor.q, columns, w.window) * z), -problem.tail * z;
+  residual << w.sy - w.s.asDiagonal() * (test::rows_of(factor.q, columns, w.window) * z), -problem.tail * z;
   return residual_ratio(w, problem.augmented, residual);
 }
 
@@ -125,8 +125,7 @@ double householder(const Weighed& w) {
 
 /// Largest inner product of a column of Q, with the rows of the penalties, with those before it.
 VectorXd overlaps(const Weighed& w, const NestedFactor& factor, const DependenceLimits& limits) {
-  const MatrixXd q = w.s.asDiagonal() * columns_of(factor.q, factor.columns, w.window),
-                 tail = problem_of(w, limits).tail;
+  const MatrixXd q = w.s.asDiagonal() * test::q_of(factor, w.window), tail = problem_of(w, limits).tail;
   const MatrixXd gram = q.transpose() * q + tail.transpose() * tail;
   VectorXd out = VectorXd::Zero(factor.columns);
   for (int a = 1; a < factor.columns; ++a) out(a) = gram.row(a).head(a).cwiseAbs().maxCoeff();
@@ -150,7 +149,7 @@ MatrixXd fit_of(Weighed& w, NestedFactor& factor) {
   MatrixXd coefficients(factor.columns, 3);
   for (int c = 0; c < 3; ++c)
     for (int a = 0; a < factor.columns; ++a) coefficients(a, c) = choice.factor[static_cast<std::size_t>(a)] * z[c][a];
-  return columns_of(factor.q, factor.columns, w.window) * coefficients;
+  return test::q_of(factor, w.window) * coefficients;
 }
 
 /// Sums over the windows under one setting of the limits.

@@ -9,7 +9,7 @@
 
 namespace polyrecon::test {
 
-/// A window that holds the given design, one row a pixel; rows beyond its end are zero.
+/// A window that holds the given design, one row a pixel, as it would be stored; rows beyond its end are zero.
 inline Window window_of(const Eigen::MatrixXd& design) {
   Window window;
   int radius = 0;
@@ -17,10 +17,10 @@ inline Window window_of(const Eigen::MatrixXd& design) {
   window.reserve(radius, static_cast<int>(design.cols()), 3);
   window.count = static_cast<int>(design.rows());
   window.padded = (window.count + Window::lanes - 1) / Window::lanes * Window::lanes;
-  std::fill(window.design.begin(), window.design.end(), Real(0));
+  std::fill(window.design.begin(), window.design.end(), 0.0);
   for (int a = 0; a < design.cols(); ++a)
     for (int j = 0; j < design.rows(); ++j)
-      window.design[static_cast<std::size_t>(a * window.stride + j)] = static_cast<Real>(design(j, a));
+      window.design[static_cast<std::size_t>(j * window.pitch + a)] = static_cast<Real>(design(j, a));
   return window;
 }
 
@@ -40,13 +40,19 @@ inline std::vector<Real> padded(const Eigen::VectorXd& v, const Window& window) 
   return out;
 }
 
+/// The first columns of what stands pixel by pixel: a window's design, a factorisation's q.
+template <typename T>
+Eigen::MatrixXd rows_of(const std::vector<T>& values, int columns, const Window& window) {
+  Eigen::MatrixXd m(window.count, columns);
+  for (int a = 0; a < columns; ++a)
+    for (int j = 0; j < window.count; ++j)
+      m(j, a) = static_cast<double>(values[static_cast<std::size_t>(j * window.pitch + a)]);
+  return m;
+}
+
 /// S^-1 Q of a factorisation, pixels x columns.
 inline Eigen::MatrixXd q_of(const NestedFactor& factor, const Window& window) {
-  Eigen::MatrixXd q(window.count, factor.columns);
-  for (int a = 0; a < factor.columns; ++a)
-    for (int j = 0; j < window.count; ++j)
-      q(j, a) = static_cast<double>(factor.q[static_cast<std::size_t>(a * window.stride + j)]);
-  return q;
+  return rows_of(factor.q, factor.columns, window);
 }
 
 inline Eigen::MatrixXd normal_matrix(int rows, int columns, Random& random) {
