@@ -44,14 +44,25 @@ void gram_matrix(const Window& window, const Real* weight, int tiles, Matrix& gr
                    window.padded, reinterpret_cast<double(*)[max_columns]>(&gram.at[a][b]));
 }
 
-/// row -= factor_c row_c for all rows c above it.
+/// Row a of R, and behind it what column a of Q takes of each column of the design: row a of the inverse of R^T.
 template <int tiles>
-POLYRECON_SIMD void subtract_rows(const Matrix& rows, const double* factor, int above, double* row) {
-  Doubles s[tiles];
-  for (int t = 0; t < tiles; ++t) s[t] = *reinterpret_cast<const StoredDoubles*>(row + t * tile);
-  for (int c = 0; c < above; ++c)
-    for (int t = 0; t < tiles; ++t) s[t] -= factor[c] * *reinterpret_cast<const StoredDoubles*>(rows.at[c] + t * tile);
-  for (int t = 0; t < tiles; ++t) *reinterpret_cast<StoredDoubles*>(row + t * tile) = s[t];
+struct FactorRow {
+  double at[2 * tiles * tile];
+};
+
+/// Row a less those above it, each times its own value in column a.
+template <int tiles>
+POLYRECON_SIMD void subtract_above(FactorRow<tiles>* rows, int a) {
+  Doubles s[2 * tiles];
+#pragma GCC unroll 8
+  for (int t = 0; t < 2 * tiles; ++t) s[t] = *reinterpret_cast<const StoredDoubles*>(rows[a].at + t * tile);
+  for (int c = 0; c < a; ++c) {
+    const double factor = rows[c].at[a];
+#pragma GCC unroll 8
+    for (int t = 0; t < 2 * tiles; ++t) s[t] -= factor * *reinterpret_cast<const StoredDoubles*>(rows[c].at + t * tile);
+  }
+#pragma GCC unroll 8
+  for (int t = 0; t < 2 * tiles; ++t) *reinterpret_cast<StoredDoubles*>(rows[a].at + t * tile) = s[t];
 }
 
 /// What is left of a column beside those before it.
@@ -76,27 +87,24 @@ Remainder remainder_of(double rest, double own, double weight_sum, bool is_featu
 template <int tiles>
 void invert_factor(const Matrix& gram, const BasisLayout& layout, const DependenceLimits& limits, NestedFactor& factor,
                    Matrix& inverse) {
-  Matrix r, left_of;  // R; and row a: what Q's column a takes of each column of the design
+  constexpr int width = tiles * tile;
+  FactorRow<tiles> rows[width];
   for (int a = 0; a < factor.columns; ++a) {
-    double above[max_columns];  // column a of R
-    for (int c = 0; c < a; ++c) above[c] = r.at[c][a];
-    std::copy(gram.at[a] + a / tile * tile, gram.at[a] + tiles * tile, r.at[a] + a / tile * tile);
-    std::fill(r.at[a], r.at[a] + a / tile * tile, 0.0);
-    subtract_rows<tiles>(r, above, a, r.at[a]);
-    std::fill(left_of.at[a], left_of.at[a] + tiles * tile, 0.0);
-    left_of.at[a][a] = 1;
-    subtract_rows<tiles>(left_of, above, a, left_of.at[a]);
+    double* const row = rows[a].at;
+    const int first = a / tile * tile;  // the Gram matrix has nothing before
+    std::fill_n(row, 2 * width, 0.0);
+    std::copy(gram.at[a] + first, gram.at[a] + width, row + first);
+    row[width + a] = 1;
+    if (a > 0) subtract_above(rows, a);
     const bool is_feature = a >= 1 && a <= layout.features();
-    const Remainder left = remainder_of(r.at[a][a], gram.at[a][a], gram.at[0][0], is_feature, limits);
-    factor.kept[static_cast<std::size_t>(a)] = left.inverse_length > 0;
+    const Remainder left = remainder_of(row[a], gram.at[a][a], gram.at[0][0], is_feature, limits);
+    const bool keep = left.inverse_length > 0;
+    factor.kept[static_cast<std::size_t>(a)] = keep;
     factor.rank += left.independent;
-    for (int b = 0; b < tiles * tile; ++b) {
-      r.at[a][b] = left.inverse_length > 0 ? r.at[a][b] * left.inverse_length : 0;
-      left_of.at[a][b] *= left.inverse_length;
-    }
+    for (int b = 0; b < 2 * width; ++b) row[b] = keep ? row[b] * left.inverse_length : 0;
   }
   for (int b = 0; b < factor.columns; ++b)
-    for (int a = 0; a < tiles * tile; ++a) inverse.at[b][a] = a < factor.columns ? left_of.at[a][b] : 0;
+    for (int a = 0; a < width; ++a) inverse.at[b][a] = a < factor.columns ? rows[a].at[width + b] : 0;
 }
 
 /// Eight columns of q = X R^-1 for all pixels: of the first `columns` of X, which are all that these take of.

@@ -72,6 +72,7 @@ void PatchDistances::load(const Image& guide, const Image& variance, const Rect&
   summed_.resize(static_cast<std::size_t>(2 * patch_radius + 1));
   distance_.resize(static_cast<std::size_t>(window_samples()));
   sums_.resize(summed_.size() * distance_.size());
+  near_.resize(static_cast<std::size_t>((2 * radius_ + 1) * (2 * radius_ + 1)) + 1);
   column_ = nowhere;
 }
 
@@ -132,35 +133,39 @@ void PatchDistances::sum_patches(int center_y) {
 void PatchDistances::window_of(int center_x, int center_y, const std::vector<Real>& limits, Window& window) {
   if (center_x != column_) begin_column(center_x);
   sum_patches(center_y);
-  window.count = 0;
+  const Rect inside = intersect(grow({center_x, center_y, center_x + 1, center_y + 1}, radius_), bounds_);
+  const std::size_t near = find_near(inside, center_x, center_y, limits.back());
+  const auto patch_area = static_cast<Real>((2 * patch_radius_ + 1) * (2 * patch_radius_ + 1));
+  std::size_t count = 0;
   window.within.clear();
   Real from = std::numeric_limits<Real>::lowest();
   for (const Real limit : limits) {
-    list_pixels(center_x, center_y, from, limit, window);
-    window.within.push_back(window.count);
-    from = limit;
-  }
-}
-
-void PatchDistances::list_pixels(int center_x, int center_y, Real from, Real limit, Window& window) const {
-  const auto patch_area = static_cast<Real>((2 * patch_radius_ + 1) * (2 * patch_radius_ + 1));
-  const Real least = from * patch_area, end = limit * patch_area;
-  const Rect inside = intersect(grow({center_x, center_y, center_x + 1, center_y + 1}, radius_), bounds_);
-  auto count = static_cast<std::size_t>(window.count);
-  for (int y = inside.y0; y < inside.y1; ++y) {
-    const Real* row =
-        distance_.data() + static_cast<std::ptrdiff_t>(y - center_y + radius_) * pitch_ - center_x + radius_;
-    for (int x = inside.x0; x < inside.x1; ++x) {
-      // Written whether it stays or not, as no processor foresees which: the next one takes its place. Columns have
-      // room for one pixel more than the window.
-      const Real d = row[x];
-      window.x[count] = x;
-      window.y[count] = y;
+    for (std::size_t k = 0; k < near; ++k) {
+      const int x = near_[k] % 64, y = near_[k] / 64;
+      const Real d = distance_[static_cast<std::size_t>(y * pitch_ + x)];
+      window.x[count] = center_x - radius_ + x;
+      window.y[count] = center_y - radius_ + y;
       window.distance[count] = d > 0 ? d / patch_area : 0;
-      count += static_cast<std::size_t>(d >= least) & static_cast<std::size_t>(d < end);
+      count += static_cast<std::size_t>(d >= from) & static_cast<std::size_t>(d < limit * patch_area);
     }
+    window.within.push_back(static_cast<int>(count));
+    from = limit * patch_area;
   }
   window.count = static_cast<int>(count);
+}
+
+std::size_t PatchDistances::find_near(const Rect& inside, int center_x, int center_y, Real limit) {
+  const Real end = limit * static_cast<Real>((2 * patch_radius_ + 1) * (2 * patch_radius_ + 1));
+  const int first_x = center_x - radius_, first_y = center_y - radius_;
+  std::size_t count = 0;
+  for (int y = inside.y0 - first_y; y < inside.y1 - first_y; ++y) {
+    const Real* row = distance_.data() + static_cast<std::ptrdiff_t>(y) * pitch_;
+    for (int x = inside.x0 - first_x; x < inside.x1 - first_x; ++x) {
+      near_[count] = 64 * y + x;
+      count += row[x] < end;
+    }
+  }
+  return count;
 }
 
 double kernel_weights(const Window& window, Real bandwidth, Real* weight) {

@@ -39,8 +39,9 @@ class PatchDistances {
   void sum_patches(int center_y);    ///< -> distance_, sums over the patch.
   int window_samples() const;        ///< From a window's first pixel to its last, rows of pitch_ samples.
   std::size_t slot_of(int y) const;  ///< Of row y of a patch in sums_ and summed_.
-  /// Adds the pixels of the window with from <= distance < limit to its list.
-  void list_pixels(int center_x, int center_y, Real from, Real limit, Window& window) const;
+  /// Lists the pixels inside whose distance is below limit in near_, as 64 y + x from the window's corner; their
+  /// number. Each is written whether it stays or not, as no processor foresees which: the next one takes its place.
+  std::size_t find_near(const Rect& inside, int center_x, int center_y, Real limit);
 
   int radius_ = 0, patch_radius_ = 0, pitch_ = 0;
   Rect bounds_, loaded_;             ///< Of the image; of loaded_planes_, which reach beyond it.
@@ -53,6 +54,7 @@ class PatchDistances {
   std::vector<Real> sums_;      ///< Of the last rows of patches, 2 patch radius + 1 times window_samples().
   std::vector<int> summed_;     ///< Which rows these are.
   std::vector<Real> distance_;  ///< Of one window, rows of pitch_ samples, the first 2 radius + 1 in use.
+  std::vector<int> near_;       ///< See find_near.
 };
 
 /// w_i = exp(-d_i / bandwidth^2), cut at cut_exponent: the kernel K_h of equations (3) and (4). Fills window.padded

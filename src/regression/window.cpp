@@ -42,30 +42,37 @@ VaryingFeatures varying_features(const Image& features, int number, int center_x
 }
 
 /// Terms dx^(o-b) dy^b for b = 0..o, o = 1..order: each from those of one order below.
-double* taylor_terms(int order, double dx, double dy, double* term) {
-  if (order == 0) return term;
-  double* below = term;
+void taylor_terms(int order, Real dx, Real dy, Real* term) {
+  Real* below = term;
   *term++ = dx;
   *term++ = dy;
   for (int o = 2; o <= order; ++o) {
-    double* const first = term;
-    for (int b = 0; b < o; ++b) *term++ = static_cast<Real>(below[b] * dx);
-    *term++ = static_cast<Real>(below[o - 1] * dy);
+    Real* const first = term;
+    for (int b = 0; b < o; ++b) *term++ = below[b] * dx;
+    *term++ = below[o - 1] * dy;
     below = first;
   }
-  return term;
 }
 
-void gather_design(const VaryingFeatures& features, int center_x, int center_y, int radius, Window& window) {
-  const Real scale = Real(1) / static_cast<Real>(std::max(radius, 1));
-  for (std::size_t j = 0; j < static_cast<std::size_t>(window.padded); ++j) {
-    double* const row = window.design.data() + j * static_cast<std::size_t>(window.pitch);
+std::size_t taylor_width(int order) {
+  return static_cast<std::size_t>((BasisLayout::taylor_terms(order) + vector_lanes - 1) / vector_lanes + 1) *
+         vector_lanes;
+}
+
+/// Rows are written from the first to the last: the zeros at the end of one reach into the next.
+POLYRECON_SIMD void gather_design(const VaryingFeatures& features, int center_x, int center_y, Window& window) {
+  const int side = 2 * window.taylor_radius + 1, middle = window.taylor_radius * (side + 1);
+  const std::size_t width = taylor_width(window.taylor_order);
+  const auto varying = static_cast<std::size_t>(features.count);
+  double* row = window.design.data();
+  for (std::size_t j = 0; j < static_cast<std::size_t>(window.padded); ++j, row += window.pitch) {
     row[0] = 1;
-    for (std::size_t f = 0; f < static_cast<std::size_t>(features.count); ++f)
-      row[1 + f] = features.plane[f][window.offset[j]] - features.center[f];
-    double* const end = taylor_terms(window.layout.order(), static_cast<Real>(window.x[j] - center_x) * scale,
-                                     static_cast<Real>(window.y[j] - center_y) * scale, row + 1 + features.count);
-    std::fill(end, row + window.pitch, 0.0);
+    for (std::size_t f = 0; f < varying; ++f) row[1 + f] = features.plane[f][window.offset[j]] - features.center[f];
+    const auto at = static_cast<std::size_t>((window.y[j] - center_y) * side + window.x[j] - center_x + middle);
+    const Real* const terms = window.taylor.data() + at * width;
+    for (std::size_t k = 0; k < width; k += vector_lanes)
+      *reinterpret_cast<StoredDoubles*>(row + 1 + varying + k) =
+          __builtin_convertvector(*reinterpret_cast<const StoredReals*>(terms + k), StoredDoubles);
   }
 }
 
@@ -80,11 +87,25 @@ void Window::reserve(int radius, int columns, int channels) {
   offset.resize(rows);
   distance.resize(rows);
   pitch = (columns + vector_lanes - 1) / vector_lanes * vector_lanes;
-  design.resize(rows * static_cast<std::size_t>(pitch));
+  design.resize(rows * static_cast<std::size_t>(pitch) + 2 * vector_lanes);  // and the last row's zeros
   response.resize(rows * static_cast<std::size_t>(channels));
   origin.resize(static_cast<std::size_t>(channels));
   noise_variance.resize(rows * 3);
   guess.resize(rows * 3);
+}
+
+void Window::expand(int radius, int order) {
+  if (radius == taylor_radius && order == taylor_order) return;
+  taylor_radius = radius;
+  taylor_order = order;
+  const auto side = static_cast<std::size_t>(2 * radius + 1);
+  const std::size_t width = taylor_width(order);
+  const Real scale = Real(1) / static_cast<Real>(std::max(radius, 1));
+  taylor.assign(side * side * width, Real(0));
+  Real* row = taylor.data();
+  for (int dy = -radius; dy <= radius; ++dy)
+    for (int dx = -radius; dx <= radius; ++dx, row += width)
+      if (order > 0) taylor_terms(order, static_cast<Real>(dx) * scale, static_cast<Real>(dy) * scale, row);
 }
 
 void Window::take(int pixels) {
@@ -106,7 +127,8 @@ void gather(const WindowSource& source, const BasisLayout& layout, int center_x,
   const auto stride = static_cast<std::size_t>(window.stride);
   const VaryingFeatures features = varying_features(*source.features, layout.features(), center_x, center_y, window);
   window.layout = BasisLayout(features.count, layout.order());
-  gather_design(features, center_x, center_y, radius, window);
+  window.expand(radius, layout.order());
+  gather_design(features, center_x, center_y, window);
   for (int c = 0; c < source.response->channels(); ++c) {
     const Real origin = source.response->at(center_x, center_y, c);
     window.origin[static_cast<std::size_t>(c)] = origin;

@@ -37,8 +37,15 @@ struct Window {
   std::vector<Real> guess;           ///< The guess of mu of the stage before minus that at the centre, 3 x stride;
                                      ///< unused in stage 1.
 
+  /// Taylor terms of orders 1 to k at every pixel of a whole window, as taylor_terms in window.cpp makes them once for
+  /// a radius and an order: rows of a multiple of vector_lanes values, at least that many of them zeros at the end.
+  std::vector<Real> taylor;
+  int taylor_radius = -1, taylor_order = -1;  ///< Of these.
+
   /// Makes room for windows of the given radius.
   void reserve(int radius, int columns, int channels);
+  /// Sees to it that taylor is that of this radius and order.
+  void expand(int radius, int order);
   /// Lets only the first pixels of those gathered take part.
   void take(int pixels);
 };

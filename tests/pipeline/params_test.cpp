@@ -30,7 +30,9 @@ TEST(Params, ValuesOutOfRangeAreErrorsOfUse) {
       [](Params& p) { p.first_bandwidths.clear(); },
       [](Params& p) { p.later_bandwidths.clear(); },
       [](Params& p) { p.guided_bandwidths = {Real(0)}; },
-      [](Params& p) { p.guided_bandwidths = {Real(1), Real(0.5)}; },
+      [](Params& p) {
+        p.guided_bandwidths = {Real(1), Real(0.5)};
+      },
   };
   for (std::size_t k = 0; k < std::size(spoil); ++k) {
     Params params;
