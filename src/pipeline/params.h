@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <vector>
 
@@ -48,6 +49,15 @@ struct Params {
 
   FitParams fit(const std::vector<Real>& bandwidths) const {
     return {radius, stride, patch_radius, bandwidths, max_order, order_tolerance, coverage, parts.shrinkage};
+  }
+  /// Of stage 1. Where others follow it only guesses mu for them, and fewer windows do.
+  FitParams first_fit() const {
+    FitParams fit_params = fit(first_bandwidths);
+    if (stages > 1) {
+      fit_params.stride = std::min(stride + stride / 2, radius);
+      fit_params.coverage = coverage / 4;
+    }
+    return fit_params;
   }
 };
 

@@ -41,21 +41,20 @@ std::vector<unsigned char> noisy_pixels(const HalfPair& pair, const Params& para
 struct Guide {
   std::array<const Image*, 2> color;  ///< For the fit of half h: color[h].
   const Image* variance;
-  const std::vector<Real>* bandwidths;
 };
 
 /// Every bandwidth of one guide as a candidate. Half h is fitted with weights and features of the other half.
 void add_candidates(const HalfPair& pair, const Guide& guide, const Candidate* before,
-                    const std::vector<unsigned char>& noisy, const Params& params, FitCounters& counters,
-                    Progress& progress, std::vector<Candidate>& candidates) {
-  if (guide.bandwidths->empty()) return;
+                    const std::vector<unsigned char>& noisy, const FitParams& fit, bool cross_filter,
+                    FitCounters& counters, Progress& progress, std::vector<Candidate>& candidates) {
+  if (fit.bandwidths.empty()) return;
   std::array<std::vector<BlendedFit>, 2> fits;
   for (std::size_t h = 0; h < 2; ++h) {
-    const std::size_t other = params.parts.cross_filter ? 1 - h : h;
+    const std::size_t other = cross_filter ? 1 - h : h;
     const FitSource source{&pair.color[h], &pair.variance, &pair.features[other],
                            guide.color[h], guide.variance, before ? &before->half[other] : nullptr,
                            pair.epsilon};
-    fits[h] = fit_and_blend(source, noisy, params.fit(*guide.bandwidths), counters, progress);
+    fits[h] = fit_and_blend(source, noisy, fit, counters, progress);
   }
   const auto mean = [](Image a, const Image& b) {
     for (int c = 0; c < a.channels(); ++c) {
@@ -65,7 +64,7 @@ void add_candidates(const HalfPair& pair, const Guide& guide, const Candidate* b
     }
     return a;
   };
-  for (std::size_t k = 0; k < guide.bandwidths->size(); ++k)
+  for (std::size_t k = 0; k < fit.bandwidths.size(); ++k)
     candidates.push_back({{std::move(fits[0][k].value), std::move(fits[1][k].value)},
                           mean(std::move(fits[0][k].squared_bias), fits[1][k].squared_bias),
                           mean(std::move(fits[0][k].variance), fits[1][k].variance),
@@ -98,17 +97,18 @@ Candidate stage_of_tile(const HalfPair& pair, const Candidate* before, const Par
                         Progress& progress) {
   const auto noisy = noisy_pixels(pair, params);
   std::vector<Candidate> candidates;
-  const std::size_t guides_a = params.parts.cross_filter ? 1 : 0;
-  const Guide raw{{&pair.color[guides_a], &pair.color[1 - guides_a]},
-                  &pair.variance,
-                  before ? &params.later_bandwidths : &params.first_bandwidths};
-  add_candidates(pair, raw, before, noisy, params, counters, progress, candidates);
+  const bool cross_filter = params.parts.cross_filter;
+  const std::size_t guides_a = cross_filter ? 1 : 0;
+  const Guide raw{{&pair.color[guides_a], &pair.color[1 - guides_a]}, &pair.variance};
+  const FitParams raw_fit = before ? params.fit(params.later_bandwidths) : params.first_fit();
+  add_candidates(pair, raw, before, noisy, raw_fit, cross_filter, counters, progress, candidates);
   Image brightness;
   if (before) {
     brightness = mean_of_halves(*before);
     const Image variance = residual_variance(*before);
-    const Guide guided{{&brightness, &brightness}, &variance, &params.guided_bandwidths};
-    add_candidates(pair, guided, before, noisy, params, counters, progress, candidates);
+    const Guide guided{{&brightness, &brightness}, &variance};
+    add_candidates(pair, guided, before, noisy, params.fit(params.guided_bandwidths), cross_filter, counters, progress,
+                   candidates);
   } else {
     brightness = mean_of_halves(candidates.back());
   }
@@ -144,7 +144,8 @@ double share_left_alone(const HalfPair& pair, const Params& params) {
 int stage_halo(const Params& params) {
   // The guide's noise is final its blur inside a tile, every candidate fit_halo further in, the choice select_halo
   // more.
-  return gaussian_reach(residual_sigma) + fit_halo(params.fit(params.first_bandwidths)) + select_halo(params.selection);
+  const int fits = std::max(fit_halo(params.first_fit()), fit_halo(params.fit(params.later_bandwidths)));
+  return gaussian_reach(residual_sigma) + fits + select_halo(params.selection);
 }
 
 std::size_t smallest_tile_pixels(const Params& params) {
