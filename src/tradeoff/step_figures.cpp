@@ -5,14 +5,14 @@ namespace polyrecon {
 
 const std::array<StepFigures, step_count>& measured_steps() {
   static const std::array<StepFigures, step_count> figures{{
-      {0.115, 1.302},  // draft, order 0
-      {0.132, 1.27},   // draft
-      {0.292, 1.078},  // draft, stages 2
-      {0.298, 1.229},  // stages 1
+      {0.161, 1.299},  // draft, order 0
+      {0.157, 1.267},  // draft
+      {0.344, 1.069},  // draft, stages 2
+      {0.35, 1.227},   // stages 1
       {1, 1},          // standard
-      {1.22, 0.9909},  // order 3
-      {1.86, 0.9823},  // best, coverage 2
-      {2.5, 0.9815},   // best
+      {1.17, 0.9899},  // order 3
+      {1.8, 0.9819},   // best, coverage 2
+      {2.24, 0.9812},  // best
   }};
   return figures;
 }

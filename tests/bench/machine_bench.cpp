@@ -12,7 +12,7 @@ namespace {
 
 constexpr int chains = 12;  ///< Vectors in work: enough to fill the pipelines, few enough for the registers.
 
-/// Products and sums apart, as the inner loops are compiled (ISO C++ does not contract them to fused operations).
+/// Products and sums fused where the processor can, as in the loops of the fits (this file is compiled like theirs).
 template <typename T>
 POLYRECON_SIMD void multiply_and_add(T* values, T factor, T summand, int rounds) {
   using Vector [[gnu::vector_size(64)]] = T;
