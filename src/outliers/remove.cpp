@@ -81,6 +81,20 @@ std::ptrdiff_t against_neighbours(const HalfPair& pair, std::size_t h, int x, in
   return neighbour_of_median(neighbours);
 }
 
+/// Whether fewer than three pixels around differ between the halves by the excess over that height, or more: a cheap
+/// test that all but a few fail.
+bool stands_out_of_differences(const Image& own, const Image& other, const Rect& around, std::size_t center,
+                               double excess, double height) {
+  int as_large = 0;
+  for (int v = around.y0; v < around.y1; ++v)
+    for (int u = around.x0; u < around.x1; ++u) {
+      const std::size_t i = own.index(u, v);
+      if (i == center || height * std::abs(brightness(own, i) - brightness(other, i)) < excess) continue;
+      if (++as_large == 3) return false;
+    }
+  return true;
+}
+
 /// The third largest difference between the halves around a pixel; the largest possible one where there are fewer.
 double third_difference(const Image& own, const Image& other, const Rect& around, std::size_t center) {
   std::array<double, 3> largest;
@@ -112,6 +126,7 @@ std::ptrdiff_t against_other_half(const HalfPair& pair, std::size_t h, int x, in
   const double seen_by_other = brightness(other, center), excess = brightness(own, center) - seen_by_other;
   if (!(excess > 0) || !unreliable(pair, center, excess, p)) return -1;
   const Rect around = intersect(grow({x, y, x + 1, y + 1}, p.neighbourhood), own.bounds());
+  if (!stands_out_of_differences(own, other, around, center, excess, p.height_over_other_half)) return -1;
   const double third = third_difference(own, other, around, center);
   if (!(excess > p.height_over_other_half * third)) return -1;
   std::vector<std::pair<double, std::ptrdiff_t>> alike, neighbours;

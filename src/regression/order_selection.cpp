@@ -12,7 +12,7 @@ using Channels = std::array<ColumnStatistics, 3>;
 
 // Of z_a m_a in the estimate of mu_a^2 by which an error is told; the rest is m_a^2. z_a m_a is unbiased where z_a and
 // the guess err independently, but the factors were chosen by it; m_a^2 is too high by the noise of the guess.
-constexpr double share_of_product = 0.8;
+constexpr double share_of_product = 0.9;
 
 /// Estimates of mu_a^2: what the factors and the order are chosen by, and what the error is told by.
 double chosen_by(const ColumnStatistics& channel, std::size_t a, bool first_stage) {

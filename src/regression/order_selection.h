@@ -21,8 +21,8 @@ struct OrderChoice {
   int model = 0;     ///< The one that counts most: index into BasisLayout's models, the lowest of equals.
   double order = 0;  ///< Taylor order, mean over the models.
   std::array<double, BasisLayout::max_columns> factor{};  ///< g_a: column a enters the fit as g_a z_a q_a.
-  /// Equation (4) per channel: weighted mean of bias^2 + variance; >= 0. In later stages its bias^2 is by 4/5 z_a m_a +
-  /// 1/5 m_a^2, since the factors were chosen by the former alone.
+  /// Equation (4) per channel: weighted mean of bias^2 + variance; >= 0. In later stages its bias^2 is by 9/10 z_a m_a
+  /// + 1/10 m_a^2, since the factors were chosen by the former alone.
   std::array<double, 3> error{};
   std::array<double, 3> variance{};  ///< Equation (6) per channel, its part of error.
 };

@@ -184,7 +184,7 @@ class Reference {
         // By y and the guess in the columns, by the guess alone outside of them.
         error(c) = bias_product(h, y) - bias_product(whole, y) + bias_product(whole, m) + variance(c);
         if (first_) error(c) -= w.dot((h - MatrixXd::Identity(n, n)).cwiseAbs2() * v);
-        told(c) = first_ ? error(c) : 0.8 * error(c) + 0.2 * (bias_product(h, m) + variance(c));
+        told(c) = first_ ? error(c) : 0.9 * error(c) + 0.1 * (bias_product(h, m) + variance(c));
       }
       if (error.sum() < least - 1e-9) {
         least = error.sum();
