@@ -87,7 +87,7 @@ void Window::reserve(int radius, int columns, int channels) {
   offset.resize(rows);
   distance.resize(rows);
   pitch = (columns + vector_lanes - 1) / vector_lanes * vector_lanes;
-  design.resize(rows * static_cast<std::size_t>(pitch) + 2 * vector_lanes);  // and the last row's zeros
+  design.resize(rows * static_cast<std::size_t>(pitch) + std::size_t{2} * vector_lanes);  // and the last row's zeros
   response.resize(rows * static_cast<std::size_t>(channels));
   origin.resize(static_cast<std::size_t>(channels));
   noise_variance.resize(rows * 3);
