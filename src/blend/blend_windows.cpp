@@ -75,7 +75,7 @@ struct Scratch {
 
 constexpr std::size_t responses_at_once = vector_lanes;
 
-/// fit(j) = origin + sum_a f_a q_a(j) for all pixels and eight responses, which stand side by side.
+/// fit(j) = origin + sum_a f_a q_a(j) for all pixels and responses_at_once responses, which stand side by side.
 POLYRECON_SIMD void evaluate_at_once(const Real* q, std::size_t pitch, const Real (*factor)[responses_at_once],
                                      int columns, const Real* origin, int rows, Real* fit, std::size_t fit_pitch) {
   constexpr std::size_t at_once = 4;  // pixels: factors are loaded once for all of them

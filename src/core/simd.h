@@ -12,10 +12,10 @@
 
 namespace polyrecon {
 
-/// Where a loop must keep sums apart in registers, it says so: eight numbers, which the compiler spreads over as many
-/// registers as its level of x86-64 asks for (a vector extension that GCC and Clang share). In memory they stand
-/// anywhere.
-constexpr int vector_lanes = 8;
+/// Where a loop must keep sums apart in registers, it says so: four numbers side by side (a vector extension that GCC
+/// and Clang share). In memory they stand anywhere. Four doubles are a register of AVX2; what is wider than a level's
+/// registers GCC puts into memory, three to four times as slow.
+constexpr int vector_lanes = 4;
 using Doubles = double __attribute__((vector_size(vector_lanes * sizeof(double))));
 using Reals = Real __attribute__((vector_size(vector_lanes * sizeof(Real))));
 using StoredDoubles =

@@ -5,7 +5,7 @@
 
 #include "core/simd.h"
 
-// A pixel's columns stand side by side, and the sums over pixels are kept eight columns at a time in registers: a tile.
+// A pixel's columns stand side by side, and the sums over pixels are kept four columns at a time in registers: a tile.
 // So no sum ends within a vector, which for the small windows of finer lattices was most of the work, and a sum is
 // loaded and stored once a window.
 namespace polyrecon {
@@ -14,6 +14,7 @@ namespace {
 constexpr int tile = vector_lanes;
 constexpr int max_tiles = (BasisLayout::max_columns + tile - 1) / tile;
 constexpr int max_columns = max_tiles * tile;
+constexpr int rows_at_once = 2 * tile;  ///< Of the Gram matrix: as many sums as hide how long one takes.
 /// Part of the limit (of squares) below which a column goes: with its penalty it would count for 1e-5 of itself.
 constexpr double as_good_as_nothing = 3e-3;
 
@@ -24,21 +25,23 @@ struct Matrix {
 
 int tiles_of(int columns) { return (columns + tile - 1) / tile; }
 
-/// sums[k][b] = sum_j w_j x_k(j) y_b(j) for eight columns x and eight y of rows that are pitch apart.
+/// sums[k][b] = sum_j w_j x_k(j) y_b(j) for rows_at_once columns x and a tile of columns y, in rows that are pitch
+/// apart.
 POLYRECON_SIMD void tile_of_gram(const double* x, const double* y, std::size_t pitch, const Real* weight, int rows,
                                  double (*sums)[max_columns]) {
-  Doubles s[tile] = {};
+  Doubles s[rows_at_once] = {};
   for (int j = 0; j < rows; ++j, x += pitch, y += pitch) {
     const Doubles wy = static_cast<double>(weight[j]) * *reinterpret_cast<const StoredDoubles*>(y);
 #pragma GCC unroll 8
-    for (int k = 0; k < tile; ++k) s[k] += x[k] * wy;
+    for (int k = 0; k < rows_at_once; ++k) s[k] += x[k] * wy;
   }
-  for (int k = 0; k < tile; ++k) *reinterpret_cast<StoredDoubles*>(sums[k]) = s[k];
+#pragma GCC unroll 8
+  for (int k = 0; k < rows_at_once; ++k) *reinterpret_cast<StoredDoubles*>(sums[k]) = s[k];
 }
 
 /// The Gram matrix X^T W X, from the diagonal's tiles to the right.
 void gram_matrix(const Window& window, const Real* weight, int tiles, Matrix& gram) {
-  for (int a = 0; a < tiles * tile; a += tile)
+  for (int a = 0; a < tiles * tile; a += rows_at_once)
     for (int b = a; b < tiles * tile; b += tile)
       tile_of_gram(window.design.data() + a, window.design.data() + b, static_cast<std::size_t>(window.pitch), weight,
                    window.padded, reinterpret_cast<double(*)[max_columns]>(&gram.at[a][b]));
@@ -54,14 +57,14 @@ struct FactorRow {
 template <int tiles>
 POLYRECON_SIMD void subtract_above(FactorRow<tiles>* rows, int a) {
   Doubles s[2 * tiles];
-#pragma GCC unroll 8
+#pragma GCC unroll 16
   for (int t = 0; t < 2 * tiles; ++t) s[t] = *reinterpret_cast<const StoredDoubles*>(rows[a].at + t * tile);
   for (int c = 0; c < a; ++c) {
     const double factor = rows[c].at[a];
-#pragma GCC unroll 8
+#pragma GCC unroll 16
     for (int t = 0; t < 2 * tiles; ++t) s[t] -= factor * *reinterpret_cast<const StoredDoubles*>(rows[c].at + t * tile);
   }
-#pragma GCC unroll 8
+#pragma GCC unroll 16
   for (int t = 0; t < 2 * tiles; ++t) *reinterpret_cast<StoredDoubles*>(rows[a].at + t * tile) = s[t];
 }
 
@@ -107,7 +110,7 @@ void invert_factor(const Matrix& gram, const BasisLayout& layout, const Dependen
     for (int a = 0; a < width; ++a) inverse.at[b][a] = a < factor.columns ? rows[a].at[width + b] : 0;
 }
 
-/// Eight columns of q = X R^-1 for all pixels: of the first `columns` of X, which are all that these take of.
+/// A tile of columns of q = X R^-1 for all pixels: of the first `columns` of X, which are all that these take of.
 POLYRECON_SIMD void tile_of_q(const double* x, std::size_t pitch, const double (*inverse)[max_columns], int columns,
                               int rows, Real* q) {
   constexpr int at_once = 4;  // pixels: a row of the inverse is loaded once for all of them
@@ -147,7 +150,7 @@ POLYRECON_SIMD void multiply_by(const Real* factor, double* y, int rows) {
   for (int j = 0; j < rows; ++j) y[j] *= static_cast<double>(factor[j]);
 }
 
-/// sums[a] = sum_j w_j q_a(j) y(j) for eight columns.
+/// sums[a] = sum_j w_j q_a(j) y(j) for a tile of columns.
 POLYRECON_SIMD void tile_sums(const Real* q, std::size_t pitch, const Real* weight, const Real* y, int rows,
                               double* sums) {
   Doubles s = {};
@@ -191,7 +194,7 @@ void factorise(const Window& window, int columns, const Real* weight, NestedFact
   factor.rank = 0;
   factor.q.resize(static_cast<std::size_t>(window.stride) * static_cast<std::size_t>(window.pitch));
   factor.scratch.resize(9 * static_cast<std::size_t>(window.stride));
-  static_assert(max_tiles == 4);
+  static_assert(max_tiles == 8);
   switch (tiles_of(columns)) {
     case 1:
       return factorise_tiles<1>(window, weight, factor, limits);
@@ -199,8 +202,16 @@ void factorise(const Window& window, int columns, const Real* weight, NestedFact
       return factorise_tiles<2>(window, weight, factor, limits);
     case 3:
       return factorise_tiles<3>(window, weight, factor, limits);
-    default:
+    case 4:
       return factorise_tiles<4>(window, weight, factor, limits);
+    case 5:
+      return factorise_tiles<5>(window, weight, factor, limits);
+    case 6:
+      return factorise_tiles<6>(window, weight, factor, limits);
+    case 7:
+      return factorise_tiles<7>(window, weight, factor, limits);
+    default:
+      return factorise_tiles<8>(window, weight, factor, limits);
   }
 }
 

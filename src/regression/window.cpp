@@ -86,7 +86,7 @@ void Window::reserve(int radius, int columns, int channels) {
   y.resize(rows);
   offset.resize(rows);
   distance.resize(rows);
-  pitch = (columns + vector_lanes - 1) / vector_lanes * vector_lanes;
+  pitch = (columns + 2 * vector_lanes - 1) / (2 * vector_lanes) * (2 * vector_lanes);
   design.resize(rows * static_cast<std::size_t>(pitch) + std::size_t{2} * vector_lanes);  // and the last row's zeros
   response.resize(rows * static_cast<std::size_t>(channels));
   origin.resize(static_cast<std::size_t>(channels));

@@ -23,7 +23,7 @@ struct Window {
   int count = 0;   ///< Pixels in the window.
   int padded = 0;  ///< count rounded up to a multiple of lanes.
   int stride = 0;  ///< Distance between columns; at least padded, and more than pixels in the whole window.
-  int pitch = 0;   ///< Distance between rows of the design; its columns rounded up to a multiple of vector_lanes.
+  int pitch = 0;   ///< Distance between rows of the design; its columns rounded up to a multiple of 2 vector_lanes.
   std::vector<int> within;  ///< How many of the pixels, from the first, lie within each limit of the distance.
 
   std::vector<int> x, y;             ///< Position of each pixel in the image.
