@@ -12,6 +12,17 @@ TEST(Params, EveryQualityIsValid) {
     EXPECT_NO_THROW(validate(params_for(quality)));
 }
 
+TEST(Params, OnlyAFirstStageThatOthersFollowTakesFewerWindows) {
+  Params params;
+  const FitParams later = params.fit(params.first_bandwidths);
+  EXPECT_GT(params.first_fit().stride, later.stride);
+  EXPECT_LT(params.first_fit().coverage, later.coverage);
+  params.stride = params.radius;
+  EXPECT_EQ(params.first_fit().stride, params.radius);  // or pixels between the windows would be in none
+  params.stages = 1;
+  EXPECT_EQ(params.first_fit().coverage, later.coverage);
+}
+
 TEST(Params, ValuesOutOfRangeAreErrorsOfUse) {
   void (*const spoil[])(Params&) = {
       [](Params& p) { p.stages = 0; },
