@@ -139,11 +139,13 @@ void evaluate(Scratch& s, const OrderChoice& choice, std::size_t responses,
       const Real* const y = s.window.response.data() + c * static_cast<std::size_t>(s.window.stride);
       if (c >= 3) project(s.factor, s.window, s.weight.data(), y, z.data());
       const double* const coefficient = c < 3 ? beauty[c].z.data() : z.data();
-      for (std::size_t a = 0; a < static_cast<std::size_t>(s.factor.columns); ++a)
-        factor[a][k] = static_cast<Real>(choice.factor[a] * coefficient[a]);
+      for (std::size_t i = 0; i < static_cast<std::size_t>(s.factor.kept); ++i) {
+        const auto a = static_cast<std::size_t>(s.factor.kept_column[i]);
+        factor[i][k] = static_cast<Real>(choice.factor[a] * coefficient[a]);
+      }
       origin[k] = s.window.origin[c];
     }
-    evaluate_at_once(s.factor.q.data(), static_cast<std::size_t>(s.window.pitch), factor, s.factor.columns, origin,
+    evaluate_at_once(s.factor.q.data(), static_cast<std::size_t>(s.window.pitch), factor, s.factor.kept, origin,
                      s.window.padded, s.fit.data() + first, s.fit_pitch);
   }
 }
@@ -207,7 +209,8 @@ void fit_window(Blending& b, Scratch& s, Real bandwidth, BlendSums& sums) {
   const bool first_stage = !b.source.guess;
   const BasisLayout& layout = s.window.layout;
   const double weight_sum = kernel_weights(s.window, bandwidth, s.weight.data());
-  factorise(s.window, layout.columns(), s.weight.data(), s.factor);
+  // Of a lone pixel nothing but the constant is left.
+  factorise(s.window, s.window.count > 1 ? layout.columns() : 1, s.weight.data(), s.factor);
   const auto statistics = column_statistics(s, first_stage);
   OrderChoice choice =
       select_order(statistics, layout, weight_sum, first_stage, b.params.order_tolerance, b.params.shrinkage);

@@ -18,8 +18,8 @@ constexpr double half_difference_sigma =
 double degrees_of_freedom(const NestedFactor& factor, const Window& window) {
   double trace = 0;
   for (std::size_t j = 0; j < static_cast<std::size_t>(window.count); ++j)
-    for (std::size_t a = 0; a < static_cast<std::size_t>(factor.columns); ++a) {
-      const double q = factor.q[j * static_cast<std::size_t>(window.pitch) + a];
+    for (std::size_t k = 0; k < static_cast<std::size_t>(factor.kept); ++k) {
+      const double q = factor.q[j * static_cast<std::size_t>(window.pitch) + k];
       trace += q * q;
     }
   return trace;
@@ -51,8 +51,9 @@ void residual_variance(const Image& y, const Image& features, int cx, int cy, Wi
     double residual = 0;
     for (std::size_t j = 0; j < static_cast<std::size_t>(window.count); ++j) {
       double rest = static_cast<double>(values[j]);
-      for (std::size_t a = 0; a < static_cast<std::size_t>(factor.columns); ++a)
-        rest -= z[a] * static_cast<double>(factor.q[j * static_cast<std::size_t>(window.pitch) + a]);
+      for (std::size_t k = 0; k < static_cast<std::size_t>(factor.kept); ++k)
+        rest -= z[static_cast<std::size_t>(factor.kept_column[k])] *
+                static_cast<double>(factor.q[j * static_cast<std::size_t>(window.pitch) + k]);
       residual += rest * rest;
     }
     out[c] = freedom > 0.5 ? static_cast<Real>(residual / freedom) : Real(-1);

@@ -47,25 +47,25 @@ void gram_matrix(const Window& window, const Real* weight, int tiles, Matrix& gr
                    window.padded, reinterpret_cast<double(*)[max_columns]>(&gram.at[a][b]));
 }
 
-/// Row a of R, and behind it what column a of Q takes of each column of the design: row a of the inverse of R^T.
+/// A kept column's row of R, and behind it what it takes of each column of the design: its row of the inverse of R^T.
 template <int tiles>
 struct FactorRow {
   double at[2 * tiles * tile];
 };
 
-/// Row a less those above it, each times its own value in column a.
+/// The row behind the first `above`, of column a, less those, each times its own value in that column.
 template <int tiles>
-POLYRECON_SIMD void subtract_above(FactorRow<tiles>* rows, int a) {
+POLYRECON_SIMD void subtract_above(FactorRow<tiles>* rows, int above, int a) {
   Doubles s[2 * tiles];
 #pragma GCC unroll 16
-  for (int t = 0; t < 2 * tiles; ++t) s[t] = *reinterpret_cast<const StoredDoubles*>(rows[a].at + t * tile);
-  for (int c = 0; c < a; ++c) {
+  for (int t = 0; t < 2 * tiles; ++t) s[t] = *reinterpret_cast<const StoredDoubles*>(rows[above].at + t * tile);
+  for (int c = 0; c < above; ++c) {
     const double factor = rows[c].at[a];
 #pragma GCC unroll 16
     for (int t = 0; t < 2 * tiles; ++t) s[t] -= factor * *reinterpret_cast<const StoredDoubles*>(rows[c].at + t * tile);
   }
 #pragma GCC unroll 16
-  for (int t = 0; t < 2 * tiles; ++t) *reinterpret_cast<StoredDoubles*>(rows[a].at + t * tile) = s[t];
+  for (int t = 0; t < 2 * tiles; ++t) *reinterpret_cast<StoredDoubles*>(rows[above].at + t * tile) = s[t];
 }
 
 /// What is left of a column beside those before it.
@@ -85,29 +85,29 @@ Remainder remainder_of(double rest, double own, double weight_sum, bool is_featu
   return {keep ? 1 / std::sqrt(square) : 0, keep && rest > little};
 }
 
-/// Factors the Gram matrix into R^T R, row by row from the top, and sets factor.kept and rank. inverse becomes R^-1:
-/// row b tells how much of column b each column of Q takes.
+/// Factors the Gram matrix into R^T R, row by row from the top, and sets what factor keeps and its rank. inverse
+/// becomes R^-1: row b tells how much of column b each kept column of Q takes.
 template <int tiles>
 void invert_factor(const Matrix& gram, const BasisLayout& layout, const DependenceLimits& limits, NestedFactor& factor,
                    Matrix& inverse) {
   constexpr int width = tiles * tile;
   FactorRow<tiles> rows[width];
   for (int a = 0; a < factor.columns; ++a) {
-    double* const row = rows[a].at;
-    const int first = a / tile * tile;  // the Gram matrix has nothing before
+    double* const row = rows[factor.kept].at;  // taken by the next column if this one goes
+    const int first = a / tile * tile;         // the Gram matrix has nothing before
     std::fill_n(row, 2 * width, 0.0);
     std::copy(gram.at[a] + first, gram.at[a] + width, row + first);
     row[width + a] = 1;
-    if (a > 0) subtract_above(rows, a);
+    subtract_above(rows, factor.kept, a);
     const bool is_feature = a >= 1 && a <= layout.features();
     const Remainder left = remainder_of(row[a], gram.at[a][a], gram.at[0][0], is_feature, limits);
-    const bool keep = left.inverse_length > 0;
-    factor.kept[static_cast<std::size_t>(a)] = keep;
     factor.rank += left.independent;
-    for (int b = 0; b < 2 * width; ++b) row[b] = keep ? row[b] * left.inverse_length : 0;
+    if (left.inverse_length == 0) continue;
+    for (int b = 0; b < 2 * width; ++b) row[b] *= left.inverse_length;
+    factor.kept_column[static_cast<std::size_t>(factor.kept++)] = a;
   }
   for (int b = 0; b < factor.columns; ++b)
-    for (int a = 0; a < width; ++a) inverse.at[b][a] = a < factor.columns ? rows[a].at[width + b] : 0;
+    for (int k = 0; k < width; ++k) inverse.at[b][k] = k < factor.kept ? rows[k].at[width + b] : 0;
 }
 
 /// A tile of columns of q = X R^-1 for all pixels: of the first `columns` of X, which are all that these take of.
@@ -131,15 +131,20 @@ POLYRECON_SIMD void tile_of_q(const double* x, std::size_t pitch, const double (
   }
 }
 
+/// How many columns of the design, from the first, the tile of q that begins with its column k takes of.
+int columns_taken(const NestedFactor& factor, int k) {
+  return factor.kept_column[static_cast<std::size_t>(std::min(k + tile, factor.kept) - 1)] + 1;
+}
+
 template <int tiles>
 void factorise_tiles(const Window& window, const Real* weight, NestedFactor& factor, const DependenceLimits& limits) {
   Matrix gram, inverse;
   gram_matrix(window, weight, tiles, gram);
   invert_factor<tiles>(gram, window.layout, limits, factor, inverse);
-  for (int a = 0; a < tiles * tile; a += tile)
+  for (int k = 0; k < factor.kept; k += tile)
     tile_of_q(window.design.data(), static_cast<std::size_t>(window.pitch),
-              reinterpret_cast<const double(*)[max_columns]>(&inverse.at[0][a]), std::min(a + tile, factor.columns),
-              window.padded, factor.q.data() + a);
+              reinterpret_cast<const double(*)[max_columns]>(&inverse.at[0][k]), columns_taken(factor, k),
+              window.padded, factor.q.data() + k);
 }
 
 POLYRECON_SIMD void multiply(const Real* a, const Real* b, double* product, int rows) {
@@ -160,10 +165,10 @@ POLYRECON_SIMD void tile_sums(const Real* q, std::size_t pitch, const Real* weig
   *reinterpret_cast<StoredDoubles*>(sums) = s;
 }
 
-/// The same, weighted before, for six or three y, and then for three with the squares of q.
+/// The same, weighted before, for six or three y, and then for three with the squares of q: sums[..][k] on.
 template <bool with_guess>
 POLYRECON_SIMD void tile_sums_of_beauty(const Real* q, std::size_t pitch, const double* y, std::size_t stride, int rows,
-                                        double (*sums)[tile]) {
+                                        double (*sums)[max_columns], int k) {
   Doubles z0 = {}, z1 = {}, z2 = {}, g0 = {}, g1 = {}, g2 = {}, v0 = {}, v1 = {}, v2 = {};
   const double *y0 = y, *y1 = y + stride, *y2 = y1 + stride, *m0 = y2 + stride, *m1 = m0 + stride, *m2 = m1 + stride;
   const double *n0 = m2 + stride, *n1 = n0 + stride, *n2 = n1 + stride;
@@ -183,7 +188,13 @@ POLYRECON_SIMD void tile_sums_of_beauty(const Real* q, std::size_t pitch, const 
     v2 += n2[j] * square;
   }
   const Doubles all[9] = {z0, z1, z2, g0, g1, g2, v0, v1, v2};
-  for (int k = 0; k < 9; ++k) *reinterpret_cast<StoredDoubles*>(sums[k]) = all[k];
+  for (int c = 0; c < 9; ++c) *reinterpret_cast<StoredDoubles*>(sums[c] + k) = all[c];
+}
+
+/// Sums of the kept columns, to where the design has these; zero for the others.
+void spread(const double* of_kept, const NestedFactor& factor, double* of_all) {
+  std::fill_n(of_all, factor.columns, 0.0);
+  for (std::size_t k = 0; k < static_cast<std::size_t>(factor.kept); ++k) of_all[factor.kept_column[k]] = of_kept[k];
 }
 
 }  // namespace
@@ -191,7 +202,7 @@ POLYRECON_SIMD void tile_sums_of_beauty(const Real* q, std::size_t pitch, const 
 void factorise(const Window& window, int columns, const Real* weight, NestedFactor& factor,
                const DependenceLimits& limits) {
   factor.columns = columns;
-  factor.rank = 0;
+  factor.rank = factor.kept = 0;
   factor.q.resize(static_cast<std::size_t>(window.stride) * static_cast<std::size_t>(window.pitch));
   factor.scratch.resize(9 * static_cast<std::size_t>(window.stride));
   static_assert(max_tiles == 8);
@@ -216,11 +227,10 @@ void factorise(const Window& window, int columns, const Real* weight, NestedFact
 }
 
 void project(const NestedFactor& factor, const Window& window, const Real* weight, const Real* y, double* z) {
-  for (int a = 0; a < factor.columns; a += tile) {
-    double sums[tile];
-    tile_sums(factor.q.data() + a, static_cast<std::size_t>(window.pitch), weight, y, window.padded, sums);
-    std::copy_n(sums, std::min(tile, factor.columns - a), z + a);
-  }
+  double sums[max_columns];
+  for (int k = 0; k < factor.kept; k += tile)
+    tile_sums(factor.q.data() + k, static_cast<std::size_t>(window.pitch), weight, y, window.padded, sums + k);
+  spread(sums, factor, z);
 }
 
 void project_beauty(NestedFactor& factor, const Window& window, const Real* weight, bool with_guess, double* const* z,
@@ -235,16 +245,14 @@ void project_beauty(NestedFactor& factor, const Window& window, const Real* weig
   if (with_guess) weigh(window.guess, 3);
   weigh(window.noise_variance, 6);
   for (std::size_t c = 6; c < 9; ++c) multiply_by(weight, scaled + c * stride, window.padded);
-  for (int a = 0; a < factor.columns; a += tile) {
-    double sums[9][tile];
-    const auto sum = with_guess ? tile_sums_of_beauty<true> : tile_sums_of_beauty<false>;
-    sum(factor.q.data() + a, static_cast<std::size_t>(window.pitch), scaled, stride, window.padded, sums);
-    const int count = std::min(tile, factor.columns - a);
-    for (std::size_t c = 0; c < 3; ++c) {
-      std::copy_n(sums[c], count, z[c] + a);
-      if (with_guess) std::copy_n(sums[3 + c], count, guess_z[c] + a);
-      std::copy_n(sums[6 + c], count, s2[c] + a);
-    }
+  double sums[9][max_columns];
+  const auto sum = with_guess ? tile_sums_of_beauty<true> : tile_sums_of_beauty<false>;
+  for (int k = 0; k < factor.kept; k += tile)
+    sum(factor.q.data() + k, static_cast<std::size_t>(window.pitch), scaled, stride, window.padded, sums, k);
+  for (std::size_t c = 0; c < 3; ++c) {
+    spread(sums[c], factor, z[c]);
+    if (with_guess) spread(sums[3 + c], factor, guess_z[c]);
+    spread(sums[6 + c], factor, s2[c]);
   }
 }
 

@@ -20,10 +20,11 @@ namespace polyrecon {
 /// whether it is there. q_a is shorter then: sum_i w_i q_a(i)^2 = 1 / (1 + (little_a / rest_a)^2) at most.
 struct NestedFactor {
   int columns = 0;
-  int rank = 0;                                       ///< Columns that count for more than half of themselves.
-  std::array<bool, BasisLayout::max_columns> kept{};  ///< False where nothing is left to speak of.
-  std::vector<Real> q;  ///< window.padded rows of window.pitch values, a pixel's columns side by side, then zeros
-                        ///< to a multiple of vector_lanes; dropped columns are zero.
+  int rank = 0;  ///< Columns that count for more than half of themselves.
+  int kept = 0;  ///< Columns of which there is something left to speak of; q has these alone,
+  std::array<int, BasisLayout::max_columns> kept_column{};  ///< and these are they, rising.
+  std::vector<Real> q;  ///< window.padded rows of window.pitch values, a pixel's kept columns side by side, then zeros
+                        ///< to a multiple of vector_lanes.
   std::vector<double> scratch;  ///< Weighted responses.
 };
 

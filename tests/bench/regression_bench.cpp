@@ -86,12 +86,13 @@ void factorise_window(benchmark::State& state) {
   if (!is_whole(state, problem, factor)) return;
   state.counters["columns"] = layout.columns();
   count_windows(state, 1);
-  // The triangle of the Gram matrix, a tile of 8 x 8 at a time; q, 8 columns at a time from those up to them.
-  const double n = problem.window.padded, k = layout.columns(), pairs = k * (k - 1) / 2;
-  const double tiles = std::ceil(k / vector_lanes),
-               gram = tiles * (tiles + 1) / 2 * (16 * sizeof(double) + sizeof(Real));
-  double q = 0;
-  for (double t = 1; t <= tiles; ++t) q += std::min(8 * t, k) * sizeof(double) + 8 * sizeof(Real);
+  // The triangle of the Gram matrix, two tiles of rows with one of columns at a time; q, a tile of columns at a time
+  // from those up to them.
+  const double n = problem.window.padded, k = layout.columns(), pairs = k * (k - 1) / 2, lanes = vector_lanes;
+  const double tiles = std::ceil(k / lanes);
+  double gram = 0, q = 0;
+  for (double t = 0; t < tiles; t += 2) gram += (tiles - t) * (3 * lanes * sizeof(double) + sizeof(Real));
+  for (double t = 1; t <= tiles; ++t) q += std::min(lanes * t, k) * sizeof(double) + lanes * sizeof(Real);
   count_work(state, 1, n * (k + 4 * (pairs + k)), n * (gram + q));
 }
 BENCHMARK(factorise_window)->ArgName("order")->Arg(2)->Arg(4)->Unit(benchmark::kMicrosecond);
@@ -112,8 +113,8 @@ void project_beauty_window(benchmark::State& state) {
   }
   state.counters["columns"] = layout.columns();
   count_windows(state, 1);
-  // Nine channels times the weights, three of them twice; nine sums for each column, of 8 columns at a time, three of
-  // them of the columns' squares.
+  // Nine channels times the weights, three of them twice; nine sums for each column, a tile of columns at a time,
+  // three of them of the columns' squares.
   const double n = problem.window.padded, k = layout.columns();
   const double weighing = n * (9 * (2 * sizeof(Real) + sizeof(double)) + 3 * (sizeof(Real) + 2 * sizeof(double)));
   const double summing = n * std::ceil(k / vector_lanes) * (vector_lanes * sizeof(Real) + 9 * sizeof(double));

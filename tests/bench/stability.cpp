@@ -105,7 +105,7 @@ double ours(const Weighed& w, const DependenceLimits& limits, NestedFactor& fact
   project(factor, w.window, w.weight.data(), w.window.response.data() + w.window.stride, z.data());
   const test::Penalised problem = problem_of(w, limits);
   VectorXd residual(problem.augmented.rows());
-  residual << w.sy - w.s.asDiagonal() * (test::rows_of(factor.q, columns, w.window) * z), -problem.tail * z;
+  residual << w.sy - w.s.asDiagonal() * (test::q_of(factor, w.window) * z), -problem.tail * z;
   return residual_ratio(w, problem.augmented, residual);
 }
 

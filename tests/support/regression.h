@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <limits>
 
 #include "regression/least_squares.h"
@@ -40,7 +41,7 @@ inline std::vector<Real> padded(const Eigen::VectorXd& v, const Window& window) 
   return out;
 }
 
-/// The first columns of what stands pixel by pixel: a window's design, a factorisation's q.
+/// The first columns of what stands pixel by pixel.
 template <typename T>
 Eigen::MatrixXd rows_of(const std::vector<T>& values, int columns, const Window& window) {
   Eigen::MatrixXd m(window.count, columns);
@@ -50,9 +51,17 @@ Eigen::MatrixXd rows_of(const std::vector<T>& values, int columns, const Window&
   return m;
 }
 
-/// S^-1 Q of a factorisation, pixels x columns.
+inline bool keeps(const NestedFactor& factor, int column) {
+  const auto end = factor.kept_column.begin() + factor.kept;
+  return std::find(factor.kept_column.begin(), end, column) != end;
+}
+
+/// S^-1 Q of a factorisation, pixels x columns; dropped columns are zero.
 inline Eigen::MatrixXd q_of(const NestedFactor& factor, const Window& window) {
-  return rows_of(factor.q, factor.columns, window);
+  const Eigen::MatrixXd kept = rows_of(factor.q, factor.kept, window);
+  Eigen::MatrixXd q = Eigen::MatrixXd::Zero(window.count, factor.columns);
+  for (int k = 0; k < factor.kept; ++k) q.col(factor.kept_column[static_cast<std::size_t>(k)]) = kept.col(k);
+  return q;
 }
 
 inline Eigen::MatrixXd normal_matrix(int rows, int columns, Random& random) {
@@ -159,7 +168,7 @@ inline double orthonormality_error(const Problem& p) {
   double worst = 0;
   for (int a = 0; a < gram.rows(); ++a)
     for (int b = 0; b < gram.cols(); ++b) {
-      const double expected = a == b && p.factor.kept[static_cast<std::size_t>(a)] ? 1 : 0;
+      const double expected = a == b && keeps(p.factor, a) ? 1 : 0;
       worst = std::max(worst, std::abs(gram(a, b) - expected));
     }
   return worst;
