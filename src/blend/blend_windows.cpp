@@ -19,8 +19,12 @@ namespace {
 /// Channels: response | relative bias 3 | variance 3 | order 1 | weight.
 class BlendSums {
  public:
-  BlendSums(const Rect& area, int responses)
-      : area_(area), channels_(static_cast<std::size_t>(responses) + 8), sums_(area.area() * channels_, 0.0) {}
+  /// Zero over the area.
+  void begin(const Rect& area, int responses) {
+    area_ = area;
+    channels_ = static_cast<std::size_t>(responses) + 8;
+    sums_.assign(area.area() * channels_, 0.0);
+  }
 
   std::size_t channels() const { return channels_; }
   double* at(int x, int y) {
@@ -28,12 +32,11 @@ class BlendSums {
                            static_cast<std::size_t>(x - area_.x0)) *
                               channels_;
   }
-  double weight(int x, int y) { return at(x, y)[channels_ - 1]; }
   const Rect& area() const { return area_; }
 
  private:
   Rect area_;
-  std::size_t channels_;
+  std::size_t channels_ = 0;
   std::vector<double> sums_;
 };
 
@@ -71,6 +74,8 @@ struct Scratch {
   std::vector<Real> fit;  ///< yhat, window.padded rows of fit_pitch values.
   std::size_t fit_pitch = 0;
   std::vector<int> center_x, center_y;
+  Rect centers;                 ///< These lie in it.
+  std::vector<BlendSums> sums;  ///< For each bandwidth.
 };
 
 constexpr std::size_t responses_at_once = vector_lanes;
@@ -228,7 +233,7 @@ void fit_window(Blending& b, Scratch& s, Real bandwidth, BlendSums& sums) {
   blend(s, choice, energy, b.source.epsilon, b.responses(), sums);
 }
 
-void work_block(Blending& b, const Rect& block, Scratch& s, std::vector<BlendSums>& sums) {
+void work_block(Blending& b, const Rect& block, Scratch& s) {
   const FitParams& p = b.params;
   s.window.reserve(p.radius, b.layout.columns(), b.source.response->channels());
   s.weight.resize(static_cast<std::size_t>(s.window.stride));
@@ -244,9 +249,23 @@ void work_block(Blending& b, const Rect& block, Scratch& s, std::vector<BlendSum
     gather(source, b.layout, s.center_x[k], s.center_y[k], p.radius, s.window);
     for (std::size_t h = 0; h < p.bandwidths.size(); ++h) {
       s.window.take(s.window.within[h]);
-      if (s.window.count > 0) fit_window(b, s, p.bandwidths[h], sums[h]);
+      if (s.window.count > 0) fit_window(b, s, p.bandwidths[h], s.sums[h]);
     }
   }
+}
+
+template <typename IsCenter>
+void list_centers(const Rect& block, const IsCenter& is_center, Scratch& s) {
+  s.center_x.clear();
+  s.center_y.clear();
+  s.centers = {block.x1, block.y1, block.x0, block.y0};
+  for (int x = block.x0; x < block.x1; ++x)  // by columns: see PatchDistances
+    for (int y = block.y0; y < block.y1; ++y) {
+      if (!is_center(x, y)) continue;
+      s.center_x.push_back(x);
+      s.center_y.push_back(y);
+      s.centers = {std::min(s.centers.x0, x), std::min(s.centers.y0, y), x + 1, std::max(s.centers.y1, y + 1)};
+    }
 }
 
 /// Works all centres for which is_center holds. Blocks of one of the four phases never touch the same pixel, and the
@@ -261,19 +280,13 @@ void sweep(Blending& b, Progress& progress, const IsCenter& is_center) {
       if ((r.x0 / block_size) % 2 + 2 * ((r.y0 / block_size) % 2) == phase) mine.push_back(r);
     parallel_for(mine.size(), progress, [&](std::size_t i) {
       thread_local Scratch scratch;
-      scratch.center_x.clear();
-      scratch.center_y.clear();
-      for (int x = mine[i].x0; x < mine[i].x1; ++x)  // by columns: see PatchDistances
-        for (int y = mine[i].y0; y < mine[i].y1; ++y)
-          if (is_center(x, y)) {
-            scratch.center_x.push_back(x);
-            scratch.center_y.push_back(y);
-          }
+      list_centers(mine[i], is_center, scratch);
       if (scratch.center_x.empty()) return;
-      std::vector<BlendSums> sums(
-          b.planes.size(), BlendSums(intersect(bounds, grow(mine[i], b.params.radius)), b.source.response->channels()));
-      work_block(b, mine[i], scratch, sums);
-      for (std::size_t h = 0; h < sums.size(); ++h) b.planes[h].add(sums[h]);
+      scratch.sums.resize(b.planes.size());
+      for (BlendSums& sums : scratch.sums)
+        sums.begin(intersect(bounds, grow(scratch.centers, b.params.radius)), b.source.response->channels());
+      work_block(b, mine[i], scratch);
+      for (std::size_t h = 0; h < b.planes.size(); ++h) b.planes[h].add(scratch.sums[h]);
     });
   }
 }
