@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "blend/sharpen.h"
 #include "core/gaussian.h"
 #include "core/parallel.h"
 #include "core/sanitise.h"
@@ -15,7 +16,8 @@ namespace {
 constexpr double most_gain = 2;  // between the exposures of a frame and its prior; beyond it is another image
 constexpr double plausible = 2;  // D / E up to which a prior is believed whole: E is known to a factor of 2.5
 // Of the prior in each candidate. Where risks cannot tell, all count alike and the prior for a little over a half.
-constexpr std::array<double, 3> shares{0.5, 0.75, 1};
+constexpr std::array<double, 6> shares{0.5, 0.6, 0.7, 0.8, 0.9, 1};
+constexpr double doubt = 2;  // how far from the truth what had to be sharpened may be, in units of what that changed
 constexpr double least_error = 1e-12;  // relative; keeps D / E finite
 constexpr int beauty_channels = 3;
 
@@ -32,16 +34,17 @@ double exposure_gain(const Image& prior, const HalfPair& pair, int c) {
   return gain >= 1 / most_gain && gain <= most_gain ? gain : 1;
 }
 
-/// Squared distance of a candidate from own, over the estimated squared error of own, both relative and averaged.
-Image contradiction(const Image& own, const Image& prior, double share, const Image& mse, double epsilon,
+/// D / E of the candidate that takes this share of the prior.
+Image contradiction(const Image& own, const MendedPrior& prior, double share, const Image& mse, double epsilon,
                     double sigma) {
   Image terms(own.width(), own.height(), 2);
   for_rows(own.height(), [&](int y) {
     for (int c = 0; c < beauty_channels; ++c)
       for (int x = 0; x < own.width(); ++x) {
-        const double f = own.at(x, y, c), d = share * (static_cast<double>(prior.at(x, y, c)) - f);
+        const double f = own.at(x, y, c), d = static_cast<double>(prior.value.at(x, y, c)) - f;
+        const double added = doubt * prior.sharpening.at(x, y, c), squares = share * share * (d * d + added * added);
         const double scale = 1 / (f * f + epsilon);
-        terms.at(x, y, 0) += static_cast<Real>(std::min(d * d * scale, static_cast<double>(largest_value)));
+        terms.at(x, y, 0) += static_cast<Real>(std::min(squares * scale, static_cast<double>(largest_value)));
         terms.at(x, y, 1) += static_cast<Real>(
             std::min(static_cast<double>(mse.at(x, y, c)) * scale, static_cast<double>(largest_value)));
       }
@@ -78,7 +81,7 @@ Image toward(Image own, const Image& prior, Real share, const Image& belief) {
 
 }  // namespace
 
-Image usable_prior(const Pass& prior, const HalfPair& pair, const Image& own) {
+MendedPrior mend_prior(const Pass& prior, const HalfPair& pair, const Image& own) {
   Image out = prior.has_halves() ? mean_of_halves({{prior.half_a, prior.half_b}, {}, {}, {}}) : prior.mean;
   for (int c = 0; c < beauty_channels; ++c) {
     const auto gain = static_cast<Real>(exposure_gain(out, pair, c));
@@ -87,7 +90,10 @@ Image usable_prior(const Pass& prior, const HalfPair& pair, const Image& own) {
       out.plane(c)[i] = usable(value) ? gain * value : own.plane(c)[i];
     }
   }
-  return out;
+  Image sharp = sharpen_to(out, own, pair.epsilon);
+  for (int c = 0; c < beauty_channels; ++c)
+    for (std::size_t i = 0; i < out.pixels(); ++i) out.plane(c)[i] = sharp.plane(c)[i] - out.plane(c)[i];
+  return {std::move(sharp), std::move(out)};
 }
 
 double noise_in_prior(const Image& prior, const HalfPair& pair, const Image& own) {
@@ -105,7 +111,7 @@ double noise_in_prior(const Image& prior, const HalfPair& pair, const Image& own
   return input > 0 ? shared / input : 0;
 }
 
-Candidate add_prior(const HalfPair& pair, const Image& prior, const Image& mse, Candidate own,
+Candidate add_prior(const HalfPair& pair, const MendedPrior& prior, const Image& mse, Candidate own,
                     const SelectParams& params) {
   const Image mean = mean_of_halves(own);
   std::vector<Candidate> corrected(shares.size());
@@ -113,7 +119,7 @@ Candidate add_prior(const HalfPair& pair, const Image& prior, const Image& mse, 
     const double share = shares[k];
     const Image belief = belief_in(contradiction(mean, prior, share, mse, pair.epsilon, params.risk_sigma));
     for (std::size_t h = 0; h < 2; ++h)
-      corrected[k].half[h] = toward(own.half[h], prior, static_cast<Real>(share), belief);
+      corrected[k].half[h] = toward(own.half[h], prior.value, static_cast<Real>(share), belief);
   }
   return select_correction(pair, std::move(own), std::move(corrected), params);
 }

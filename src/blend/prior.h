@@ -6,11 +6,18 @@
 
 namespace polyrecon {
 
+/// A denoised layer of the file, made usable; 3 channels each.
+struct MendedPrior {
+  Image value;
+  Image sharpening;  ///< What was added to make it as sharp as our own result, part of value.
+};
+
 /// What a denoised layer of the file says of the beauty: the mean of its halves where it has them (their noise is
 /// averaged), else its mean. Each channel is brought to the sum of the noisy halves where that takes a factor of 1/2 to
 /// 2: noise hardly moves a sum over the frame, so what differs is the prior's exposure. Pixels that are not usable, and
-/// all of a prior without a usable one, take the value of own. 3 channels; prior is not empty and of the pair's size.
-Image usable_prior(const Pass& prior, const HalfPair& pair, const Image& own);
+/// all of a prior without a usable one, take the value of own. Last, a blurred one is sharpened (blend/sharpen.h).
+/// 3 channels; prior is not empty and of the pair's size.
+MendedPrior mend_prior(const Pass& prior, const HalfPair& pair, const Image& own);
 
 /// How much of the input's noise the prior holds, 1 if it is the input itself: slope of its difference from own over
 /// the input's, relative to the brightest of the three. An upper bound, since detail that own misses counts too. All 3
@@ -18,12 +25,13 @@ Image usable_prior(const Pass& prior, const HalfPair& pair, const Image& own);
 double noise_in_prior(const Image& prior, const HalfPair& pair, const Image& own);
 
 /// Order -1 of equation (2): takes the prior as it is, whole or in part, where that has less error. own and own + s b
-/// (prior - own), s = 1/2, 3/4 and 1, are judged by cross-validation like any others. b is how far each is believed,
-///     exp(-max(0, D / E - 2)),   D = its squared distance from own,   E = mse,
+/// (prior - own), s = 0.5, 0.6 .. 1, are judged by cross-validation like any others. b is how far each is believed,
+///     exp(-max(0, D / E - 2)),   D = its squared distance from own + (2 s sharpening)^2,   E = mse,
 /// both relative and averaged over risk_sigma: an image that contradicts the samples by far more than our own
-/// estimated error is wrong, whatever the noise of the validation lets it score. prior: 3 channels. mse: estimated
-/// squared error of own (ErrorMap::mse). Only the beauty changes; bias, variance and order stay those of own.
-Candidate add_prior(const HalfPair& pair, const Image& prior, const Image& mse, Candidate own,
+/// estimated error is wrong, whatever the noise of the validation lets it score; and what had to be sharpened may be
+/// wrong by twice what that changed. mse: estimated squared error of own (ErrorMap::mse). Only the beauty changes;
+/// bias, variance and order stay those of own.
+Candidate add_prior(const HalfPair& pair, const MendedPrior& prior, const Image& mse, Candidate own,
                     const SelectParams& params);
 
 }  // namespace polyrecon

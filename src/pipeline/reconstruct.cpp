@@ -142,8 +142,9 @@ void note_neighbours(const JoinCounts& counts, bool with_motion, Report& report)
 /// The denoised layer of the file as a candidate, unless it is none.
 Candidate use_prior(const Pass& pass, const HalfPair& pair, const ErrorMap& error, const SelectParams& params,
                     Candidate solved, std::vector<Decision>& decisions) {
-  const Image own = average(pair, solved), prior = usable_prior(pass, pair, own);
-  const bool denoised = noise_in_prior(prior, pair, own) < most_noise_in_prior;
+  const Image own = average(pair, solved);
+  const MendedPrior prior = mend_prior(pass, pair, own);
+  const bool denoised = noise_in_prior(prior.value, pair, own) < most_noise_in_prior;
   decisions.push_back({"prior", denoised, "layer '" + pass.name + (denoised ? "'" : "' is the noisy image itself")});
   return denoised ? add_prior(pair, prior, error.mse, std::move(solved), params) : solved;
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/gaussian.h"
 #include "support/images.h"
 #include "support/scene.h"
 
@@ -31,7 +32,7 @@ struct Case {
 
   Candidate result() const { return {{own, own}, mse, mse, Image(size, size, 1)}; }
   double error_with(const Pass& prior) const {
-    const Candidate out = add_prior(pair, usable_prior(prior, pair, own), mse, result(), SelectParams{});
+    const Candidate out = add_prior(pair, mend_prior(prior, pair, own), mse, result(), SelectParams{});
     double sum = 0;
     const Image wanted = truth();
     for (std::size_t i = 0; i < wanted.pixels(); ++i) {
@@ -62,16 +63,37 @@ TEST(AddPrior, AWrongImageCostsNothing) {
   EXPECT_LE(c.error_with(pass_of(Image(size, size, 3))), 1.02 * own_mse);
 }
 
+TEST(AddPrior, ABlurredImageIsMendedOrCostsNothing) {
+  for (const double sigma : {0.6, 1.0, 2.0, 4.0}) {
+    SCOPED_TRACE(sigma);
+    EXPECT_LE(Case().error_with(pass_of(gaussian_blur(truth(), sigma))), (sigma < 2 ? 0.5 : 1.02) * own_mse);
+  }
+}
+
+TEST(AddPrior, WhatHadToBeSharpenedIsBelievedLess) {
+  const Case c;
+  const auto distance = [&](double added) {  // of what is taken from our own
+    const Candidate out = add_prior(c.pair, {truth(), Image(size, size, 3, Real(added))}, c.mse, c.result(), {});
+    double sum = 0;
+    for (std::size_t i = 0; i < c.own.pixels(); ++i) {
+      const double d = static_cast<double>(out.half[0].plane(1)[i]) - static_cast<double>(c.own.plane(1)[i]);
+      sum += d * d;
+    }
+    return sum;
+  };
+  EXPECT_LT(distance(3 * own_error), 0.5 * distance(0));
+}
+
 TEST(AddPrior, PixelsThatAreNoNumberAreOurs) {
   const Case c;
   Image holes = truth();
   for (int y = 0; y < size; ++y)
     for (int x = 0; x < size / 2; ++x) holes.at(x, y, 1) = std::numeric_limits<Real>::quiet_NaN();
-  const Image prior = usable_prior(pass_of(holes), c.pair, c.own);
-  EXPECT_EQ(prior.at(3, 5, 1), c.own.at(3, 5, 1));
+  const MendedPrior prior = mend_prior(pass_of(holes), c.pair, c.own);
+  EXPECT_NEAR(prior.value.at(3, 5, 1) - prior.sharpening.at(3, 5, 1), c.own.at(3, 5, 1), 1e-6);
   EXPECT_LT(c.error_with(pass_of(holes)), own_mse);
   const Image nothing(size, size, 3, std::numeric_limits<Real>::infinity());
-  EXPECT_TRUE(test::same_bits(usable_prior(pass_of(nothing), c.pair, c.own), c.own));
+  EXPECT_TRUE(test::same_bits(mend_prior(pass_of(nothing), c.pair, c.own).value, c.own));
 }
 
 TEST(AddPrior, HalvesAreAveraged) {
@@ -84,7 +106,7 @@ TEST(AddPrior, HalvesAreAveraged) {
 
 TEST(AddPrior, TheErrorStaysThatOfOurOwnResult) {
   const Case c;
-  const Candidate out = add_prior(c.pair, truth(), c.mse, c.result(), SelectParams{});
+  const Candidate out = add_prior(c.pair, {truth(), Image(size, size, 3)}, c.mse, c.result(), SelectParams{});
   EXPECT_TRUE(test::same_bits(out.squared_bias, c.mse));
   EXPECT_TRUE(test::same_bits(out.variance, c.mse));
 }
