@@ -5,9 +5,13 @@
 #include <vector>
 
 #include "core/parallel.h"
+#include "core/real.h"
 
 namespace polyrecon {
 namespace {
+
+/// From here on the slope on L1 counts whole; less sharpens in proportion, so that no rounding decides.
+constexpr double clear_slope = -0.01;
 
 /// L_d at a pixel.
 double laplacian(const Image& image, int x, int y, int c, int d) {
@@ -54,7 +58,7 @@ NormalEquations normal_equations(const Image& prior, const Image& own, double ep
 Image sharpen_to(Image prior, const Image& own, double epsilon) {
   const NormalEquations equations = normal_equations(prior, own, epsilon);
   const double slope = equations.solve(2)(1);
-  const Eigen::VectorXd k = equations.solve(3);
+  const Eigen::VectorXd k = std::min(slope / clear_slope, 1.0) * equations.solve(3);
   if (!(slope < 0) || !k.allFinite()) return prior;
   Image out(prior.width(), prior.height(), 3);
   for_rows(prior.height(), [&](int y) {
@@ -62,7 +66,7 @@ Image sharpen_to(Image prior, const Image& own, double epsilon) {
       for (int x = 0; x < prior.width(); ++x) {
         const double p = prior.at(x, y, c);
         const double sharp = p + k(1) * laplacian(prior, x, y, c, 1) + k(2) * laplacian(prior, x, y, c, 2);
-        out.at(x, y, c) = static_cast<Real>(std::max(sharp, std::min(p, 0.0)));
+        out.at(x, y, c) = storable(std::max(sharp, std::min(p, 0.0)));
       }
   });
   return out;
