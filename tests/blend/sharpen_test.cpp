@@ -55,6 +55,20 @@ TEST(SharpenTo, LeavesWhatIsAsSharpAsOwnOrSharper) {
   EXPECT_TRUE(test::same_bits(sharpen_to(noisy, truth, epsilon), noisy));
 }
 
+/// So that no rounding decides whether it begins.
+TEST(SharpenTo, ASmallSlopeSharpensInProportion) {
+  const Image truth = sharp_image(), prior = gaussian_blur(truth, 0.7);
+  const auto part_undone = [&](double t) {  // of what own is sharper by, squared
+    Image own = prior;
+    for (int c = 0; c < 3; ++c)
+      for (std::size_t i = 0; i < own.pixels(); ++i)
+        own.plane(c)[i] += static_cast<Real>(t) * (truth.plane(c)[i] - prior.plane(c)[i]);
+    return squared_distance(sharpen_to(prior, own, epsilon), prior) / squared_distance(own, prior);
+  };
+  EXPECT_GT(part_undone(1), 0.5);
+  EXPECT_LT(part_undone(0.01), 0.2 * part_undone(1));
+}
+
 TEST(SharpenTo, BrightnessIsNoSharpness) {
   const Image truth = sharp_image();
   Image darker = truth;
