@@ -1,6 +1,8 @@
 #include "blend/levels.h"
 
+#include <array>
 #include <utility>
+#include <vector>
 
 #include "core/resample.h"
 
@@ -32,15 +34,23 @@ HalfPair downsample(const HalfPair& pair) {
   return out;
 }
 
-Candidate add_coarse(const HalfPair& pair, Candidate fine, const Candidate& coarse, const SelectParams& params) {
-  std::vector<Candidate> corrected(2);
-  for (std::size_t h = 0; h < 2; ++h) {
-    const Image remainder =
+Candidate add_coarse(const HalfPair& pair, Candidate fine, const Candidate& coarse, const SelectParams& params,
+                     std::size_t max_bytes) {
+  std::array<Image, 2> remainder;
+  for (std::size_t h = 0; h < 2; ++h)
+    remainder[h] =
         double_resolution(plus(coarse.half[h], -1, half_resolution(fine.half[h])), pair.width(), pair.height());
-    corrected[0].half[h] = plus(fine.half[h], Real(0.5), remainder);
-    corrected[1].half[h] = plus(fine.half[h], 1, remainder);
-  }
-  return select_correction(pair, std::move(fine), std::move(corrected), params);
+  const auto make = [&](const std::array<Image, 2>& own, const Rect& region) {
+    std::vector<std::array<Image, 2>> corrected(2);
+    for (std::size_t h = 0; h < 2; ++h) {
+      const Image u = crop(remainder[h], region);
+      corrected[0][h] = plus(own[h], Real(0.5), u);
+      corrected[1][h] = plus(own[h], 1, u);
+    }
+    return corrected;
+  };
+  fine.half = select_correction(pair, fine.half, {2, 0, make}, params, max_bytes);
+  return fine;
 }
 
 }  // namespace polyrecon

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+
 #include "blend/select.h"
 #include "features/half_pair.h"
 
@@ -11,6 +13,8 @@ HalfPair downsample(const HalfPair& pair);
 /// Adds the low-frequency remainder that a window of limited radius leaves where the noise is strong. With u =
 /// up(coarse - down(fine)), the candidates fine, fine + u/2 and fine + u are judged by cross-validation like any
 /// others. coarse: a result on downsample(pair). bias, variance and order are those of fine.
-Candidate add_coarse(const HalfPair& pair, Candidate fine, const Candidate& coarse, const SelectParams& params);
+/// max_bytes: as in select_correction.
+Candidate add_coarse(const HalfPair& pair, Candidate fine, const Candidate& coarse, const SelectParams& params,
+                     std::size_t max_bytes);
 
 }  // namespace polyrecon

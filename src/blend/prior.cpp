@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <utility>
+#include <vector>
 
 #include "blend/sharpen.h"
 #include "core/gaussian.h"
@@ -81,8 +82,9 @@ Image toward(Image own, const Image& prior, Real share, const Image& belief) {
 
 }  // namespace
 
-MendedPrior mend_prior(const Pass& prior, const HalfPair& pair, const Image& own) {
-  Image out = prior.has_halves() ? mean_of_halves({{prior.half_a, prior.half_b}, {}, {}, {}}) : prior.mean;
+MendedPrior mend_prior(Pass prior, const HalfPair& pair, const Image& own) {
+  Image out =
+      prior.has_halves() ? mean_of_halves({std::move(prior.half_a), std::move(prior.half_b)}) : std::move(prior.mean);
   for (int c = 0; c < beauty_channels; ++c) {
     const auto gain = static_cast<Real>(exposure_gain(out, pair, c));
     for (std::size_t i = 0; i < out.pixels(); ++i) {
@@ -112,16 +114,25 @@ double noise_in_prior(const Image& prior, const HalfPair& pair, const Image& own
 }
 
 Candidate add_prior(const HalfPair& pair, const MendedPrior& prior, const Image& mse, Candidate own,
-                    const SelectParams& params) {
-  const Image mean = mean_of_halves(own);
-  std::vector<Candidate> corrected(shares.size());
-  for (std::size_t k = 0; k < corrected.size(); ++k) {
-    const double share = shares[k];
-    const Image belief = belief_in(contradiction(mean, prior, share, mse, pair.epsilon, params.risk_sigma));
-    for (std::size_t h = 0; h < 2; ++h)
-      corrected[k].half[h] = toward(own.half[h], prior.value, static_cast<Real>(share), belief);
-  }
-  return select_correction(pair, std::move(own), std::move(corrected), params);
+                    const SelectParams& params, std::size_t max_bytes) {
+  const auto make = [&](const std::array<Image, 2>& beauty, const Rect& region) {
+    const MendedPrior part{crop(prior.value, region), crop(prior.sharpening, region)};
+    const Image mean = mean_of_halves(beauty), error = crop(mse, region);
+    std::vector<std::array<Image, 2>> corrected(shares.size());
+    for (std::size_t k = 0; k < shares.size(); ++k) {
+      const Image belief = belief_in(contradiction(mean, part, shares[k], error, pair.epsilon, params.risk_sigma));
+      for (std::size_t h = 0; h < 2; ++h)
+        corrected[k][h] = toward(beauty[h], part.value, static_cast<Real>(shares[k]), belief);
+    }
+    return corrected;
+  };
+  const auto beauty_of = [](const Image& half) { return crop(half, half.bounds(), 0, beauty_channels); };
+  const std::array<Image, 2> best =
+      select_correction(pair, {beauty_of(own.half[0]), beauty_of(own.half[1])},
+                        {shares.size(), gaussian_reach(params.risk_sigma), make}, params, max_bytes);
+  for (std::size_t h = 0; h < 2; ++h)
+    for (int c = 0; c < beauty_channels; ++c) std::copy_n(best[h].plane(c), best[h].pixels(), own.half[h].plane(c));
+  return own;
 }
 
 }  // namespace polyrecon

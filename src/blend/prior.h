@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+
 #include "blend/select.h"
 #include "core/frame.h"
 #include "features/half_pair.h"
@@ -17,7 +19,7 @@ struct MendedPrior {
 /// 2: noise hardly moves a sum over the frame, so what differs is the prior's exposure. Pixels that are not usable, and
 /// all of a prior without a usable one, take the value of own. Last, a blurred one is sharpened (blend/sharpen.h).
 /// 3 channels; prior is not empty and of the pair's size.
-MendedPrior mend_prior(const Pass& prior, const HalfPair& pair, const Image& own);
+MendedPrior mend_prior(Pass prior, const HalfPair& pair, const Image& own);
 
 /// How much of the input's noise the prior holds, 1 if it is the input itself: slope of its difference from own over
 /// the input's, relative to the brightest of the three. An upper bound, since detail that own misses counts too. All 3
@@ -30,8 +32,8 @@ double noise_in_prior(const Image& prior, const HalfPair& pair, const Image& own
 /// both relative and averaged over risk_sigma: an image that contradicts the samples by far more than our own
 /// estimated error is wrong, whatever the noise of the validation lets it score; and what had to be sharpened may be
 /// wrong by twice what that changed. mse: estimated squared error of own (ErrorMap::mse). Only the beauty changes;
-/// bias, variance and order stay those of own.
+/// bias, variance and order stay those of own. max_bytes: as in select_correction.
 Candidate add_prior(const HalfPair& pair, const MendedPrior& prior, const Image& mse, Candidate own,
-                    const SelectParams& params);
+                    const SelectParams& params, std::size_t max_bytes);
 
 }  // namespace polyrecon

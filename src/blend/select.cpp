@@ -9,6 +9,7 @@
 #include "core/near_best.h"
 #include "core/parallel.h"
 #include "core/real.h"
+#include "core/tiles.h"
 
 namespace polyrecon {
 namespace {
@@ -17,6 +18,7 @@ constexpr double brightness_sigma = 1;
 constexpr double tie = 1e-3;  // candidates whose risk is within this of the least are the best together
 // Relative noise variance below and above which candidates count alike: keeps shares finite and above zero.
 constexpr Real least_relative_variance = Real(1e-12), most_relative_variance = Real(1e12);
+constexpr std::size_t largest_tile = std::size_t{1024} * 1024;  // of corrections; larger ones are no faster
 constexpr double pi = 3.14159265358979323846;
 
 /// 1 / (brightness^2 + epsilon), the square smoothed so that one dark pixel does not carry the risk of its
@@ -38,7 +40,7 @@ Image inverse_brightness(const Image& brightness, double epsilon) {
 
 /// The unsmoothed risk of a candidate.
 Image raw_risk(const HalfPair& pair, const Candidate& candidate, const Image& scale) {
-  Image out(pair.width(), pair.height(), 1);
+  Image out(scale.width(), scale.height(), 1);
   for_rows(out.height(), [&](int y) {
     Real* risk = out.row(0, y);
     for (int c = 0; c < 3; ++c) {
@@ -147,13 +149,14 @@ void square(Image& image) {
 }  // namespace
 
 int select_halo(const SelectParams& params) {
-  return gaussian_reach(brightness_sigma) + gaussian_reach(params.risk_sigma) + gaussian_reach(params.map_sigma);
+  // The choice is smoothed; it takes the spread of the difference to the best, which each pixel's risk tells.
+  return gaussian_reach(params.map_sigma) + 2 * gaussian_reach(params.risk_sigma) + gaussian_reach(brightness_sigma);
 }
 
 Candidate select(const HalfPair& pair, const Image& brightness, const std::vector<Candidate>& candidates,
                  const SelectParams& params) {
   assert(!candidates.empty());
-  const int width = pair.width(), height = pair.height();
+  const int width = brightness.width(), height = brightness.height();
   const Image scale = inverse_brightness(brightness, pair.epsilon);
   std::vector<Image> raw, risk, shares;
   for (const Candidate& candidate : candidates) {
@@ -170,7 +173,7 @@ Candidate select(const HalfPair& pair, const Image& brightness, const std::vecto
       for (int x = 0; x < width; ++x) total.at(x, y, 0) += shares[k].at(x, y, 0);
     });
   }
-  const int channels = pair.color[0].channels();
+  const int channels = candidates[0].half[0].channels();
   Candidate out{{Image(width, height, channels), Image(width, height, channels)},
                 Image(width, height, 3),
                 Image(width, height, 3),
@@ -187,23 +190,39 @@ Candidate select(const HalfPair& pair, const Image& brightness, const std::vecto
   return out;
 }
 
-Image mean_of_halves(const Candidate& candidate) {
-  Image out(candidate.half[0].width(), candidate.half[0].height(), 3);
+Image mean_of_halves(const std::array<Image, 2>& half) {
+  Image out(half[0].width(), half[0].height(), 3);
   for (int c = 0; c < 3; ++c)
     for (std::size_t i = 0; i < out.pixels(); ++i)
-      out.plane(c)[i] = Real(0.5) * (candidate.half[0].plane(c)[i] + candidate.half[1].plane(c)[i]);
+      out.plane(c)[i] = Real(0.5) * (half[0].plane(c)[i] + half[1].plane(c)[i]);
   return out;
 }
 
-Candidate select_correction(const HalfPair& pair, Candidate own, std::vector<Candidate> corrected,
-                            const SelectParams& params) {
-  const Image brightness = mean_of_halves(own);
-  corrected.insert(corrected.begin(), Candidate{std::move(own.half), {}, {}, {}});
-  Candidate out = select(pair, brightness, corrected, params);
-  out.squared_bias = std::move(own.squared_bias);
-  out.variance = std::move(own.variance);
-  out.order = std::move(own.order);
+std::array<Image, 2> select_correction(const HalfPair& pair, const std::array<Image, 2>& own,
+                                       const Corrections& corrections, const SelectParams& params,
+                                       std::size_t max_bytes) {
+  const int width = pair.width(), height = pair.height(), channels = own[0].channels();
+  std::array<Image, 2> out{Image(width, height, channels), Image(width, height, channels)};
+  const std::size_t pixels =
+      std::min(max_bytes / correction_bytes_per_pixel(channels, corrections.count), largest_tile);
+  for (const Tile& tile : make_tiles(out[0].bounds(), select_halo(params) + corrections.reach, 1, pixels)) {
+    const Rect& r = tile.padded;
+    const HalfPair part{
+        {crop(pair.color[0], r, 0, channels), crop(pair.color[1], r, 0, channels)}, {}, {}, pair.epsilon};
+    std::vector<Candidate> candidates{{{crop(own[0], r), crop(own[1], r)}, {}, {}, {}}};
+    for (std::array<Image, 2>& half : corrections.make(candidates[0].half, r))
+      candidates.push_back({std::move(half), {}, {}, {}});
+    const Candidate best = select(part, mean_of_halves(candidates[0].half), candidates, params);
+    for (std::size_t h = 0; h < 2; ++h) paste(best.half[h], inside(tile), out[h], tile.core.x0, tile.core.y0);
+  }
   return out;
+}
+
+std::size_t correction_bytes_per_pixel(int channels, std::size_t corrections) {
+  const auto halves = 2 * static_cast<std::size_t>(channels);
+  // Noisy halves, own and all corrections with their risks; brightness, the result with empty bias and variance, and
+  // what comes and goes.
+  return sizeof(Real) * (2 * halves + (corrections + 1) * (halves + 3) + halves + 24);
 }
 
 }  // namespace polyrecon

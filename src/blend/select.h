@@ -1,6 +1,8 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
+#include <functional>
 #include <vector>
 
 #include "core/image.h"
@@ -39,12 +41,25 @@ int select_halo(const SelectParams& params);
 Candidate select(const HalfPair& pair, const Image& brightness, const std::vector<Candidate>& candidates,
                  const SelectParams& params);
 
-/// Beauty of the mean of a candidate's halves, 3 channels.
-Image mean_of_halves(const Candidate& candidate);
+/// Beauty of the mean of two halves, 3 channels.
+Image mean_of_halves(const std::array<Image, 2>& half);
 
-/// The best of own and further images made from it, of which only the halves are given; bias, variance and order are
-/// those of own. Without variances: they would be own's for all.
-Candidate select_correction(const HalfPair& pair, Candidate own, std::vector<Candidate> corrected,
-                            const SelectParams& params);
+/// Further images made from a result.
+struct Corrections {
+  std::size_t count = 0;
+  int reach = 0;  ///< Pixels around a region that make has to see.
+  /// The halves of each, of own's channels, from own's halves in a region of the frame.
+  std::function<std::vector<std::array<Image, 2>>(const std::array<Image, 2>& own, const Rect& region)> make;
+};
+
+/// The best of own and its corrections, by their risk alone: variances would be own's for all. own: the first channels
+/// of HalfPair::color, at least 3. Works in tiles so that the memory beside own and the result stays within max_bytes;
+/// the tiles do not show in the result.
+std::array<Image, 2> select_correction(const HalfPair& pair, const std::array<Image, 2>& own,
+                                       const Corrections& corrections, const SelectParams& params,
+                                       std::size_t max_bytes);
+
+/// Bytes that select_correction works with per pixel of a tile.
+std::size_t correction_bytes_per_pixel(int channels, std::size_t corrections);
 
 }  // namespace polyrecon

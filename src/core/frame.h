@@ -50,6 +50,7 @@ struct FrameShape {
   int channels = 0;          ///< Of all passes in use with their variances and halves.
   int color_channels = 3;    ///< Of the beauty and the AOVs.
   int feature_channels = 0;  ///< Of the features' means.
+  int prior_channels = 0;    ///< Of the prior, which waits beside the fits for its turn.
   int beside = 0;            ///< Held beside it all along: neighbours in time, the next frame of a sequence.
 };
 

@@ -10,10 +10,26 @@ Image::Image(int width, int height, int channels, Real fill) : width_(width), he
   samples_.assign(pixels() * static_cast<std::size_t>(channels), fill);
 }
 
-Image crop(const Image& image, const Rect& r) {
+namespace {
+
+/// Channel `channel` of the part `from` of source to the place (x, y) of target's channel `to`.
+void copy_plane(const Image& source, int channel, const Rect& from, Image& target, int to, int x, int y) {
+  for (int row = 0; row < from.height(); ++row) {
+    const Real* begin = source.row(channel, from.y0 + row) + from.x0;
+    std::copy(begin, begin + from.width(), target.row(to, y + row) + x);
+  }
+}
+
+}  // namespace
+
+Image crop(const Image& image, const Rect& r) { return crop(image, r, 0, image.channels()); }
+
+Image crop(const Image& image, const Rect& r, int first, int count) {
+  assert(first >= 0 && first + count <= image.channels());
   if (image.empty()) return {};
-  Image out(r.width(), r.height(), image.channels());
-  paste(image, r, out, 0, 0);
+  assert(intersect(r, image.bounds()) == r);
+  Image out(r.width(), r.height(), count);
+  for (int c = 0; c < count; ++c) copy_plane(image, first + c, r, out, c, 0, 0);
   return out;
 }
 
@@ -21,11 +37,7 @@ void paste(const Image& source, const Rect& from, Image& target, int x, int y) {
   assert(source.channels() == target.channels());
   assert(intersect(from, source.bounds()) == from);
   assert(x + from.width() <= target.width() && y + from.height() <= target.height());
-  for (int c = 0; c < source.channels(); ++c)
-    for (int row = 0; row < from.height(); ++row) {
-      const Real* begin = source.row(c, from.y0 + row) + from.x0;
-      std::copy(begin, begin + from.width(), target.row(c, y + row) + x);
-    }
+  for (int c = 0; c < source.channels(); ++c) copy_plane(source, c, from, target, c, x, y);
 }
 
 }  // namespace polyrecon

@@ -44,6 +44,8 @@ class Image {
 
 /// The part of image inside r, which must lie within its bounds. An empty image stays empty.
 Image crop(const Image& image, const Rect& r);
+/// The same of channels first to first + count - 1.
+Image crop(const Image& image, const Rect& r, int first, int count);
 
 /// Copies the part `from` of source to the place (x, y) of target; same number of channels.
 void paste(const Image& source, const Rect& from, Image& target, int x, int y);

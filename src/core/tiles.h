@@ -11,6 +11,9 @@ struct Tile {
   Rect core, padded;
 };
 
+/// The core in coordinates of the padded part.
+Rect inside(const Tile& tile);
+
 /// Cuts bounds into tiles whose padded area has at most max_pixels pixels where possible (at least one alignment x
 /// alignment core each). Padded areas begin at multiples of alignment and reach halo pixels beyond the core, cut to
 /// bounds.

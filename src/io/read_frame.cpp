@@ -207,12 +207,15 @@ class FrameBuilder {
   }
 
   FrameShape shape() const {
-    FrameShape shape{window_.area(), static_cast<int>(reader_.samples() / window_.area()), 3, 0};
+    FrameShape shape{window_.area(), static_cast<int>(reader_.samples() / window_.area()), 3};
     for (const PassChoice& pass : passes_) {
       if (pass.role == Role::Color) shape.color_channels += 3;
       const bool feature = pass.role == Role::Normal || pass.role == Role::Albedo || pass.role == Role::Depth ||
                            pass.role == Role::Visibility;
       if (feature) shape.feature_channels += channels_of(pass.role);
+      if (pass.role == Role::Prior)
+        for (const int index : {pass.mean, pass.variance, pass.half_a, pass.half_b})
+          shape.prior_channels += index < 0 ? 0 : channels_of(pass.role);
     }
     return shape;
   }

@@ -22,13 +22,13 @@ std::size_t pair_channels(const FrameShape& shape) {
 }  // namespace
 
 FrameShape shape_of(const Frame& frame) {
-  FrameShape shape{frame.beauty.mean.pixels(), 0, 3 + 3 * static_cast<int>(frame.aovs.size()), 0};
+  FrameShape shape{frame.beauty.mean.pixels(), 0, 3 + 3 * static_cast<int>(frame.aovs.size())};
   const auto add = [&](const Pass& pass) {
     for (const Image* image : {&pass.mean, &pass.variance, &pass.half_a, &pass.half_b})
       shape.channels += image->channels();
   };
   add(frame.prior);
-  shape.beside = shape.channels;  // waits beside the fits for its turn
+  shape.prior_channels = shape.channels;
   add(frame.beauty);
   shape.channels += frame.motion.channels();
   for (const Pass& aov : frame.aovs) add(aov);
@@ -59,7 +59,7 @@ MemoryNeeds memory_needs(const FrameShape& shape, const Params& params) {
   needs.prepare = with_gaps(
       program_bytes + plane * (count(shape.channels + shape.beside) + noise + pair_channels(shape) + in_preparation));
   // The pair and the results of this stage and the one before, with their coarser levels.
-  needs.held = with_gaps(program_bytes + plane * (kept + noise + reach + count(shape.beside)) +
+  needs.held = with_gaps(program_bytes + plane * (kept + noise + reach + count(shape.prior_channels + shape.beside)) +
                          plane * (pair_channels(shape) + 2 * candidate) * 4 / 3);
   needs.tile = with_gaps(
       std::min(smallest_tile_pixels(params), shape.pixels) *

@@ -45,11 +45,11 @@ Candidate solve_level(const HalfPair& pair, int level, const Params& params, std
   Candidate coarse;
   if (has_coarser) {
     coarse = solve_level(downsample(pair), level + 1, params, max_bytes, counters, progress);
-    result = add_coarse(pair, std::move(result), coarse, params.selection);
+    result = add_coarse(pair, std::move(result), coarse, params.selection, max_bytes);
   }
   for (int stage = 2; stage <= params.stages; ++stage) {
     result = run_stage(pair, &result, params, max_bytes, counters, progress);
-    if (has_coarser) result = add_coarse(pair, std::move(result), coarse, params.selection);
+    if (has_coarser) result = add_coarse(pair, std::move(result), coarse, params.selection, max_bytes);
   }
   return result;
 }
@@ -81,12 +81,7 @@ Image average(const HalfPair& pair, const Candidate& solved) {
   return out;
 }
 
-Image channels_of(const Image& image, int first, int count) {
-  Image out(image.width(), image.height(), count);
-  for (int c = 0; c < count; ++c)
-    std::copy(image.plane(first + c), image.plane(first + c) + image.pixels(), out.plane(c));
-  return out;
-}
+Image channels_of(const Image& image, int first, int count) { return crop(image, image.bounds(), first, count); }
 
 std::array<double, 3> energy_of(const Image& image) {
   const std::vector<double> sums = channel_sums(image);
@@ -140,13 +135,15 @@ void note_neighbours(const JoinCounts& counts, bool with_motion, Report& report)
 }
 
 /// The denoised layer of the file as a candidate, unless it is none.
-Candidate use_prior(const Pass& pass, const HalfPair& pair, const ErrorMap& error, const SelectParams& params,
-                    Candidate solved, std::vector<Decision>& decisions) {
-  const Image own = average(pair, solved);
-  const MendedPrior prior = mend_prior(pass, pair, own);
+Candidate use_prior(Pass pass, const HalfPair& pair, const ErrorMap& error, const SelectParams& params,
+                    std::size_t max_bytes, Candidate solved, std::vector<Decision>& decisions) {
+  const std::string layer = "layer '" + pass.name;
+  Image own = average(pair, solved);
+  const MendedPrior prior = mend_prior(std::move(pass), pair, own);
   const bool denoised = noise_in_prior(prior.value, pair, own) < most_noise_in_prior;
-  decisions.push_back({"prior", denoised, "layer '" + pass.name + (denoised ? "'" : "' is the noisy image itself")});
-  return denoised ? add_prior(pair, prior, error.mse, std::move(solved), params) : solved;
+  own = {};
+  decisions.push_back({"prior", denoised, layer + (denoised ? "'" : "' is the noisy image itself")});
+  return denoised ? add_prior(pair, prior, error.mse, std::move(solved), params, max_bytes) : solved;
 }
 
 /// Progress steps of the fits over all levels and stages: blocks x phases, both halves. Close enough for a bar.
@@ -238,7 +235,8 @@ Result reconstruct(Frame& frame, const std::vector<TimedNeighbour>& neighbours, 
   result.order = solved.order;
   if (!frame.prior.mean.empty())
     solved = timed(report, progress, "prior", 1, [&] {
-      return use_prior(frame.prior, pair, result.error, params.selection, std::move(solved), report.decisions);
+      return use_prior(std::move(frame.prior), pair, result.error, params.selection, memory, std::move(solved),
+                       report.decisions);
     });
   Image image = timed(report, progress, "energy", 1, [&] {
     Image out = average(pair, solved);

@@ -104,13 +104,13 @@ Candidate stage_of_tile(const HalfPair& pair, const Candidate* before, const Par
   add_candidates(pair, raw, before, noisy, raw_fit, cross_filter, counters, progress, candidates);
   Image brightness;
   if (before) {
-    brightness = mean_of_halves(*before);
+    brightness = mean_of_halves(before->half);
     const Image variance = residual_variance(*before);
     const Guide guided{{&brightness, &brightness}, &variance};
     add_candidates(pair, guided, before, noisy, params.fit(params.guided_bandwidths), cross_filter, counters, progress,
                    candidates);
   } else {
-    brightness = mean_of_halves(candidates.back());
+    brightness = mean_of_halves(candidates.back().half);
   }
   candidates.push_back(take_as_it_is(pair));
   return select(pair, brightness, candidates, params.selection);
@@ -124,9 +124,7 @@ Candidate crop_candidate(const Candidate& candidate, const Rect& r) {
 }
 
 void paste_candidate(const Candidate& part, const Tile& tile, Candidate& whole) {
-  const Rect& core = tile.core;
-  const Rect from{core.x0 - tile.padded.x0, core.y0 - tile.padded.y0, core.x1 - tile.padded.x0,
-                  core.y1 - tile.padded.y0};
+  const Rect &core = tile.core, from = inside(tile);
   for (std::size_t h = 0; h < 2; ++h) paste(part.half[h], from, whole.half[h], core.x0, core.y0);
   paste(part.squared_bias, from, whole.squared_bias, core.x0, core.y0);
   paste(part.variance, from, whole.variance, core.x0, core.y0);

@@ -10,6 +10,7 @@ import hashlib
 import json
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -29,6 +30,8 @@ examples:
   tests/bench/scaling.py --sizes 640x400 --stages           # where the seconds go
   tests/bench/scaling.py --sizes 5120x3200 --quality draft --max-memory 4G 6G 12G
                                                             # memory is bounded, the picture stays the same to the bit
+  tests/bench/scaling.py --sizes 1920x1080 --quality draft --max-memory least 4G --prior
+                                                            # the same with a denoised layer to be judged
 """
 
 
@@ -60,8 +63,10 @@ def arguments():
         nargs="+",
         metavar="SIZE",
         default=["4G"],
-        help="limits to run each frame under (default: 4G, the program's own); all must give the same picture",
+        help="limits to run each frame under, least: the least that is taken (default: 4G, the program's own); all "
+        "must hold and give the same picture",
     )
+    parser.add_argument("--prior", action="store_true", help="give each frame its picture of quality draft as prior")
     parser.add_argument("--threads", type=int, default=0, help="threads of the program (default: all processors)")
     parser.add_argument("--stages", action="store_true", help="print the seconds of each stage too")
     parser.add_argument("--sample", type=pathlib.Path, default=ROOT / "samples" / "study_16.exr", metavar="EXR")
@@ -116,11 +121,38 @@ def pixel_hash(path):
     return found.hexdigest()
 
 
+def denoise_command(args, frame, quality, clean):
+    command = [args.program, "denoise", "-i", frame, "-o", clean, "--quality", quality]
+    command += ["--progress", "none", "--quiet", "--threads", str(args.threads)]
+    prior = prior_of(frame)
+    return command + ["--prior", prior] if prior.exists() else command
+
+
+def prior_of(frame):
+    return frame.with_suffix(".prior.exr")
+
+
+def make_prior(args, frame):
+    subprocess.run([*denoise_command(args, frame, "draft", prior_of(frame)), "--max-memory", "1T"], check=True)
+
+
+def least_memory(args, frame, quality):
+    """The limit that the program asks for where it gets too little."""
+    command = [*denoise_command(args, frame, quality, frame.with_suffix(".clean.exr")), "--max-memory", "1M"]
+    asked = re.search(r"needs --max-memory (\w+)", subprocess.run(command, capture_output=True, text=True).stderr)
+    return asked.group(1) if asked else sys.exit(f"{frame}: runs with --max-memory 1M")
+
+
+def bytes_of(max_memory):
+    units = "KMGT"
+    unit = units.find(max_memory[-1].upper())
+    return int(max_memory) if unit < 0 else int(max_memory[:-1]) << 10 * (unit + 1)
+
+
 def run(args, frame, quality, max_memory):
     """One run in a process of its own: its exit code, resource usage, report and the hash of the picture."""
     clean, report = frame.with_suffix(".clean.exr"), frame.with_suffix(".json")
-    command = [args.program, "denoise", "-i", frame, "-o", clean, "--quality", quality, "--max-memory", max_memory]
-    command += ["--report", report, "--progress", "none", "--quiet", "--threads", str(args.threads)]
+    command = [*denoise_command(args, frame, quality, clean), "--max-memory", max_memory, "--report", report]
     process = subprocess.Popen([str(word) for word in command])
     _, status, usage = os.wait4(process.pid, 0)
     process.returncode = os.waitstatus_to_exitcode(status)
@@ -170,12 +202,16 @@ def print_stages(runs):
 def time_frame(args, frame, width, height, quality):
     """Runs one frame under every limit of memory. Returns the reports, and whether all went as it should."""
     good, reports, pictures = True, [], []
-    for max_memory in args.max_memory:
+    for limit in args.max_memory:
+        max_memory = least_memory(args, frame, quality) if limit == "least" else limit
         code, usage, report, picture = run(args, frame, quality, max_memory)
         print_row(width, height, quality, max_memory, code, usage, report)
         if code:
             good = good and code == OUT_OF_MEMORY
             continue
+        if usage.ru_maxrss * 1024 > bytes_of(max_memory):
+            print(f"{width} x {height}, {quality}: takes more than {max_memory}", file=sys.stderr)
+            good = False
         reports.append((f"{width} x {height}, {quality}", report))
         pictures.append(picture)
     if len(set(pictures)) > 1:
@@ -189,11 +225,14 @@ def time_frames(args, folder):
     for width, height in args.sizes:
         frame = folder / f"frame_{width}x{height}.exr"
         make_frame(args.sample, width, height, frame)
+        if args.prior:
+            make_prior(args, frame)
         for quality in args.quality:
             found, as_it_should = time_frame(args, frame, width, height, quality)
             reports += found
             good = good and as_it_should
         frame.unlink()
+        prior_of(frame).unlink(missing_ok=True)
     if args.stages and reports:
         print_stages(reports)
     if good and len(args.max_memory) > 1:

@@ -10,6 +10,8 @@
 namespace polyrecon {
 namespace {
 
+constexpr std::size_t plenty = std::size_t{1} << 30;
+
 using test::image_of;
 
 TEST(Downsample, AveragesColourAndQuartersTheVariance) {
@@ -53,7 +55,7 @@ TEST(AddCoarse, RemovesALowFrequencyErrorAndKeepsTheDetail) {
   const Image error = Image(size, size, 3, Real(0.5));
   const Candidate fine = exact(wrong, error),
                   coarse = exact(downsample(test::pair_of(truth, 0, 3)).color[0], Image(size / 2, size / 2, 3));
-  const Candidate out = add_coarse(pair, fine, coarse, SelectParams{});
+  const Candidate out = add_coarse(pair, fine, coarse, SelectParams{}, plenty);
   EXPECT_LT(squared_error(out, truth), 0.05 * squared_error(fine, truth));
   EXPECT_TRUE(test::same_bits(out.squared_bias, error));
   EXPECT_TRUE(test::same_bits(out.order, fine.order));
@@ -65,14 +67,14 @@ TEST(AddCoarse, AWorseCoarseResultIsNotAdded) {
   const HalfPair pair = test::pair_of(truth, 0.1, 4);
   const Candidate fine = exact(truth, Image(size, size, 3));
   const Candidate coarse = exact(Image(size / 2, size / 2, 3, Real(1.5)), Image(size / 2, size / 2, 3));
-  EXPECT_LT(test::max_difference(add_coarse(pair, fine, coarse, SelectParams{}).half[0], truth), 1e-3);
+  EXPECT_LT(test::max_difference(add_coarse(pair, fine, coarse, SelectParams{}, plenty).half[0], truth), 1e-3);
 }
 
 TEST(AddCoarse, WorksOnOddSizes) {
   const Image truth(33, 17, 3, Real(1));
   const HalfPair pair = test::pair_of(truth, 0.1, 5);
   const Candidate out = add_coarse(pair, exact(truth, Image(33, 17, 3)),
-                                   exact(Image(17, 9, 3, Real(1)), Image(17, 9, 3)), SelectParams{});
+                                   exact(Image(17, 9, 3, Real(1)), Image(17, 9, 3)), SelectParams{}, plenty);
   EXPECT_LT(test::max_difference(out.half[1], truth), 1e-6);
 }
 

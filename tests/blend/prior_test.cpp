@@ -12,6 +12,8 @@
 namespace polyrecon {
 namespace {
 
+constexpr std::size_t plenty = std::size_t{1} << 30;
+
 using test::image_of;
 
 constexpr int size = 64;
@@ -32,7 +34,7 @@ struct Case {
 
   Candidate result() const { return {{own, own}, mse, mse, Image(size, size, 1)}; }
   double error_with(const Pass& prior) const {
-    const Candidate out = add_prior(pair, mend_prior(prior, pair, own), mse, result(), SelectParams{});
+    const Candidate out = add_prior(pair, mend_prior(prior, pair, own), mse, result(), SelectParams{}, plenty);
     double sum = 0;
     const Image wanted = truth();
     for (std::size_t i = 0; i < wanted.pixels(); ++i) {
@@ -73,7 +75,8 @@ TEST(AddPrior, ABlurredImageIsMendedOrCostsNothing) {
 TEST(AddPrior, WhatHadToBeSharpenedIsBelievedLess) {
   const Case c;
   const auto distance = [&](double added) {  // of what is taken from our own
-    const Candidate out = add_prior(c.pair, {truth(), Image(size, size, 3, Real(added))}, c.mse, c.result(), {});
+    const Candidate out =
+        add_prior(c.pair, {truth(), Image(size, size, 3, Real(added))}, c.mse, c.result(), {}, plenty);
     double sum = 0;
     for (std::size_t i = 0; i < c.own.pixels(); ++i) {
       const double d = static_cast<double>(out.half[0].plane(1)[i]) - static_cast<double>(c.own.plane(1)[i]);
@@ -104,9 +107,26 @@ TEST(AddPrior, HalvesAreAveraged) {
   EXPECT_LT(c.error_with(halves), 0.3 * own_mse);
 }
 
+TEST(AddPrior, OtherLayersStayAsTheyAre) {
+  Case c;
+  const auto with_layer = [](const Image& beauty) {
+    return image_of(size, size, 6, [&](int x, int y, int k) { return static_cast<double>(beauty.at(x, y, k % 3)); });
+  };
+  Candidate own = c.result();
+  for (std::size_t h = 0; h < 2; ++h) {
+    own.half[h] = with_layer(own.half[h]);
+    c.pair.color[h] = with_layer(c.pair.color[h]);
+  }
+  const Candidate out = add_prior(c.pair, {truth(), Image(size, size, 3)}, c.mse, own, SelectParams{}, plenty);
+  for (const int first : {0, 3}) {
+    const auto part = [&](const Image& image) { return crop(image, image.bounds(), first, 3); };
+    EXPECT_EQ(test::same_bits(part(out.half[0]), part(own.half[0])), first == 3);
+  }
+}
+
 TEST(AddPrior, TheErrorStaysThatOfOurOwnResult) {
   const Case c;
-  const Candidate out = add_prior(c.pair, {truth(), Image(size, size, 3)}, c.mse, c.result(), SelectParams{});
+  const Candidate out = add_prior(c.pair, {truth(), Image(size, size, 3)}, c.mse, c.result(), SelectParams{}, plenty);
   EXPECT_TRUE(test::same_bits(out.squared_bias, c.mse));
   EXPECT_TRUE(test::same_bits(out.variance, c.mse));
 }
@@ -123,7 +143,7 @@ TEST(NoiseInPrior, IsOneForTheInputAndNothingForTheTruth) {
 /// The pair has lost its outliers, a prior that is the input has them still.
 TEST(NoiseInPrior, IsNotMovedByAnOutlier) {
   const Case c;
-  Image noisy = mean_of_halves({c.pair.color, {}, {}, {}});
+  Image noisy = mean_of_halves(c.pair.color);
   noisy.at(20, 30, 1) = 1e4;
   EXPECT_NEAR(noise_in_prior(noisy, c.pair, c.own), 1, 0.02);
 }

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <vector>
 
 #include "core/gaussian.h"
 #include "support/images.h"
@@ -156,6 +158,27 @@ TEST(Select, RiskAndSharesOfThreePixelsByHand) {
     for (std::size_t h = 0; h < 2; ++h)
       EXPECT_NEAR(static_cast<double>(out.half[h].at(0, i, 2)), (1 - s) * f[0][h][i] + s * f[1][h][i], 1e-4) << i;
   }
+}
+
+/// One correction is as good as the result itself, so that shares hang on the last digits of the risks.
+TEST(SelectCorrection, TheTilesDoNotShow) {
+  const Image truth =
+      image_of(150, 130, 3, [](int x, int y, int c) { return 1 + 0.3 * std::sin(0.3 * x + 0.1 * c * y); });
+  const HalfPair pair = test::pair_of(truth, 0.3, 11);
+  const double sigma = 2;
+  const auto make = [&](const std::array<Image, 2>& own, const Rect&) {
+    const std::array<Image, 2> blurred{gaussian_blur(own[0], sigma), gaussian_blur(own[1], sigma)};
+    return std::vector<std::array<Image, 2>>{{test::times(own[0], 1.0001), test::times(own[1], 1.0001)}, blurred};
+  };
+  const Corrections corrections{2, gaussian_reach(sigma), make};
+  const auto work = [&](std::size_t side) {
+    const std::size_t bytes = side * side * correction_bytes_per_pixel(3, 2);
+    return select_correction(pair, pair.color, corrections, SelectParams{}, bytes);
+  };
+  const std::array<Image, 2> whole = work(1000);
+  EXPECT_GT(test::max_difference(whole[0], pair.color[0]), 0.1);
+  for (const std::size_t side : {80u, 110u})
+    for (std::size_t h = 0; h < 2; ++h) EXPECT_TRUE(test::same_bits(work(side)[h], whole[h])) << side;
 }
 
 }  // namespace

@@ -27,6 +27,13 @@ TEST(Image, CropTakesTheRectangleOfEveryChannel) {
   EXPECT_EQ(part.at(2, 1, 1), Real(133));
 }
 
+TEST(Image, CropTakesSomeChannels) {
+  const Image part = crop(numbered(5, 4, 4), {1, 2, 4, 4}, 1, 2);
+  ASSERT_TRUE(part.same_shape(Image(3, 2, 2)));
+  EXPECT_EQ(part.at(0, 0, 0), Real(121));
+  EXPECT_EQ(part.at(2, 1, 1), Real(233));
+}
+
 TEST(Image, CropOfAPassThatIsNotThereIsNotThere) { EXPECT_TRUE(crop(Image(), {0, 0, 3, 3}).empty()); }
 
 TEST(Image, CropsPastedBackMakeTheImage) {

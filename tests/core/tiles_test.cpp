@@ -7,6 +7,10 @@
 namespace polyrecon {
 namespace {
 
+TEST(Inside, IsTheCoreSeenFromThePaddedPart) {
+  EXPECT_EQ(inside({{8, 16, 24, 20}, {5, 16, 27, 21}}), (Rect{3, 0, 19, 4}));
+}
+
 TEST(MakeTiles, CoverEachPixelOnceWithAlignedPaddingOfAtLeastTheHalo) {
   struct Case {
     int width, height, halo, alignment;
