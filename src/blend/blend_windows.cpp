@@ -239,7 +239,7 @@ void work_block(Blending& b, const Rect& block, Scratch& s) {
   s.weight.resize(static_cast<std::size_t>(s.window.stride));
   s.fit_pitch = (b.responses() + responses_at_once - 1) / responses_at_once * responses_at_once;
   s.fit.resize(static_cast<std::size_t>(s.window.stride) * s.fit_pitch);
-  s.distances.load(*b.source.guide, *b.source.guide_variance, block, p.radius, p.patch_radius);
+  s.distances.load(*b.source.guide, *b.source.guide_variance, block, p.radius, p.patch);
   std::vector<Real> limits;
   for (const Real bandwidth : p.bandwidths) limits.push_back(cut_exponent * bandwidth * bandwidth);
   const WindowSource source{b.source.response, b.source.noise_variance, b.source.features, b.source.guess};
@@ -357,7 +357,7 @@ int fit_halo(const FitParams& params) {
   int lattices = 1;
   for (int step = params.stride / 2; step >= 1; step /= 2) ++lattices;
   const int radii = std::max(lattices, 2);
-  return radii * params.radius + params.patch_radius + 1;
+  return radii * params.radius + params.patch.radius + 1;
 }
 
 std::vector<BlendedFit> fit_and_blend(const FitSource& source, const std::vector<unsigned char>& active,

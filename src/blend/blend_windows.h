@@ -8,13 +8,14 @@
 #include "core/image.h"
 #include "core/progress.h"
 #include "regression/basis.h"
+#include "regression/weights.h"
 
 namespace polyrecon {
 
 struct FitParams {
   int radius = 9;                ///< Of the window Omega_c, pixels.
   int stride = 2;                ///< Distance of the first lattice of window centres, pixels.
-  int patch_radius = 1;          ///< Of the patches whose distance weighs the window.
+  PatchParams patch;             ///< Of the patches whose distance weighs the window.
   std::vector<Real> bandwidths;  ///< h of the kernel K_h, rising; one blended image each.
   int max_order = 2;             ///< Highest Taylor order offered, 0..4.
   double order_tolerance = 0;    ///< See select_order.

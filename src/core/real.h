@@ -8,6 +8,9 @@ namespace polyrecon {
 /// Type of stored samples, chosen when the project is configured (POLYRECON_REAL). Sums are always double.
 using Real = POLYRECON_REAL;
 
+/// Relative error of rounding to a half float, at most.
+constexpr double half_float_rounding = 0x1p-11;
+
 /// A value as it is stored; what is greater than the greatest finite sample becomes that one.
 inline Real storable(double value) {
   constexpr double most = std::numeric_limits<Real>::max();

@@ -1,16 +1,21 @@
 #include "estimate/variance.h"
 
 #include <algorithm>
+#include <array>
+#include <vector>
 
 #include "core/gaussian.h"
 #include "core/parallel.h"
+#include "core/real.h"
 #include "core/sanitise.h"
+#include "estimate/spike_variance.h"
 #include "regression/least_squares.h"
 
 namespace polyrecon {
 namespace {
 
 constexpr int fit_radius = 3, fit_stride = 2, vote_radius = 2;
+constexpr double texture_correlation = 0.5;  // of neighbours, in what a fit leaves of texture
 constexpr double half_difference_sigma =
     1.5;  // pixels over which (A - B)^2 is averaged: one of them alone has one degree of freedom
 
@@ -25,12 +30,71 @@ double degrees_of_freedom(const NestedFactor& factor, const Window& window) {
   return trace;
 }
 
-/// Residual variance per channel of the fit around a centre; -1 where there are too few pixels for the columns.
-void residual_variance(const Image& y, const Image& features, int cx, int cy, Window& window, NestedFactor& factor,
-                       std::vector<Real>& weight, Real* out) {
+/// Calls of(i, j) for each two pixels of a window, rows of `width` pixels, that stand side by side or one above the
+/// other; returns their number.
+template <typename Of>
+int for_neighbours(const Rect& area, const Of& of) {
+  const int width = area.width(), height = area.height();
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      const auto i = static_cast<std::size_t>(y * width + x);
+      if (x + 1 < width) of(i, i + 1);
+      if (y + 1 < height) of(i, i + static_cast<std::size_t>(width));
+    }
+  return (width - 1) * height + width * (height - 1);
+}
+
+/// Mean of H over the pairs of neighbours.
+double neighbours_in_hat(const NestedFactor& factor, const Window& window, const Rect& area) {
+  double sum = 0;
+  const auto pitch = static_cast<std::size_t>(window.pitch);
+  const int pairs = for_neighbours(area, [&](std::size_t i, std::size_t j) {
+    for (std::size_t k = 0; k < static_cast<std::size_t>(factor.kept); ++k)
+      sum += static_cast<double>(factor.q[i * pitch + k]) * static_cast<double>(factor.q[j * pitch + k]);
+  });
+  return pairs > 0 ? sum / pairs : 0;
+}
+
+/// y less the fit, pixel by pixel: |y|^2 - sum z^2 would cancel to the rounding of q where the noise is small beside
+/// the light.
+void residuals_of(const NestedFactor& factor, const Window& window, const std::vector<Real>& weight, int channel,
+                  std::vector<double>& rest) {
+  const Real* values =
+      window.response.data() + static_cast<std::size_t>(channel) * static_cast<std::size_t>(window.stride);
+  std::array<double, BasisLayout::max_columns> z{};
+  project(factor, window, weight.data(), values, z.data());
+  rest.resize(static_cast<std::size_t>(window.count));
+  for (std::size_t j = 0; j < rest.size(); ++j) {
+    rest[j] = static_cast<double>(values[j]);
+    for (std::size_t k = 0; k < static_cast<std::size_t>(factor.kept); ++k)
+      rest[j] -= z[static_cast<std::size_t>(factor.kept_column[k])] *
+                 static_cast<double>(factor.q[j * static_cast<std::size_t>(window.pitch) + k]);
+  }
+}
+
+/// Variance of the noise in the residuals of a fit (variance.h).
+double noise_in(const std::vector<double>& rest, const Rect& area, double freedom, double hat) {
+  double squares = 0, covariance = 0;
+  for (const double r : rest) squares += r * r;
+  const int pairs = for_neighbours(area, [&](std::size_t i, std::size_t j) { covariance += rest[i] * rest[j]; });
+  if (pairs > 0) covariance /= pairs;
+  return std::max((squares / freedom - covariance / texture_correlation) / (1 + hat / texture_correlation), 0.0);
+}
+
+/// What the threads of estimate_variance work with.
+struct Scratch {
+  Window window;
+  NestedFactor factor;
+  std::vector<Real> weight;
+  std::vector<double> rest;
+};
+
+/// Variance of the noise per channel by the fit around a centre; -1 where there are too few pixels for the columns.
+void fit_noise(const Image& y, const Image& features, int cx, int cy, Scratch& s, Real* out) {
   const BasisLayout layout(features.channels(), 1);
+  Window& window = s.window;
   window.reserve(fit_radius, layout.columns(), 3);
-  weight.assign(static_cast<std::size_t>(window.stride), Real(0));
+  s.weight.assign(static_cast<std::size_t>(window.stride), Real(0));
   window.count = 0;
   const Rect area = intersect(grow({cx, cy, cx + 1, cy + 1}, fit_radius), y.bounds());
   for (int v = area.y0; v < area.y1; ++v)
@@ -38,25 +102,15 @@ void residual_variance(const Image& y, const Image& features, int cx, int cy, Wi
       const auto j = static_cast<std::size_t>(window.count++);
       window.x[j] = u;
       window.y[j] = v;
-      weight[j] = 1;
+      s.weight[j] = 1;
     }
   gather({&y, &y, &features, nullptr}, layout, cx, cy, fit_radius, window);
-  factorise(window, window.layout.columns(), weight.data(), factor);
-  const double freedom = window.count - degrees_of_freedom(factor, window);
-  std::array<double, BasisLayout::max_columns> z{};
+  factorise(window, window.layout.columns(), s.weight.data(), s.factor);
+  const double freedom = window.count - degrees_of_freedom(s.factor, window);
+  const double hat = neighbours_in_hat(s.factor, window, area);
   for (int c = 0; c < 3; ++c) {
-    const Real* values = window.response.data() + static_cast<std::size_t>(c) * static_cast<std::size_t>(window.stride);
-    project(factor, window, weight.data(), values, z.data());
-    // Summed pixel by pixel: |y|^2 - sum z^2 cancels to the rounding of q where the noise is small beside the light.
-    double residual = 0;
-    for (std::size_t j = 0; j < static_cast<std::size_t>(window.count); ++j) {
-      double rest = static_cast<double>(values[j]);
-      for (std::size_t k = 0; k < static_cast<std::size_t>(factor.kept); ++k)
-        rest -= z[static_cast<std::size_t>(factor.kept_column[k])] *
-                static_cast<double>(factor.q[j * static_cast<std::size_t>(window.pitch) + k]);
-      residual += rest * rest;
-    }
-    out[c] = freedom > 0.5 ? static_cast<Real>(residual / freedom) : Real(-1);
+    residuals_of(s.factor, window, s.weight, c, s.rest);
+    out[c] = freedom > 0.5 ? storable(noise_in(s.rest, area, freedom, hat)) : Real(-1);
   }
 }
 
@@ -84,7 +138,7 @@ Image mended_features(const Frame& frame) {
 /// The noise that remains where rounding to half floats, whose error is at most 2^-11 of the value, explains none of
 /// it.
 Real beyond_rounding(Real variance, Real value) {
-  const Real rounding = value * Real(0x1p-11);
+  const Real rounding = value * Real(half_float_rounding);
   return variance > rounding * rounding ? variance : 0;
 }
 
@@ -129,22 +183,21 @@ Image estimate_variance(const Frame& frame, Progress& progress) {
   const Image features = mended_features(frame);
   Image fits((frame.width() + fit_stride - 1) / fit_stride, (frame.height() + fit_stride - 1) / fit_stride, 3);
   parallel_for(static_cast<std::size_t>(fits.height()), progress, [&](std::size_t row) {
-    Window window;
-    NestedFactor factor;
-    std::vector<Real> weight;
+    Scratch scratch;
     Real variance[3];
     for (int x = 0; x < fits.width(); ++x) {
-      residual_variance(y, features, x * fit_stride, static_cast<int>(row) * fit_stride, window, factor, weight,
-                        variance);
+      fit_noise(y, features, x * fit_stride, static_cast<int>(row) * fit_stride, scratch, variance);
       for (int c = 0; c < 3; ++c) fits.at(x, static_cast<int>(row), c) = variance[c];
     }
   });
-  Image out(frame.width(), frame.height(), 3);
+  Image out = spike_variance(y);
   parallel_for(static_cast<std::size_t>(out.height()), progress, [&](std::size_t row) {
+    const int v = static_cast<int>(row);
     for (int c = 0; c < 3; ++c)
-      for (int x = 0; x < out.width(); ++x)
-        out.at(x, static_cast<int>(row), c) =
-            beyond_rounding(vote(fits, x, static_cast<int>(row), c), y.at(x, static_cast<int>(row), c));
+      for (int x = 0; x < out.width(); ++x) {
+        const Real value = y.at(x, v, c), noise = std::max(vote(fits, x, v, c), out.at(x, v, c));
+        out.at(x, v, c) = value == 0 ? Real(0) : beyond_rounding(noise, value);
+      }
   });
   return out;
 }

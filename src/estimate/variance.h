@@ -20,10 +20,15 @@ bool noise_is_measured(const Frame& frame);
 /// estimated.
 NoiseVariance noise_variance(const Frame& frame, Progress& progress);
 
-/// Estimates the noise variance of an image that comes without any: the residual variance sum r^2 / (n - tr H) of local
-/// fits (constant, features, plane over 7 x 7 pixels, every second pixel), of which each pixel takes the median of the
-/// fits around it: the few windows that straddle an edge, which call the edge noise, lose the vote. What rounding to
-/// half floats explains (a deviation of at most 2^-11 of the value) is no noise: 0.
+/// Estimates the noise variance of an image that comes without any, from the residuals r of local fits (constant,
+/// features, plane over 7 x 7 pixels, every second pixel). The noise of pixels is independent, what a fit leaves of
+/// texture is not: with N the variance of noise, T that of texture, a the correlation of its neighbours, h the mean of
+/// H over pairs of neighbours,
+///     s^2 = sum r^2 / (n - tr H) = N + T,   c = mean over the pairs of r_i r_j = a T - h N,
+///     N = (s^2 - c / a) / (1 + h / a),   a = 1/2.
+/// Each pixel takes the median of the fits around it: the few windows that straddle an edge lose the vote. It is raised
+/// where the pixel itself is a spike (spike_variance.h). Zero radiance has seen no light in any sample and is exact; so
+/// is what rounding to half floats explains (a deviation of at most 2^-11 of the value).
 Image estimate_variance(const Frame& frame, Progress& progress);
 
 }  // namespace polyrecon

@@ -39,7 +39,7 @@ void validate(const Params& params) {
   require(params.radius >= 1 && params.radius <= 20, "the window radius must be 1 to 20 pixels");
   require(params.stride >= 1 && params.stride <= params.radius, "the stride must be 1 pixel to the window radius");
   require(params.enough >= 0, "the error that is enough must not be negative");
-  for (const int radius : {params.patch_radius, params.estimated_patch_radius})
+  for (const int radius : {params.patch.radius, params.estimated_patch.radius})
     require(radius >= 0 && radius <= 4, "the patch radius must be 0 to 4 pixels");
   require(params.max_order >= 0 && params.max_order <= BasisLayout::max_order, "the order must be 0 to 4");
   require(params.temporal.radius >= 0 && params.temporal.radius <= 8, "the frame radius must be 0 to 8 frames");

@@ -26,13 +26,14 @@ struct Parts {
 
 /// Everything that steers a reconstruction; the only home of its defaults.
 struct Params {
-  int stages = 2;                  ///< Rounds of error estimation, equations (8) and (9); 1..4.
-  int levels = 3;                  ///< Resolutions worked: the frame, its half, its quarter; 1..5.
-  int radius = 10;                 ///< Of the windows, pixels; 1..20.
-  int stride = 4;                  ///< Distance of the window centres where windows agree, pixels; 1..radius.
-  int patch_radius = 1;            ///< Of the patches that weigh a window; 0..4.
-  int estimated_patch_radius = 2;  ///< The same where the noise is estimated from the image: it knows no single pixels.
-  int max_order = 2;               ///< Highest Taylor order offered to the selection, 0..4.
+  int stages = 2;                            ///< Rounds of error estimation, equations (8) and (9); 1..4.
+  int levels = 3;                            ///< Resolutions worked: the frame, its half, its quarter; 1..5.
+  int radius = 10;                           ///< Of the windows, pixels; 1..20.
+  int stride = 4;                            ///< Distance of the window centres where windows agree, pixels; 1..radius.
+  PatchParams patch;                         ///< Of the patches that weigh a window; radius 0..4.
+  PatchParams estimated_patch{2, Real(10)};  ///< The same where the noise is estimated from the image, which knows no
+                                             ///< single pixels.
+  int max_order = 2;                         ///< Highest Taylor order offered to the selection, 0..4.
   std::vector<Real> first_bandwidths{Real(0.7)};              ///< Stage 1. Rising, as the others.
   std::vector<Real> later_bandwidths{Real(0.35), Real(0.7)};  ///< Later stages, weights from the noisy half.
   std::vector<Real> guided_bandwidths{Real(0.5), Real(1)};    ///< Later stages, weights from the stage before.
@@ -48,7 +49,7 @@ struct Params {
   std::size_t max_memory = std::size_t{4} << 30;  ///< Bytes; larger frames are worked in tiles.
 
   FitParams fit(const std::vector<Real>& bandwidths) const {
-    return {radius, stride, patch_radius, bandwidths, max_order, order_tolerance, coverage, parts.shrinkage};
+    return {radius, stride, patch, bandwidths, max_order, order_tolerance, coverage, parts.shrinkage};
   }
   /// Of stage 1. Where others follow it only guesses mu for them, and fewer windows do.
   FitParams first_fit() const {

@@ -180,7 +180,7 @@ Result reconstruct(Frame& frame, const std::vector<TimedNeighbour>& neighbours, 
                    Progress& progress) {
   validate(asked);
   Params params = asked;
-  if (!noise_is_measured(frame)) params.patch_radius = params.estimated_patch_radius;
+  if (!noise_is_measured(frame)) params.patch = params.estimated_patch;
   FrameShape shape = shape_of(frame);
   shape.beside += neighbour_channels(shape, static_cast<int>(neighbours.size()));
   require_memory("layer '" + frame.beauty.name + "'", shape, params);

@@ -13,14 +13,29 @@ namespace {
 /// than the rounding of float data, at any exposure.
 constexpr Real relative_epsilon = Real(1e-10);
 
-/// Adds the noise-aware squared differences between pixel a and a row of pixels; a and b: the planes of `load`.
-POLYRECON_SIMD void add_differences(const Real* a, const Real* const* b, Real* out, int n) {
+/// What two pixels differ by beyond their noise, from the differences of their colours.
+inline Real difference(Real dr, Real dg, Real db, Real a_noise, Real b_noise, Real scale) {
+  const Real noise = a_noise + (a_noise < b_noise ? a_noise : b_noise);
+  return (dr * dr + dg * dg + db * db - noise) / scale;
+}
+
+/// Adds the differences between pixel a and a row of pixels, each up to `most`; a and b: the planes of `load`.
+POLYRECON_SIMD void add_differences(const Real* a, const Real* const* b, Real most, Real* out, int n) {
   const Real ar = a[0], ag = a[1], ab = a[2], an = a[3], as = a[4];
   const Real *br = b[0], *bg = b[1], *bb = b[2], *bn = b[3], *bs = b[4];
   for (int j = 0; j < n; ++j) {
-    const Real dr = ar - br[j], dg = ag - bg[j], db = ab - bb[j];
-    const Real noise = an + (an < bn[j] ? an : bn[j]);
-    out[j] += (dr * dr + dg * dg + db * db - noise) / (as + bs[j]);
+    const Real d = difference(ar - br[j], ag - bg[j], ab - bb[j], an, bn[j], as + bs[j]);
+    out[j] += d < most ? d : most;
+  }
+}
+
+/// Adds what add_differences leaves out.
+POLYRECON_SIMD void add_excess(const Real* a, const Real* const* b, Real most, Real* out, int n) {
+  const Real ar = a[0], ag = a[1], ab = a[2], an = a[3], as = a[4];
+  const Real *br = b[0], *bg = b[1], *bb = b[2], *bn = b[3], *bs = b[4];
+  for (int j = 0; j < n; ++j) {
+    const Real d = difference(ar - br[j], ag - bg[j], ab - bb[j], an, bn[j], as + bs[j]);
+    out[j] += d < most ? Real(0) : d - most;
   }
 }
 
@@ -46,9 +61,11 @@ POLYRECON_SIMD double sum_of(const Real* values, int n) {
 }  // namespace
 
 void PatchDistances::load(const Image& guide, const Image& variance, const Rect& block, int window_radius,
-                          int patch_radius) {
+                          const PatchParams& patch) {
+  const int patch_radius = patch.radius;
   radius_ = window_radius;
   patch_radius_ = patch_radius;
+  most_ = patch.most_around;
   bounds_ = guide.bounds();
   loaded_ = grow(block, window_radius + patch_radius);
   loaded_planes_.resize(planes * loaded_.area());
@@ -108,18 +125,22 @@ const Real* PatchDistances::row_sums(int y) {
   summed_[slot_of(y)] = y;
   copy_rows(y - radius_, y + radius_ + 1);
   std::fill(sums, sums + samples, Real(0));
-  const std::size_t size = strip_.size() / planes;
-  const Real* const first = strip_.data() + static_cast<std::ptrdiff_t>(y - radius_ - loaded_.y0) * pitch_;
   for (int px = 0; px <= 2 * patch_radius_; ++px) {
-    const Real* b[planes];
-    Real a[planes];
-    for (std::size_t p = 0; p < planes; ++p) {
-      b[p] = first + p * size + px;
-      a[p] = b[p][radius_ * pitch_ + radius_];
-    }
-    add_differences(a, b, sums, samples);
+    const RowOfPixels row = pixels_of(y, px);
+    add_differences(row.a, row.b, most_, sums, samples);
   }
   return sums;
+}
+
+PatchDistances::RowOfPixels PatchDistances::pixels_of(int y, int px) const {
+  RowOfPixels row;
+  const std::size_t size = strip_.size() / planes;
+  const Real* const first = strip_.data() + static_cast<std::ptrdiff_t>(y - radius_ - loaded_.y0) * pitch_;
+  for (std::size_t p = 0; p < planes; ++p) {
+    row.b[p] = first + p * size + px;
+    row.a[p] = row.b[p][radius_ * pitch_ + radius_];
+  }
+  return row;
 }
 
 void PatchDistances::sum_patches(int center_y) {
@@ -128,6 +149,9 @@ void PatchDistances::sum_patches(int center_y) {
   std::copy(top, top + samples, distance_.begin());
   for (int y = center_y - patch_radius_ + 1; y <= center_y + patch_radius_; ++y)
     add_row(row_sums(y), distance_.data(), samples);
+  if (most_ == std::numeric_limits<Real>::infinity()) return;
+  const RowOfPixels row = pixels_of(center_y, patch_radius_);
+  add_excess(row.a, row.b, most_, distance_.data(), samples);
 }
 
 void PatchDistances::window_of(int center_x, int center_y, const std::vector<Real>& limits, Window& window) {

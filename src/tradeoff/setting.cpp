@@ -56,9 +56,9 @@ void add_numbers(const Frame& frame, Settings& list) {
   list.vary("coverage", "coverage 6", [](Setting& s) { s.params.coverage = 6; });
   const Params standard = params_for(Quality::Standard);
   for (const int radius : {0, 1, 2, 3})
-    if (radius != (noise_is_measured(frame) ? standard.patch_radius : standard.estimated_patch_radius))
+    if (radius != (noise_is_measured(frame) ? standard.patch.radius : standard.estimated_patch.radius))
       list.vary("patch", "patch " + std::to_string(radius),
-                [&](Setting& s) { s.params.patch_radius = s.params.estimated_patch_radius = radius; });
+                [&](Setting& s) { s.params.patch.radius = s.params.estimated_patch.radius = radius; });
 }
 
 void add_bandwidths(Settings& list) {

@@ -42,13 +42,13 @@ void patch_distances(benchmark::State& state) {
   Window window;
   window.reserve(params.radius, 1, 3);
   for ([[maybe_unused]] const auto pass : state) {
-    distances.load(pair.color[1], pair.variance, block, params.radius, params.patch_radius);
+    distances.load(pair.color[1], pair.variance, block, params.radius, params.patch);
     for (std::size_t k = 0; k < centers.x.size(); ++k)
       distances.window_of(centers.x[k], centers.y[k], {cut_exponent}, window);
   }
   count_windows(state, centers.x.size());
   // add_differences: 13 operations on 7 samples of a pixel, for each pixel of the patch.
-  const double differences = window_pixels() * (2 * params.patch_radius + 1) * (2 * params.patch_radius + 1);
+  const double differences = window_pixels() * (2 * params.patch.radius + 1) * (2 * params.patch.radius + 1);
   count_work(state, centers.x.size(), 13 * differences, 7 * sizeof(Real) * differences);
 }
 BENCHMARK(patch_distances)->ArgName("stride")->Arg(1)->Arg(4)->Unit(benchmark::kMicrosecond);

@@ -60,7 +60,7 @@ void each_window(const HalfPair& pair, const std::function<void(Weighed&)>& use)
   for (std::size_t h = 0; h < 2; ++h) {
     const WindowSource source{&pair.color[h], &pair.variance, &pair.features[1 - h], nullptr};
     for (const Rect& block : aligned_blocks(pair.variance.bounds(), block_size)) {
-      distances.load(pair.color[1 - h], pair.variance, block, params.radius, params.patch_radius);
+      distances.load(pair.color[1 - h], pair.variance, block, params.radius, params.patch);
       for (int y = block.y0; y < block.y1; y += step)
         for (int x = block.x0; x < block.x1; x += step)
           for (const Real bandwidth : params.later_bandwidths) {

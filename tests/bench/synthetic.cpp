@@ -59,7 +59,7 @@ Window full_window(const HalfPair& pair, const BasisLayout& layout, int radius) 
   Window window;
   window.reserve(radius, layout.columns(), 3);
   PatchDistances distances;
-  distances.load(pair.color[1], pair.variance, {x, y, x + 1, y + 1}, radius, 1);
+  distances.load(pair.color[1], pair.variance, {x, y, x + 1, y + 1}, radius, {1});
   distances.window_of(x, y, {std::numeric_limits<Real>::max()}, window);
   gather({&pair.color[0], &pair.variance, &pair.features[1], &pair.color[1]}, layout, x, y, radius, window);
   return window;

@@ -61,7 +61,7 @@ FitParams small_windows() {
   FitParams params;
   params.radius = 3;
   params.stride = 2;
-  params.patch_radius = 1;
+  params.patch.radius = 1;
   params.bandwidths = {Real(0.7), Real(1.2)};
   params.max_order = 2;
   params.coverage = 0;
@@ -97,7 +97,7 @@ class Reference {
       return static_cast<double>(image.at(std::clamp(u, 0, width_ - 1), std::clamp(v, 0, height_ - 1), c));
     };
     double sum = 0;
-    const int r = params_.patch_radius;
+    const int r = params_.patch.radius;
     for (int py = -r; py <= r; ++py)
       for (int px = -r; px <= r; ++px) {
         double square = 0, va = 0, vb = 0, floor = 0;

@@ -107,7 +107,7 @@ Params random_params(Random& random) {
   params.levels = 1 + random.below(3);
   params.radius = 1 + random.below(9);
   params.stride = 1 + random.below(std::min(params.radius, 4));
-  params.patch_radius = params.estimated_patch_radius = random.below(3);
+  params.patch.radius = params.estimated_patch.radius = random.below(3);
   params.max_order = random.below(5);
   if (random.uniform() < 0.3) params.guided_bandwidths.clear();
   params.reconstruct_alpha = random.uniform() < 0.5;

@@ -55,8 +55,8 @@ TEST(Reconstruct, TakesWiderPatchesWhereTheNoiseIsEstimated) {
   Scene scene = make_scene(48, 40, 0.4, 9);
   const auto with = [&](int measured, int estimated) {
     Params params = quick();
-    params.patch_radius = measured;
-    params.estimated_patch_radius = estimated;
+    params.patch.radius = measured;
+    params.estimated_patch.radius = estimated;
     return run(scene.frame, params).beauty;
   };
   EXPECT_TRUE(test::same_bits(with(1, 2), with(1, 1)));

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "support/images.h"
 #include "support/random.h"
@@ -28,8 +29,10 @@ Pictures noisy_pictures(double exposure = 1) {
                           [&](int, int, int) { return exposure * exposure * 0.04 * (0.5 + random.uniform()); })};
 }
 
+constexpr Real infinity = std::numeric_limits<Real>::infinity();
+
 /// The definition in the header, pixel by pixel, in double.
-double distance(const Pictures& p, int cx, int cy, int x, int y, int patch_radius) {
+double distance(const Pictures& p, int cx, int cy, int x, int y, int patch_radius, Real most_around = infinity) {
   double sum = 0;
   for (int py = -patch_radius; py <= patch_radius; ++py)
     for (int px = -patch_radius; px <= patch_radius; ++px) {
@@ -44,15 +47,17 @@ double distance(const Pictures& p, int cx, int cy, int x, int y, int patch_radiu
         vb += at(p.variance, x, y, c);
         scale += 1e-10 * (a * a + b * b);
       }
-      sum += (square - (va + std::min(va, vb))) / (scale + va + vb);
+      const double difference = (square - (va + std::min(va, vb))) / (scale + va + vb);
+      sum += px == 0 && py == 0 ? difference : std::min(difference, static_cast<double>(most_around));
     }
   return sum / ((2 * patch_radius + 1) * (2 * patch_radius + 1));
 }
 
 /// The window around a centre, of all pixels whose distance is below limit.
-Window window_at(const Pictures& p, int cx, int cy, int radius, int patch_radius, Real limit) {
+Window window_at(const Pictures& p, int cx, int cy, int radius, int patch_radius, Real limit,
+                 Real most_around = infinity) {
   PatchDistances distances;
-  distances.load(p.guide, p.variance, {0, 0, width, height}, radius, patch_radius);
+  distances.load(p.guide, p.variance, {0, 0, width, height}, radius, {patch_radius, most_around});
   Window window;
   window.reserve(radius, 1, 3);
   distances.window_of(cx, cy, {limit}, window);
@@ -65,14 +70,14 @@ constexpr Real everything = std::numeric_limits<Real>::max();
 TEST(PatchDistances, AreTheirDefinition) {
   const Pictures p = noisy_pictures();
   for (const int radius : {1, 3, 9})
-    for (const int patch_radius : {0, 1, 2})
+    for (const auto& [patch_radius, most] : {std::pair{0, Real(0.5)}, {1, infinity}, {2, infinity}, {2, Real(0.5)}})
       for (int cy = 0; cy < height; ++cy)
         for (int cx = 0; cx < width; ++cx) {
-          const Window window = window_at(p, cx, cy, radius, patch_radius, everything);
+          const Window window = window_at(p, cx, cy, radius, patch_radius, everything, most);
           const Rect inside = intersect(grow({cx, cy, cx + 1, cy + 1}, radius), p.guide.bounds());
           ASSERT_EQ(static_cast<std::size_t>(window.count), inside.area());
           for (std::size_t j = 0; j < inside.area(); ++j) {
-            const double expected = std::max(distance(p, cx, cy, window.x[j], window.y[j], patch_radius), 0.0);
+            const double expected = std::max(distance(p, cx, cy, window.x[j], window.y[j], patch_radius, most), 0.0);
             ASSERT_NEAR(static_cast<double>(window.distance[j]), expected, 1e-5 * std::max(1.0, expected))
                 << cx << " " << cy << " -> " << window.x[j] << " " << window.y[j];
           }
@@ -140,7 +145,7 @@ TEST(PatchDistances, TheLimitLeavesPixelsOut) {
 TEST(PatchDistances, LimitsShareOneList) {
   const Pictures p = noisy_pictures();
   PatchDistances distances;
-  distances.load(p.guide, p.variance, {0, 0, width, height}, 4, 1);
+  distances.load(p.guide, p.variance, {0, 0, width, height}, 4, {1});
   Window all, some;
   all.reserve(4, 1, 3);
   some.reserve(4, 1, 3);
@@ -165,7 +170,7 @@ TEST(PatchDistances, LimitsShareOneList) {
 TEST(PatchDistances, HaveTheSameBitsInAnyOrderOfTheCentres) {
   const Pictures p = noisy_pictures();
   PatchDistances shared;
-  shared.load(p.guide, p.variance, {0, 0, width, height}, 3, 2);
+  shared.load(p.guide, p.variance, {0, 0, width, height}, 3, {2});
   Window window;
   window.reserve(3, 1, 3);
   const int order[] = {0, 1, 4, 3, 9, 10, 2, 2, 5, 0};  // rows: forth, back, far, again
