@@ -199,12 +199,15 @@ class Resuming(Folder):
 
     def test_case32_killed_at_any_moment_it_goes_on_to_the_same_picture(self):
         whole, broken = self.folder / "whole", self.folder / "broken ä #{"
+        whole.mkdir()
         broken.mkdir()
-        loop(whole, Budget(samples=24))
+        start = time.monotonic()
+        self.assertTrue(self.run_killed(whole, 300))
+        seconds = time.monotonic() - start  # of all: machines differ by more than a constant would bear
         seed = random.randrange(1 << 30)
         moments, ended, runs = random.Random(seed), False, 0
         while not ended and runs < 15:
-            ended = self.run_killed(broken, moments.uniform(0.4, 1.0) * 1.5**runs)
+            ended = self.run_killed(broken, seconds * moments.uniform(0.2, 0.6) * 1.3**runs)
             runs += 1
         self.assertTrue(ended, f"seed {seed}: never ended")
         self.assertGreater(runs, 1, f"seed {seed}: never killed")
