@@ -5,14 +5,14 @@ namespace polyrecon {
 
 const std::array<StepFigures, step_count>& measured_steps() {
   static const std::array<StepFigures, step_count> figures{{
-      {0.141, 1.297},  // draft, order 0
-      {0.138, 1.265},  // draft
-      {0.355, 1.067},  // draft, stages 2
-      {0.314, 1.226},  // stages 1
+      {0.155, 1.296},  // draft, order 0
+      {0.142, 1.258},  // draft
+      {0.329, 1.064},  // draft, stages 2
+      {0.325, 1.223},  // stages 1
       {1, 1},          // standard
-      {1.11, 0.9894},  // order 3
-      {1.74, 0.9805},  // best, coverage 2
-      {2.1, 0.9795},   // best
+      {1.29, 0.9898},  // order 3
+      {2.16, 0.9798},  // best, coverage 2
+      {2.58, 0.9772},  // best
   }};
   return figures;
 }
