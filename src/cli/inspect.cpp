@@ -12,6 +12,7 @@
 #include "cli/commands.h"
 #include "cli/read_limits.h"
 #include "cli/report_output.h"
+#include "estimate/variance.h"
 #include "features/prepare.h"
 #include "pipeline/savings.h"
 #include "tradeoff/plan.h"
@@ -77,9 +78,11 @@ const LayerStatistics* statistics_of(const Inspection& found, const std::string&
 std::vector<Decision> effects_of(const InspectOptions& o, const Inspection& found) {
   const auto& chosen = found.source.chosen;
   if (std::none_of(chosen.begin(), chosen.end(), [](const RoleChoice& c) { return c.role == Role::Beauty; })) return {};
-  const Frame frame = read_frame(o.input, o.read).frame;
-  std::vector<Decision> decisions = look_at(frame).decisions;
+  Frame frame = read_frame(o.input, o.read).frame;
   Progress silent;
+  require_usable(frame);
+  estimate_feature_variance(frame, silent);
+  std::vector<Decision> decisions = look_at(frame).decisions;
   const double seconds = standard_seconds(run_pilot(frame, silent), measured_steps());
   estimate_savings(frame, params_for(Quality::Standard).cleaning, 0, seconds, decisions);
   return decisions;

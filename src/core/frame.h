@@ -15,8 +15,10 @@ struct Pass {
   Image variance;    ///< Variance of the mean, same shape; empty where unknown.
   Image half_a;      ///< Means over two independent halves of the samples; both there or both empty.
   Image half_b;
+  bool variance_is_estimated = false;  ///< From the mean (estimate/variance.h), not told by the file.
 
   bool has_halves() const { return !half_a.empty(); }
+  bool noise_is_told() const { return !variance.empty() || has_halves(); }
 };
 
 enum class FeatureKind { Normal, Albedo, Depth, Visibility };
@@ -47,7 +49,7 @@ struct Frame {
 /// The size of a frame as memory sees it, known before any pixel is read.
 struct FrameShape {
   std::size_t pixels = 0;
-  int channels = 0;          ///< Of all passes in use with their variances and halves.
+  int channels = 0;          ///< Of all passes in use with their variances (told or estimated) and halves.
   int color_channels = 3;    ///< Of the beauty and the AOVs.
   int feature_channels = 0;  ///< Of the features' means.
   int prior_channels = 0;    ///< Of the prior, which waits beside the fits for its turn.

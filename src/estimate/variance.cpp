@@ -93,7 +93,7 @@ struct Scratch {
 void fit_noise(const Image& y, const Image& features, int cx, int cy, Scratch& s, Real* out) {
   const BasisLayout layout(features.channels(), 1);
   Window& window = s.window;
-  window.reserve(fit_radius, layout.columns(), 3);
+  window.reserve(fit_radius, layout.columns(), y.channels());
   s.weight.assign(static_cast<std::size_t>(window.stride), Real(0));
   window.count = 0;
   const Rect area = intersect(grow({cx, cy, cx + 1, cy + 1}, fit_radius), y.bounds());
@@ -108,7 +108,7 @@ void fit_noise(const Image& y, const Image& features, int cx, int cy, Scratch& s
   factorise(window, window.layout.columns(), s.weight.data(), s.factor);
   const double freedom = window.count - degrees_of_freedom(s.factor, window);
   const double hat = neighbours_in_hat(s.factor, window, area);
-  for (int c = 0; c < 3; ++c) {
+  for (int c = 0; c < y.channels(); ++c) {
     residuals_of(s.factor, window, s.weight, c, s.rest);
     out[c] = freedom > 0.5 ? storable(noise_in(s.rest, area, freedom, hat)) : Real(-1);
   }
@@ -169,37 +169,49 @@ Image variance_from_halves(const Pass& beauty) {
 
 }  // namespace
 
-bool noise_is_measured(const Frame& frame) { return !frame.beauty.variance.empty() || frame.beauty.has_halves(); }
+bool noise_is_measured(const Frame& frame) { return frame.beauty.noise_is_told(); }
 
-NoiseVariance noise_variance(const Frame& frame, Progress& progress) {
-  if (!frame.beauty.variance.empty()) return {frame.beauty.variance, "from the file", true};
-  if (frame.beauty.has_halves()) return {variance_from_halves(frame.beauty), "from the half buffers", true};
-  return {estimate_variance(frame, progress), "estimated from the image", false};
-}
+bool variance_is_estimated(FeatureKind kind, bool told) { return !told && kind != FeatureKind::Depth; }
 
-Image estimate_variance(const Frame& frame, Progress& progress) {
-  Image y = frame.beauty.mean;
-  mend(y, 2);
-  const Image features = mended_features(frame);
-  Image fits((frame.width() + fit_stride - 1) / fit_stride, (frame.height() + fit_stride - 1) / fit_stride, 3);
+Image estimate_variance(const Image& y, const Image& features, Progress& progress) {
+  Image fits((y.width() + fit_stride - 1) / fit_stride, (y.height() + fit_stride - 1) / fit_stride, y.channels());
   parallel_for(static_cast<std::size_t>(fits.height()), progress, [&](std::size_t row) {
     Scratch scratch;
-    Real variance[3];
+    std::vector<Real> variance(static_cast<std::size_t>(y.channels()));
     for (int x = 0; x < fits.width(); ++x) {
-      fit_noise(y, features, x * fit_stride, static_cast<int>(row) * fit_stride, scratch, variance);
-      for (int c = 0; c < 3; ++c) fits.at(x, static_cast<int>(row), c) = variance[c];
+      fit_noise(y, features, x * fit_stride, static_cast<int>(row) * fit_stride, scratch, variance.data());
+      for (int c = 0; c < y.channels(); ++c)
+        fits.at(x, static_cast<int>(row), c) = variance[static_cast<std::size_t>(c)];
     }
   });
   Image out = spike_variance(y);
   parallel_for(static_cast<std::size_t>(out.height()), progress, [&](std::size_t row) {
     const int v = static_cast<int>(row);
-    for (int c = 0; c < 3; ++c)
+    for (int c = 0; c < y.channels(); ++c)
       for (int x = 0; x < out.width(); ++x) {
         const Real value = y.at(x, v, c), noise = std::max(vote(fits, x, v, c), out.at(x, v, c));
         out.at(x, v, c) = value == 0 ? Real(0) : beyond_rounding(noise, value);
       }
   });
   return out;
+}
+
+NoiseVariance noise_variance(const Frame& frame, Progress& progress) {
+  if (!frame.beauty.variance.empty()) return {frame.beauty.variance, "from the file", true};
+  if (frame.beauty.has_halves()) return {variance_from_halves(frame.beauty), "from the half buffers", true};
+  Image y = frame.beauty.mean;
+  mend(y, 2);
+  return {estimate_variance(y, mended_features(frame), progress), "estimated from the image", false};
+}
+
+void estimate_feature_variance(Frame& frame, Progress& progress) {
+  for (Feature& feature : frame.features) {
+    if (!variance_is_estimated(feature.kind, feature.pass.noise_is_told())) continue;
+    Image mean = feature.pass.mean;
+    mend(mean, 2);
+    feature.pass.variance = estimate_variance(mean, Image(mean.width(), mean.height(), 0), progress);
+    feature.pass.variance_is_estimated = true;
+  }
 }
 
 }  // namespace polyrecon

@@ -29,6 +29,15 @@ NoiseVariance noise_variance(const Frame& frame, Progress& progress);
 /// Each pixel takes the median of the fits around it: the few windows that straddle an edge lose the vote. It is raised
 /// where the pixel itself is a spike (spike_variance.h). Zero radiance has seen no light in any sample and is exact; so
 /// is what rounding to half floats explains (a deviation of at most 2^-11 of the value).
-Image estimate_variance(const Frame& frame, Progress& progress);
+/// y: finite, any channels. features: finite, of y's size, may have no channels. Returns y's shape, y's unit squared.
+Image estimate_variance(const Image& y, const Image& features, Progress& progress);
+
+/// Whether a feature's noise is estimated: where no variance and no half buffers tell it. Depth, of which the estimate
+/// gains nothing, is taken as it is.
+bool variance_is_estimated(FeatureKind kind, bool told);
+
+/// Gives the features whose noise is estimated a variance: renderers carry features through reflections and blur, and
+/// a model that takes their noise for detail keeps the beauty's with it.
+void estimate_feature_variance(Frame& frame, Progress& progress);
 
 }  // namespace polyrecon

@@ -231,13 +231,14 @@ std::array<Image, 2> halves_of(Pass& pass, const Image& half_variance, std::uint
   return split_halves(mean, variance, stream);
 }
 
-/// Noise variance of one half of a feature; empty where nothing is known of it.
+/// Noise variance of one half of a feature; empty where nothing is known of it. Where it is estimated both halves are
+/// the mean itself: what a split adds costs as much as it tells.
 Image feature_half_variance(Pass& pass, std::size_t& mended) {
   if (!pass.variance.empty()) {
     Image variance = std::move(pass.variance);
     mended += mend(variance, mend_reach);
     make_non_negative(variance);
-    scale(variance, 2);
+    if (!pass.variance_is_estimated) scale(variance, 2);
     return variance;
   }
   if (!pass.has_halves()) return {};
@@ -295,7 +296,7 @@ void append_channels(const Image& from, Image& to, int& channel) {
 std::array<Image, 2> prepared_feature(Feature feature, const FeatureUse& use, std::size_t stream,
                                       const PrefilterParams& cleaning, std::size_t& mended, Progress& progress) {
   Image variance = feature_half_variance(feature.pass, mended);
-  auto halves = halves_of(feature.pass, variance, stream, mended);
+  auto halves = halves_of(feature.pass, feature.pass.variance_is_estimated ? Image() : variance, stream, mended);
   if (use.clean && !variance.empty()) {
     mend(feature.pass.mean, mend_reach);
     transform_variance(use, feature.pass.mean, variance);
@@ -311,7 +312,7 @@ Decision decide_on_cleaning(const std::string& feature, const Pass& pass, const 
                             const Effects& effects) {
   const std::string effect = feature + " cleaning";
   if (!effects.cleaning) return {effect, false, "not asked for"};
-  if (pass.variance.empty() && !pass.has_halves()) return {effect, false, "nothing is known of its noise"};
+  if (!pass.noise_is_told()) return {effect, false, "nothing is known of its noise"};
   if (!effects.decide) return {effect, true, "asked for"};
   const bool noisy = look.noise > noise_floor * look.variance;
   if (!noisy) return {effect, false, "the pass is clean", Spared::Cleaning, pass.mean.channels()};

@@ -213,6 +213,8 @@ class FrameBuilder {
       const bool feature = pass.role == Role::Normal || pass.role == Role::Albedo || pass.role == Role::Depth ||
                            pass.role == Role::Visibility;
       if (feature) shape.feature_channels += channels_of(pass.role);
+      if (feature && pass.role != Role::Depth && pass.variance < 0 && pass.half_a < 0)
+        shape.channels += channels_of(pass.role);  // for a variance that is estimated (estimate/variance.h)
       if (pass.role == Role::Prior)
         for (const int index : {pass.mean, pass.variance, pass.half_a, pass.half_b})
           shape.prior_channels += index < 0 ? 0 : channels_of(pass.role);

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/error.h"
+#include "estimate/variance.h"
 #include "pipeline/stage.h"
 
 namespace polyrecon {
@@ -34,7 +35,9 @@ FrameShape shape_of(const Frame& frame) {
   for (const Pass& aov : frame.aovs) add(aov);
   for (const Feature& feature : frame.features) {
     add(feature.pass);
-    shape.feature_channels += feature.pass.mean.channels();
+    const int channels = feature.pass.mean.channels();
+    shape.feature_channels += channels;
+    if (variance_is_estimated(feature.kind, feature.pass.noise_is_told())) shape.channels += channels;
   }
   return shape;
 }

@@ -192,11 +192,14 @@ Result reconstruct(Frame& frame, const std::vector<TimedNeighbour>& neighbours, 
   report.height = frame.height();
   report.energy_before = energy_of(frame.beauty.mean);
 
+  require_usable(frame);
+  const auto rows = static_cast<std::size_t>(frame.height());
+  const NoiseVariance noise = timed(report, progress, "noise variance", rows * 2 * (1 + frame.features.size()), [&] {
+    if (params.effects.cleaning) estimate_feature_variance(frame, progress);
+    return noise_variance(frame, progress);
+  });
   const Preparation preparation = look_at(frame, params.effects);
   report.decisions = preparation.decisions;
-  const auto rows = static_cast<std::size_t>(frame.height());
-  const NoiseVariance noise =
-      timed(report, progress, "noise variance", rows * 2, [&] { return noise_variance(frame, progress); });
   report.variance_source = noise.source;
   Prepared prepared = timed(report, progress, "features", rows / 4, [&] {
     return prepare(frame, preparation, noise.variance, params.cleaning, params.reconstruct_alpha, progress);

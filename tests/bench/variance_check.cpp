@@ -42,7 +42,7 @@ void check(const char* render, const char* reference_path) {
   const Image known = frame.beauty.variance;
   frame.beauty.variance = frame.beauty.half_a = frame.beauty.half_b = Image();
   polyrecon::Progress silent;
-  const Image estimate = polyrecon::estimate_variance(frame, silent);
+  const Image estimate = polyrecon::noise_variance(frame, silent).variance;
   const std::vector<double> truth = true_squares(frame, reference);
   std::vector<std::size_t> order(truth.size());
   std::iota(order.begin(), order.end(), std::size_t{0});

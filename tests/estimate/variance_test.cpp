@@ -4,6 +4,8 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
+#include <vector>
 
 #include "support/images.h"
 #include "support/random.h"
@@ -175,6 +177,49 @@ TEST(NoiseVariance, OfBadAndTinyImagesIsFiniteAndNotNegative) {
     for (int c = 0; c < 3; ++c)
       for (std::size_t i = 0; i < out.pixels(); ++i) EXPECT_GE(out.plane(c)[i], Real(0));
   }
+}
+
+/// Of a frame whose features come without variance and halves, the variance that each is given; empty for none.
+std::vector<Image> feature_variances(Frame frame) {
+  Progress silent;
+  estimate_feature_variance(frame, silent);
+  std::vector<Image> out;
+  for (Feature& feature : frame.features) out.push_back(std::move(feature.pass.variance));
+  return out;
+}
+
+TEST(FeatureVariance, IsEstimatedOfWhatComesWithoutButForDepth) {
+  Frame frame;
+  const double sigma = 0.05;
+  test::Random random(31);
+  const auto noisy = [&](int x, int, int) { return 0.2 + 0.002 * x + sigma * random.normal(); };
+  for (const FeatureKind kind : {FeatureKind::Albedo, FeatureKind::Normal, FeatureKind::Depth}) {
+    const int channels = kind == FeatureKind::Depth ? 1 : 3;
+    frame.features.push_back({kind, {"", test::image_of(width, height, channels, noisy), {}, {}, {}}});
+  }
+  const std::vector<Image> found = feature_variances(frame);
+  const Image truth(width, height, 3, Real(sigma * sigma));
+  // The spikes of ordinary noise, too, are taken for spikes.
+  for (const int k : {0, 1}) EXPECT_NEAR(mean_ratio(found[static_cast<std::size_t>(k)], truth), 1.1, 0.2);
+  EXPECT_TRUE(found[2].empty());
+}
+
+TEST(FeatureVariance, WhatTheFileTellsStays) {
+  Frame frame;
+  const Image mean(width, height, 3, Real(0.5)), variance(width, height, 3, Real(0.125)), none;
+  frame.features.push_back({FeatureKind::Albedo, {"", mean, variance, {}, {}}});
+  frame.features.push_back({FeatureKind::Normal, {"", mean, {}, mean, mean}});
+  const std::vector<Image> found = feature_variances(frame);
+  EXPECT_TRUE(test::same_bits(found[0], variance));
+  EXPECT_TRUE(found[1].empty());
+}
+
+TEST(FeatureVariance, CleanTextureHasNone) {
+  Frame frame;
+  const auto texture = [](int x, int y, int c) { return 0.5 + 0.3 * std::sin(0.9 * x + 0.2 * c) * std::cos(0.7 * y); };
+  frame.features.push_back({FeatureKind::Albedo, {"", test::image_of(width, height, 3, texture), {}, {}, {}}});
+  const double of_texture = 0.3 * 0.3 / 4;
+  EXPECT_LT(mean_ratio(feature_variances(frame)[0], Image(width, height, 3, Real(of_texture))), 0.02);
 }
 
 }  // namespace

@@ -104,7 +104,7 @@ TEST(ReadFrame, OnePartForEachPassAndAPrior) {
   options.accept = [&](const std::string&, const FrameShape& shape) { told = shape; };
   const ReadResult read = read_frame(write_exr(folder / "a.exr", parts), options);
   EXPECT_EQ(told.prior_channels, 3);
-  EXPECT_EQ(told.channels, 3 + 1 + 3 + 3 + 1);  // noisy, its alpha, prior, albedo, depth
+  EXPECT_EQ(told.channels, 3 + 1 + 3 + 2 * 3 + 1);  // noisy, its alpha, prior, albedo and its noise, depth
   EXPECT_EQ(told.feature_channels, 4);
   EXPECT_EQ(read.frame.beauty.name, "V.Noisy Image");
   EXPECT_TRUE(holds(read.frame.beauty.mean, 0, parts[0].window, 10));
