@@ -44,7 +44,10 @@ bool has_feature(const Frame& frame, FeatureKind kind) {
   return std::any_of(frame.features.begin(), frame.features.end(), [&](const Feature& f) { return f.kind == kind; });
 }
 
-bool is_noisy(const Feature& feature) { return !feature.pass.variance.empty() || feature.pass.has_halves(); }
+bool may_be_cleaned(const Feature& feature) {
+  const bool told = feature.pass.noise_is_told();
+  return told || variance_is_estimated(feature.kind, told);
+}
 
 void add_numbers(const Frame& frame, Settings& list) {
   list.vary<int>("stages", &Params::stages, {1, 3});
@@ -104,7 +107,7 @@ void add_parts(const Frame& frame, Settings& list) {
   without("one stage, one level", [](Setting& s) { s.params.stages = s.params.levels = 1; });
   without("no outlier removal", [](Setting& s) { s.params.effects.outliers = false; });
   without("no variance floor", [](Setting& s) { s.params.parts.variance_floor = false; });
-  if (std::any_of(frame.features.begin(), frame.features.end(), is_noisy))
+  if (std::any_of(frame.features.begin(), frame.features.end(), may_be_cleaned))
     without("no feature cleaning", [](Setting& s) { s.params.effects.cleaning = false; });
   without("no noise bound", [](Setting& s) { s.params.parts.noise_bound = false; });
   without("no raising of undershoot", [](Setting& s) { s.params.parts.raise_undershoot = false; });
