@@ -134,7 +134,7 @@ void gather(const WindowSource& source, const BasisLayout& layout, int center_x,
     window.origin[static_cast<std::size_t>(c)] = origin;
     gather_channel(*source.response, c, window, origin, window.response.data() + static_cast<std::size_t>(c) * stride);
   }
-  for (int c = 0; c < 3; ++c) {
+  for (int c = 0; c < source.noise_variance->channels(); ++c) {
     const std::size_t offset = static_cast<std::size_t>(c) * stride;
     gather_channel(*source.noise_variance, c, window, 0, window.noise_variance.data() + offset);
     if (source.guess)

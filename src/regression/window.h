@@ -53,7 +53,7 @@ struct Window {
 /// What a window is gathered from; all images of one size.
 struct WindowSource {
   const Image* response = nullptr;        ///< Beauty and AOVs of one half, 3 channels each.
-  const Image* noise_variance = nullptr;  ///< Variance of the half's beauty, 3 channels.
+  const Image* noise_variance = nullptr;  ///< Variance of the half's beauty, 3 channels at most.
   const Image* features = nullptr;        ///< Features of the other half.
   const Image* guess = nullptr;           ///< mu as the stage before saw it, 3 channels; null in stage 1.
 };

@@ -193,8 +193,9 @@ TEST(FeatureVariance, IsEstimatedOfWhatComesWithoutButForDepth) {
   const double sigma = 0.05;
   test::Random random(31);
   const auto noisy = [&](int x, int, int) { return 0.2 + 0.002 * x + sigma * random.normal(); };
-  for (const FeatureKind kind : {FeatureKind::Albedo, FeatureKind::Normal, FeatureKind::Depth}) {
-    const int channels = kind == FeatureKind::Depth ? 1 : 3;
+  for (const FeatureKind kind :
+       {FeatureKind::Albedo, FeatureKind::Normal, FeatureKind::Depth, FeatureKind::Visibility}) {
+    const int channels = kind == FeatureKind::Albedo || kind == FeatureKind::Normal ? 3 : 1;
     frame.features.push_back({kind, {"", test::image_of(width, height, channels, noisy), {}, {}, {}}});
   }
   const std::vector<Image> found = feature_variances(frame);
@@ -202,6 +203,7 @@ TEST(FeatureVariance, IsEstimatedOfWhatComesWithoutButForDepth) {
   // The spikes of ordinary noise, too, are taken for spikes.
   for (const int k : {0, 1}) EXPECT_NEAR(mean_ratio(found[static_cast<std::size_t>(k)], truth), 1.1, 0.2);
   EXPECT_TRUE(found[2].empty());
+  EXPECT_EQ(found[3].channels(), 1);
 }
 
 TEST(FeatureVariance, WhatTheFileTellsStays) {
