@@ -81,9 +81,9 @@ std::vector<Decision> effects_of(const InspectOptions& o, const Inspection& foun
   Frame frame = read_frame(o.input, o.read).frame;
   Progress silent;
   require_usable(frame);
-  estimate_feature_variance(frame, silent);
-  std::vector<Decision> decisions = look_at(frame).decisions;
   const double seconds = standard_seconds(run_pilot(frame, silent), measured_steps());
+  estimate_feature_variance(frame, silent);  // after the pilot, whose tiles have theirs estimated by themselves
+  std::vector<Decision> decisions = look_at(frame).decisions;
   estimate_savings(frame, params_for(Quality::Standard).cleaning, 0, seconds, decisions);
   return decisions;
 }

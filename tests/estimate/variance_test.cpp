@@ -208,7 +208,7 @@ TEST(FeatureVariance, IsEstimatedOfWhatComesWithoutButForDepth) {
 
 TEST(FeatureVariance, WhatTheFileTellsStays) {
   Frame frame;
-  const Image mean(width, height, 3, Real(0.5)), variance(width, height, 3, Real(0.125)), none;
+  const Image mean(width, height, 3, Real(0.5)), variance(width, height, 3, Real(0.125));
   frame.features.push_back({FeatureKind::Albedo, {"", mean, variance, {}, {}}});
   frame.features.push_back({FeatureKind::Normal, {"", mean, {}, mean, mean}});
   const std::vector<Image> found = feature_variances(frame);
