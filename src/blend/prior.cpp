@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <utility>
 #include <vector>
 
@@ -11,7 +10,6 @@
 #include "core/gaussian.h"
 #include "core/parallel.h"
 #include "core/sanitise.h"
-#include "estimate/spike_variance.h"
 
 namespace polyrecon {
 namespace {
@@ -82,34 +80,7 @@ Image toward(Image own, const Image& prior, Real share, const Image& belief) {
   return own;
 }
 
-/// a + b; a where b is empty.
-Image plus(Image a, const Image& b) {
-  if (b.empty()) return a;
-  for (int c = 0; c < a.channels(); ++c)
-    std::transform(a.plane(c), a.plane(c) + a.pixels(), b.plane(c), a.plane(c), std::plus<>());
-  return a;
-}
-
-/// What is left of unseen spikes where a share of the prior takes own's place.
-Image left_of(Image unseen, Real share, const Image& belief) {
-  for_rows(unseen.height(), [&](int y) {
-    for (int c = 0; c < unseen.channels(); ++c)
-      for (int x = 0; x < unseen.width(); ++x) {
-        const Real own = 1 - share * belief.at(x, y, 0);
-        unseen.at(x, y, c) *= own * own;
-      }
-  });
-  return unseen;
-}
-
 }  // namespace
-
-Image unseen_spikes(const Image& own) {
-  Image out = spike_variance(own);  // e^2 / 2
-  for (int c = 0; c < out.channels(); ++c)
-    std::transform(out.plane(c), out.plane(c) + out.pixels(), out.plane(c), [](Real v) { return 2 * v; });
-  return out;
-}
 
 MendedPrior mend_prior(Pass prior, const HalfPair& pair, const Image& own) {
   Image out =
@@ -142,18 +113,16 @@ double noise_in_prior(const Image& prior, const HalfPair& pair, const Image& own
   return input > 0 ? shared / input : 0;
 }
 
-Candidate add_prior(const HalfPair& pair, const MendedPrior& prior, const Image& mse, const Image& unseen,
-                    Candidate own, const SelectParams& params, std::size_t max_bytes) {
-  const auto make = [&](Candidate& beauty, const Rect& region) {
+Candidate add_prior(const HalfPair& pair, const MendedPrior& prior, const Image& mse, Candidate own,
+                    const SelectParams& params, std::size_t max_bytes) {
+  const auto make = [&](const std::array<Image, 2>& beauty, const Rect& region) {
     const MendedPrior part{crop(prior.value, region), crop(prior.sharpening, region)};
-    const Image mean = mean_of_halves(beauty.half), error = plus(crop(mse, region), crop(unseen, region));
-    beauty.unseen = crop(unseen, region);
-    std::vector<Candidate> corrected(shares.size());
+    const Image mean = mean_of_halves(beauty), error = crop(mse, region);
+    std::vector<std::array<Image, 2>> corrected(shares.size());
     for (std::size_t k = 0; k < shares.size(); ++k) {
       const Image belief = belief_in(contradiction(mean, part, shares[k], error, pair.epsilon, params.risk_sigma));
       for (std::size_t h = 0; h < 2; ++h)
-        corrected[k].half[h] = toward(beauty.half[h], part.value, static_cast<Real>(shares[k]), belief);
-      corrected[k].unseen = left_of(beauty.unseen, static_cast<Real>(shares[k]), belief);
+        corrected[k][h] = toward(beauty[h], part.value, static_cast<Real>(shares[k]), belief);
     }
     return corrected;
   };

@@ -26,20 +26,14 @@ MendedPrior mend_prior(Pass prior, const HalfPair& pair, const Image& own);
 /// channels.
 double noise_in_prior(const Image& prior, const HalfPair& pair, const Image& own);
 
-/// Spikes left in a result whose noise was estimated, in numbers, are noise that the estimate missed: an error e^2 of
-/// own each, which its risk does not tell since the samples have them as well. 2 spike_variance
-/// (estimate/spike_variance.h), 3 channels, radiance squared.
-Image unseen_spikes(const Image& own);
-
 /// Order -1 of equation (2): takes the prior as it is, whole or in part, where that has less error. own and own + s b
 /// (prior - own), s = 0.5, 0.6 .. 1, are judged by cross-validation like any others. b is how far each is believed,
 ///     exp(-max(0, D / E - 2)),   D = its squared distance from own + (2 s sharpening)^2,   E = mse,
 /// both relative and averaged over risk_sigma: an image that contradicts the samples by far more than our own
 /// estimated error is wrong, whatever the noise of the validation lets it score; and what had to be sharpened may be
-/// wrong by twice what that changed. mse: estimated squared error of own (ErrorMap::mse); unseen: what the samples do
-/// not tell of it, counted in E and in the risk of own, or empty. Only the beauty changes; bias, variance and order
-/// stay those of own. max_bytes: as in select_correction.
-Candidate add_prior(const HalfPair& pair, const MendedPrior& prior, const Image& mse, const Image& unseen,
-                    Candidate own, const SelectParams& params, std::size_t max_bytes);
+/// wrong by twice what that changed. mse: estimated squared error of own (ErrorMap::mse). Only the beauty changes;
+/// bias, variance and order stay those of own. max_bytes: as in select_correction.
+Candidate add_prior(const HalfPair& pair, const MendedPrior& prior, const Image& mse, Candidate own,
+                    const SelectParams& params, std::size_t max_bytes);
 
 }  // namespace polyrecon

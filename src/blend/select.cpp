@@ -50,9 +50,6 @@ Image raw_risk(const HalfPair& pair, const Candidate& candidate, const Image& sc
         const Real da = fa[x] - b[x], db = fb[x] - a[x], d = fa[x] - fb[x];
         risk[x] += (Real(0.5) * (da * da + db * db) - Real(0.25) * d * d) * s[x] * Real(1.0 / 3);
       }
-      if (candidate.unseen.empty()) continue;
-      const Real* unseen = candidate.unseen.row(c, y);
-      for (int x = 0; x < out.width(); ++x) risk[x] += unseen[x] * s[x] * Real(1.0 / 3);
     }
   });
   return out;
@@ -213,7 +210,8 @@ std::array<Image, 2> select_correction(const HalfPair& pair, const std::array<Im
     const HalfPair part{
         {crop(pair.color[0], r, 0, channels), crop(pair.color[1], r, 0, channels)}, {}, {}, pair.epsilon};
     std::vector<Candidate> candidates{{{crop(own[0], r), crop(own[1], r)}, {}, {}, {}}};
-    for (Candidate& corrected : corrections.make(candidates[0], r)) candidates.push_back(std::move(corrected));
+    for (std::array<Image, 2>& half : corrections.make(candidates[0].half, r))
+      candidates.push_back({std::move(half), {}, {}, {}});
     const Candidate best = select(part, mean_of_halves(candidates[0].half), candidates, params);
     for (std::size_t h = 0; h < 2; ++h) paste(best.half[h], inside(tile), out[h], tile.core.x0, tile.core.y0);
   }
@@ -224,7 +222,7 @@ std::size_t correction_bytes_per_pixel(int channels, std::size_t corrections) {
   const auto halves = 2 * static_cast<std::size_t>(channels);
   // Noisy halves, own and all corrections with their risks; brightness, the result with empty bias and variance, and
   // what comes and goes.
-  return sizeof(Real) * (2 * halves + (corrections + 1) * (halves + 6) + halves + 24);
+  return sizeof(Real) * (2 * halves + (corrections + 1) * (halves + 3) + halves + 24);
 }
 
 }  // namespace polyrecon

@@ -16,7 +16,6 @@ struct Candidate {
   Image squared_bias;         ///< As the windows estimate it (5), 3 channels; empty if the candidate has none.
   Image variance;             ///< Of the windows, equation (6), 3 channels; empty if the candidate has none.
   Image order;                ///< Taylor order, 1 channel.
-  Image unseen = {};          ///< Squared error that the samples do not tell, 3 channels; empty if there is none.
 };
 
 struct SelectParams {
@@ -37,8 +36,7 @@ int select_halo(const SelectParams& params);
 /// are compared with) and SE the standard error of D (how likely the difference is chance), and s the
 /// standard deviation of its own noise, from the windows' variance averaged alike: of candidates that cannot be told
 /// apart by their risk the less noisy ones count for more. Candidates without a variance have s = 1. Shares are
-/// smoothed by map_sigma. What the samples do not tell (Candidate::unseen) is part of the risk, relative alike.
-/// brightness: 3 channels, a guess of the result. All images of one size; at least one
+/// smoothed by map_sigma. brightness: 3 channels, a guess of the result. All images of one size; at least one
 /// candidate.
 Candidate select(const HalfPair& pair, const Image& brightness, const std::vector<Candidate>& candidates,
                  const SelectParams& params);
@@ -50,9 +48,8 @@ Image mean_of_halves(const std::array<Image, 2>& half);
 struct Corrections {
   std::size_t count = 0;
   int reach = 0;  ///< Pixels around a region that make has to see.
-  /// Of a region of the frame, own with its halves given: makes the corrections, of which the halves count, of own's
-  /// channels, and unseen; may tell what is unseen in own.
-  std::function<std::vector<Candidate>(Candidate& own, const Rect& region)> make;
+  /// The halves of each, of own's channels, from own's halves in a region of the frame.
+  std::function<std::vector<std::array<Image, 2>>(const std::array<Image, 2>& own, const Rect& region)> make;
 };
 
 /// The best of own and its corrections, by their risk alone: variances would be own's for all. own: the first channels

@@ -135,17 +135,15 @@ void note_neighbours(const JoinCounts& counts, bool with_motion, Report& report)
 }
 
 /// The denoised layer of the file as a candidate, unless it is none.
-Candidate use_prior(Pass pass, const HalfPair& pair, const ErrorMap& error, bool noise_is_measured,
-                    const SelectParams& params, std::size_t max_bytes, Candidate solved,
-                    std::vector<Decision>& decisions) {
+Candidate use_prior(Pass pass, const HalfPair& pair, const ErrorMap& error, const SelectParams& params,
+                    std::size_t max_bytes, Candidate solved, std::vector<Decision>& decisions) {
   const std::string layer = "layer '" + pass.name;
   Image own = average(pair, solved);
   const MendedPrior prior = mend_prior(std::move(pass), pair, own);
   const bool denoised = noise_in_prior(prior.value, pair, own) < most_noise_in_prior;
-  const Image unseen = noise_is_measured ? Image() : unseen_spikes(own);
   own = {};
   decisions.push_back({"prior", denoised, layer + (denoised ? "'" : "' is the noisy image itself")});
-  return denoised ? add_prior(pair, prior, error.mse, unseen, std::move(solved), params, max_bytes) : solved;
+  return denoised ? add_prior(pair, prior, error.mse, std::move(solved), params, max_bytes) : solved;
 }
 
 /// Progress steps of the fits over all levels and stages: blocks x phases, both halves. Close enough for a bar.
@@ -240,8 +238,8 @@ Result reconstruct(Frame& frame, const std::vector<TimedNeighbour>& neighbours, 
   result.order = solved.order;
   if (!frame.prior.mean.empty())
     solved = timed(report, progress, "prior", 1, [&] {
-      return use_prior(std::move(frame.prior), pair, result.error, noise.measured, params.selection, memory,
-                       std::move(solved), report.decisions);
+      return use_prior(std::move(frame.prior), pair, result.error, params.selection, memory, std::move(solved),
+                       report.decisions);
     });
   Image image = timed(report, progress, "energy", 1, [&] {
     Image out = average(pair, solved);

@@ -166,13 +166,9 @@ TEST(SelectCorrection, TheTilesDoNotShow) {
       image_of(150, 130, 3, [](int x, int y, int c) { return 1 + 0.3 * std::sin(0.3 * x + 0.1 * c * y); });
   const HalfPair pair = test::pair_of(truth, 0.3, 11);
   const double sigma = 2;
-  const auto make = [&](const Candidate& own, const Rect&) {
-    std::vector<Candidate> corrected(2);
-    for (std::size_t h = 0; h < 2; ++h) {
-      corrected[0].half[h] = test::times(own.half[h], 1.0001);
-      corrected[1].half[h] = gaussian_blur(own.half[h], sigma);
-    }
-    return corrected;
+  const auto make = [&](const std::array<Image, 2>& own, const Rect&) {
+    const std::array<Image, 2> blurred{gaussian_blur(own[0], sigma), gaussian_blur(own[1], sigma)};
+    return std::vector<std::array<Image, 2>>{{test::times(own[0], 1.0001), test::times(own[1], 1.0001)}, blurred};
   };
   const Corrections corrections{2, gaussian_reach(sigma), make};
   const auto work = [&](std::size_t side) {
