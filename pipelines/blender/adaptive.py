@@ -19,7 +19,7 @@ if not __package__:  # run as a script from a checkout
     __package__ = "pipelines.blender"
 
 from ..loop import command
-from ..loop.errors import run_main
+from ..common.errors import run_main
 from .options import add_common, renderer_of
 
 

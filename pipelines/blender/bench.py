@@ -36,9 +36,9 @@ if not __package__:  # run as a script from a checkout
     sys.path[0] = str(pathlib.Path(__file__).resolve().parents[2])
     __package__ = "pipelines.blender"
 
-from ..loop import process  # noqa: E402
-from ..loop.errors import DriverError, ExitCode, run_main  # noqa: E402
-from ..loop.polyrecon_cli import Polyrecon  # noqa: E402
+from ..common import process  # noqa: E402
+from ..common.errors import DriverError, ExitCode, run_main  # noqa: E402
+from ..common.polyrecon_cli import Polyrecon  # noqa: E402
 from . import bench_report  # noqa: E402
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]

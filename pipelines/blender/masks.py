@@ -8,7 +8,7 @@ import os
 import numpy as np
 import OpenImageIO as oiio
 
-from ..loop.errors import DriverError, ExitCode
+from ..common.errors import DriverError, ExitCode
 
 SUBPIXELS = 4
 # What a pass and each pixel of its box cost beside the samples, as so many samples outside the mask (docs/adaptive.md).

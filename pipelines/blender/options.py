@@ -2,9 +2,9 @@
 
 import pathlib
 
-from ..loop.arguments import positive
-from ..loop.command import add_frame_arguments
-from ..loop.errors import DriverError, ExitCode
+from ..common.arguments import positive
+from ..common.command import add_frame_arguments
+from ..common.errors import DriverError, ExitCode
 from .renderer import BlenderRenderer
 
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..loop import exr
+from ..common import exr
 
 OVER_ROUND = 1.3  # seconds of add over those of a round's decision: docs/adaptive.md
 FEATURES = {"Denoising Albedo": "RGB", "Denoising Normal": "XYZ", "Denoising Depth": "Z"}

@@ -17,8 +17,8 @@ if not __package__:  # run as a script from a checkout
     sys.path[0] = str(pathlib.Path(__file__).resolve().parents[2])
     __package__ = "pipelines.blender"
 
-from ..loop.command import each_frame
-from ..loop.errors import DriverError, ExitCode, run_main
+from ..common.command import each_frame
+from ..common.errors import DriverError, ExitCode, run_main
 from .options import add_common, renderer_of
 
 

@@ -5,8 +5,8 @@ import pathlib
 
 import numpy as np
 
-from ..loop import exr
-from ..loop.errors import DriverError, ExitCode
+from ..common import exr
+from ..common.errors import DriverError, ExitCode
 from ..loop.renderer import RENDER_SECONDS, SAMPLE_COUNT, Audit, Renderer, Switch
 from . import masks, prior, regions
 from .session import BlenderSession

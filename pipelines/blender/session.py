@@ -11,8 +11,8 @@ import sys
 import tempfile
 import threading
 
-from ..loop import process
-from ..loop.errors import DriverError, ExitCode
+from ..common import process
+from ..common.errors import DriverError, ExitCode
 
 SCRIPT = pathlib.Path(__file__).resolve().parent / "inside" / "session.py"
 MARK = "@polyrecon "

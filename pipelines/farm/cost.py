@@ -9,7 +9,7 @@ if not __package__:  # run as a script from a checkout
     sys.path[0] = str(pathlib.Path(__file__).resolve().parents[2])
     __package__ = "pipelines.farm"
 
-from ..loop.errors import DriverError, ExitCode, run_main
+from ..common.errors import DriverError, ExitCode, run_main
 from .plan import positive, size
 from .requirements import Frame, Model, Node, threads_for
 

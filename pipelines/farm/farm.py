@@ -8,7 +8,7 @@ if not __package__:  # run as a script from a checkout
     sys.path[0] = str(pathlib.Path(__file__).resolve().parents[2])
     __package__ = "pipelines.farm"
 
-from ..loop.errors import ExitCode
+from ..common.errors import ExitCode
 from . import cost, openjd, report, slurm
 
 COMMANDS = {"slurm": slurm, "openjd": openjd, "report": report, "cost": cost}

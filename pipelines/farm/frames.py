@@ -2,7 +2,7 @@
 
 import re
 
-from ..loop.errors import DriverError, ExitCode
+from ..common.errors import DriverError, ExitCode
 
 # 1-10, 20-40x2 as the program and most renderers write steps; 20-40:2 as Open Job Description does.
 _RANGE = re.compile(r"(-?\d+)(?:-(-?\d+)(?:[x:](\d+))?)?")

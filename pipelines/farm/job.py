@@ -8,7 +8,7 @@ import re
 import tempfile
 from dataclasses import dataclass, field
 
-from ..loop.errors import DriverError, ExitCode
+from ..common.errors import DriverError, ExitCode
 from . import frames as frame_names
 
 JOB_FILE = "job.json"

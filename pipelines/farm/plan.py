@@ -5,7 +5,7 @@ import json
 import os
 import re
 
-from ..loop.errors import DriverError, ExitCode
+from ..common.errors import DriverError, ExitCode
 from . import frames as frame_names
 from .requirements import DEFAULT_RADIUS, MEMORY_MARGIN, Model, frame_of
 

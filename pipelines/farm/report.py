@@ -14,9 +14,9 @@ if not __package__:  # run as a script from a checkout
     sys.path[0] = str(pathlib.Path(__file__).resolve().parents[2])
     __package__ = "pipelines.farm"
 
-from ..loop import process
-from ..loop.errors import DriverError, ExitCode, run_main
-from ..loop.polyrecon_cli import find_polyrecon
+from ..common import process
+from ..common.errors import DriverError, ExitCode, run_main
+from ..common.polyrecon_cli import find_polyrecon
 from . import frames as frame_names
 from .job import COMPLAINT, RECORDS, REPORT_FILE, Job, write_json
 

@@ -8,7 +8,7 @@ import math
 import pathlib
 from dataclasses import dataclass
 
-from ..loop.errors import DriverError, ExitCode
+from ..common.errors import DriverError, ExitCode
 
 MODEL_FILE = pathlib.Path(__file__).with_name("model.json")
 MEMORY_MARGIN = 1.15  # of what is asked for over what the model says

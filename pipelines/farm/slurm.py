@@ -17,9 +17,9 @@ if not __package__:  # run as a script from a checkout
     sys.path[0] = str(pathlib.Path(__file__).resolve().parents[2])
     __package__ = "pipelines.farm"
 
-from ..loop import process
-from ..loop.errors import DriverError, ExitCode, run_main
-from ..loop.polyrecon_cli import Polyrecon
+from ..common import process
+from ..common.errors import DriverError, ExitCode, run_main
+from ..common.polyrecon_cli import Polyrecon
 from . import frames as frame_names
 from .job import JOB_FILE, REPORT_FILE, Job
 from .plan import add_plan_options, first_frame, limit_of, parse_words, positive, request_of, seconds_of

@@ -13,8 +13,8 @@ if not __package__:  # run as a script from a checkout
     sys.path[0] = str(pathlib.Path(__file__).resolve().parents[2])
     __package__ = "pipelines.farm"
 
-from ..loop import process
-from ..loop.errors import DriverError, ExitCode, run_main
+from ..common import process
+from ..common.errors import DriverError, ExitCode, run_main
 from . import frames as frame_names
 from .job import COMPLAINT, RECORDS, Job, write_json
 

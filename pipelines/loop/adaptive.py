@@ -15,10 +15,10 @@ from typing import Optional
 
 import numpy as np
 
-from . import exr
+from ..common import exr
 from .budget import CONVERGENCE_RATE, Budget, Spent, even_share, next_slice, nothing_left, rest, seconds_per_even_sample
 from .counts import cost_of_samples, quantise, weight_of_samples
-from .errors import DriverError, ExitCode
+from ..common.errors import DriverError, ExitCode
 from .journal import Journal
 from .renderer import RENDER_SECONDS, SAMPLE_COUNT
 

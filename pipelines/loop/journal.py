@@ -4,7 +4,7 @@ import json
 import os
 import pathlib
 
-from .errors import DriverError, ExitCode
+from ..common.errors import DriverError, ExitCode
 
 VERSION = 4
 

@@ -8,7 +8,7 @@ import tempfile
 
 import jinja2
 
-from .errors import DriverError, ExitCode
+from ..common.errors import DriverError, ExitCode
 
 TEMPLATE = pathlib.Path(__file__).with_name("report.html.j2")
 CURVE = {"width": 640, "height": 240, "margin": 48}

@@ -21,8 +21,9 @@ import argparse
 import pathlib
 import sys
 
+from ..common.command import add_frame_arguments
+from ..common.errors import DriverError, ExitCode, run_main
 from ..loop import command
-from ..loop.errors import DriverError, ExitCode, run_main
 from .render_passes import add_povray_arguments, split_words
 from .renderer import PovrayRenderer
 
@@ -48,7 +49,7 @@ def _arguments(words):
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("scene", type=pathlib.Path, metavar="SCENE.pov")
-    command.add_frame_arguments(parser)
+    add_frame_arguments(parser)
     command.add_loop_arguments(parser, 16, "subpixels of the first pass: 4, 16, 36, 64 (16)")
     add_povray_arguments(parser)
     options = parser.parse_args(words)

@@ -19,9 +19,9 @@ import sys
 
 import numpy as np
 
-from ..loop import exr
-from ..loop.errors import run_main
-from ..loop.polyrecon_cli import Polyrecon
+from ..common import exr
+from ..common.errors import run_main
+from ..common.polyrecon_cli import Polyrecon
 from . import gallery
 from .scene import Crop, Scene
 from .subpixels import estimate

@@ -3,7 +3,7 @@
 import numpy as np
 import OpenImageIO as oiio
 
-from ..loop.errors import DriverError, ExitCode
+from ..common.errors import DriverError, ExitCode
 from . import passes
 from .scene import Scene
 

@@ -15,9 +15,9 @@ import time
 
 import numpy as np
 
-from ..loop import exr
-from ..loop.arguments import positive
-from ..loop.errors import run_main
+from ..common import exr
+from ..common.arguments import positive
+from ..common.errors import run_main
 from ..loop.renderer import SAMPLE_COUNT
 from . import passes, regions
 from .scene import Scene

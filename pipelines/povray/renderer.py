@@ -12,8 +12,8 @@ import time
 
 import numpy as np
 
-from ..loop import exr
-from ..loop.errors import DriverError, ExitCode
+from ..common import exr
+from ..common.errors import DriverError, ExitCode
 from ..loop.renderer import SAMPLE_COUNT, Audit, Renderer, Switch
 from . import passes, regions
 from .render_passes import FIRST_GRID, channels

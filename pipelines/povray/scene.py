@@ -18,8 +18,8 @@ from typing import Optional
 import numpy as np
 import OpenImageIO as oiio
 
-from ..loop import process
-from ..loop.errors import DriverError, ExitCode
+from ..common import process
+from ..common.errors import DriverError, ExitCode
 
 # POV-Ray's own configuration (/etc/povray/3.7/povray.conf) lets it write there.
 WORK_PARENT = pathlib.Path("/tmp")

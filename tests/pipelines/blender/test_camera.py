@@ -7,7 +7,7 @@ import numpy as np
 
 from pipelines.blender import masks
 from pipelines.blender.renderer import BlenderRenderer
-from pipelines.loop import exr
+from pipelines.common import exr
 from pipelines.loop.renderer import RENDER_SECONDS, SAMPLE_COUNT
 from tests.pipelines.blender.support import SceneTest
 

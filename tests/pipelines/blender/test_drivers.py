@@ -12,7 +12,7 @@ import unittest
 
 import numpy as np
 
-from pipelines.loop import exr
+from pipelines.common import exr
 from tests.pipelines.blender.support import BLENDER_3, ROOT, SceneTest
 
 

@@ -13,8 +13,8 @@ os.environ["BLENDER_USER_RESOURCES"] = _resources.name  # read when bpy is impor
 
 import bpy  # noqa: E402
 import numpy as np  # noqa: E402
-from pipelines.loop import exr  # noqa: E402
-from pipelines.loop.polyrecon_cli import find_polyrecon  # noqa: E402
+from pipelines.common import exr  # noqa: E402
+from pipelines.common.polyrecon_cli import find_polyrecon  # noqa: E402
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 SOURCE = ROOT / "pipelines" / "blender" / "extension"

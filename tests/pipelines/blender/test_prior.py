@@ -7,8 +7,8 @@ import numpy as np
 
 from pipelines.blender import prior
 from pipelines.blender.session import BlenderSession
-from pipelines.loop import exr
-from pipelines.loop.polyrecon_cli import Polyrecon
+from pipelines.common import exr
+from pipelines.common.polyrecon_cli import Polyrecon
 from tests.pipelines.blender.support import BLENDER_3, SceneTest
 
 PRIORS = {f"ViewLayer.Prior {half}.{c}" for half in "AB" for c in "RGB"}

@@ -8,7 +8,7 @@ import time
 import unittest
 
 import numpy as np
-from pipelines.loop import exr
+from pipelines.common import exr
 
 RENDER = pathlib.Path(__file__).resolve().parents[3] / "samples" / "scenes" / "render.py"
 BLENDER_3 = ["blender", "-b", "-Y", "--factory-startup", "--python-exit-code", "7", "-P", str(RENDER), "--"]

@@ -5,7 +5,7 @@ import unittest
 import numpy as np
 
 from pipelines.blender.renderer import BlenderRenderer
-from pipelines.loop import exr
+from pipelines.common import exr
 from pipelines.loop.renderer import SAMPLE_COUNT
 from tests.pipelines.blender.support import BLENDER_3, SceneTest
 

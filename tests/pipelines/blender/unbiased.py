@@ -16,10 +16,11 @@ sys.path[0] = str(pathlib.Path(__file__).resolve().parents[3])
 import numpy as np  # noqa: E402
 
 from pipelines.blender.renderer import BlenderRenderer  # noqa: E402
-from pipelines.loop import adaptive, exr  # noqa: E402
+from pipelines.common import exr  # noqa: E402
+from pipelines.loop import adaptive  # noqa: E402
 from pipelines.loop.budget import Budget  # noqa: E402
-from pipelines.loop.polyrecon_cli import Polyrecon  # noqa: E402
-from pipelines.loop.progress import Progress  # noqa: E402
+from pipelines.common.polyrecon_cli import Polyrecon  # noqa: E402
+from pipelines.common.progress import Progress  # noqa: E402
 
 MAKE_SCENE = pathlib.Path(__file__).with_name("make_scene.py")
 

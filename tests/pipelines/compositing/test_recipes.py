@@ -11,7 +11,7 @@ import unittest
 
 import numpy as np
 
-from pipelines.loop.exr import read
+from pipelines.common.exr import read
 
 PROGRAM = os.environ["POLYRECON"]
 SAMPLES = pathlib.Path(os.environ["POLYRECON_SAMPLES"])

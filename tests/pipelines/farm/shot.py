@@ -3,7 +3,7 @@
 import os
 import pathlib
 
-from pipelines.loop import exr
+from pipelines.common import exr
 
 SAMPLES = pathlib.Path(os.environ["POLYRECON_SAMPLES"])
 

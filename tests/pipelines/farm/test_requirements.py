@@ -8,7 +8,7 @@ from pathlib import Path
 
 from pipelines.farm import frames
 from pipelines.farm.requirements import Frame, Model, Node, chunk_for, frame_of, threads_for
-from pipelines.loop.errors import DriverError, ExitCode
+from pipelines.common.errors import DriverError, ExitCode
 
 from .shot import make_shot
 

@@ -6,11 +6,12 @@ import sys
 
 import numpy as np
 
-from pipelines.loop import adaptive, exr
+from pipelines.common import exr
+from pipelines.loop import adaptive
 from pipelines.loop.budget import Budget
-from pipelines.loop.errors import run_main
-from pipelines.loop.polyrecon_cli import Polyrecon
-from pipelines.loop.progress import Progress
+from pipelines.common.errors import run_main
+from pipelines.common.polyrecon_cli import Polyrecon
+from pipelines.common.progress import Progress
 from pipelines.loop.renderer import RENDER_SECONDS, SAMPLE_COUNT, Audit, Renderer
 
 

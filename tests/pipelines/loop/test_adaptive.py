@@ -13,9 +13,10 @@ from pathlib import Path
 
 import numpy as np
 
-from pipelines.loop import budget, exr
+from pipelines.common import exr
+from pipelines.loop import budget
 from pipelines.loop.budget import Budget
-from pipelines.loop.errors import DriverError, ExitCode
+from pipelines.common.errors import DriverError, ExitCode
 from pipelines.loop.renderer import SAMPLE_COUNT
 from tests.pipelines.loop.synthetic import SyntheticRenderer, loop
 

@@ -8,7 +8,7 @@ import time
 
 import numpy as np
 
-from pipelines.loop import exr
+from pipelines.common import exr
 from pipelines.povray.scene import Scene
 from pipelines.povray.subpixels import estimate
 

@@ -7,8 +7,8 @@ import unittest
 
 import numpy as np
 
-from pipelines.loop import exr
-from pipelines.loop.polyrecon_cli import Polyrecon
+from pipelines.common import exr
+from pipelines.common.polyrecon_cli import Polyrecon
 
 from .scenes import BALL, CAMERA, HEAD, LAMP, NOISY_LAMP, SIZE, InFolder
 

@@ -2,8 +2,8 @@ import pathlib
 
 import numpy as np
 
-from pipelines.loop import exr
-from pipelines.loop.errors import DriverError
+from pipelines.common import exr
+from pipelines.common.errors import DriverError
 from pipelines.povray.renderer import PovrayRenderer, field_order
 
 from .scenes import BALL, CAMERA, HEAD, NOISY_LAMP, SIZE, InFolder

@@ -7,8 +7,8 @@ import time
 
 import numpy as np
 
-from pipelines.loop import process
-from pipelines.loop.errors import DriverError, ExitCode
+from pipelines.common import process
+from pipelines.common.errors import DriverError, ExitCode
 from pipelines.povray.scene import Crop, Scene, Shot
 
 from .scenes import BALL, CAMERA, HEAD, LAMP, SIZE, InFolder

@@ -7,9 +7,9 @@ import time
 import unittest
 from pathlib import Path
 
-from pipelines.loop import process
-from pipelines.loop.errors import DriverError, ExitCode, run_main
-from pipelines.loop.polyrecon_cli import Polyrecon, find_polyrecon
+from pipelines.common import process
+from pipelines.common.errors import DriverError, ExitCode, run_main
+from pipelines.common.polyrecon_cli import Polyrecon, find_polyrecon
 
 
 def alive(pid):

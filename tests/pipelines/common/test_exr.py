@@ -5,8 +5,8 @@ from pathlib import Path
 
 import numpy as np
 
-from pipelines.loop import exr
-from pipelines.loop.errors import DriverError, ExitCode
+from pipelines.common import exr
+from pipelines.common.errors import DriverError, ExitCode
 
 SAMPLES = Path(os.environ["POLYRECON_SAMPLES"])
 

@@ -1,0 +1,1 @@
+"""What all drivers share: files, child processes, errors, frame names, the program."""
