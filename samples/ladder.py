@@ -11,7 +11,6 @@ what lies in the folder of work already is not rendered again.
 import argparse
 import json
 import math
-import pathlib
 import subprocess
 import sys
 
@@ -51,11 +50,16 @@ def flip(image, reference):
 def step(tools, scene, samples, reference, options):
     """(relMSE, trimmed, FLIP) of the input and of the result."""
     parts = min(8, samples)
-    pieces = tools.render(5, scene, f"ladder_{scene}_{samples}", parts, spp=samples, middle=True, passes="denoising", single_part=True)
+    pieces = tools.render(
+        5, scene, f"ladder_{scene}_{samples}", parts, spp=samples, middle=True, passes="denoising", single_part=True
+    )
     noisy = tools.merge(pieces, f"ladder_{scene}_{samples}.exr", samples)
     clean = tools.work / f"ladder_{scene}_{samples}_clean.exr"
     run([tools.polyrecon, "denoise", "-i", str(noisy), "-o", str(clean), "--quiet", *options])
-    return [(*error, flip(file, reference)) for file, error in zip((noisy, clean), relative_mse(tools, (noisy, clean), reference))]
+    return [
+        (*error, flip(file, reference))
+        for file, error in zip((noisy, clean), relative_mse(tools, (noisy, clean), reference))
+    ]
 
 
 def rate(before, after):

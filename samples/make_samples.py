@@ -68,7 +68,19 @@ def ship_halves(merged, target):
 def ship_reference(merged, target):
     """The beauty and the variance of its mean, both float: the score subtracts that variance."""
     keep = [f"ViewLayer.Combined{kind}.{c}" for kind in ("", " Variance") for c in "RGB"]
-    run(["oiiotool", "--nosoftwareattrib", str(merged), "--ch", ",".join(keep), "--compression", "zip", "-o", str(target)])
+    run(
+        [
+            "oiiotool",
+            "--nosoftwareattrib",
+            str(merged),
+            "--ch",
+            ",".join(keep),
+            "--compression",
+            "zip",
+            "-o",
+            str(target),
+        ]
+    )
 
 
 def reference(tools, version, scene, spp):

@@ -32,7 +32,19 @@ def render(options, name, count, *words):
         return stem
     scene = HERE / "scenes" / "render.py"
     frames = f"--frames={FRAMES[0]}-{FRAMES[-1]}"
-    run([options.blender5, scene, "parade", f"{stem}.exr", "--size=160x90", f"--parts={count}", frames, "--single-part", *words])
+    run(
+        [
+            options.blender5,
+            scene,
+            "parade",
+            f"{stem}.exr",
+            "--size=160x90",
+            f"--parts={count}",
+            frames,
+            "--single-part",
+            *words,
+        ]
+    )
     return stem
 
 
@@ -44,7 +56,9 @@ def merge(options, name, merged, samples):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--work", type=pathlib.Path, default=HERE.parent / "out" / "sequence", help="folder of the results")
+    parser.add_argument(
+        "--work", type=pathlib.Path, default=HERE.parent / "out" / "sequence", help="folder of the results"
+    )
     parser.add_argument("--spp", type=int, nargs="*", default=[8, 64, 128], help="samples of the noisy frames")
     parser.add_argument("--blender5", default=sys.executable, help="Python with bpy 5.0.1")
     parser.add_argument("--polyrecon", default=str(HERE.parent / "build" / "release" / "src" / "polyrecon"))

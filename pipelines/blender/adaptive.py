@@ -18,17 +18,23 @@ if not __package__:  # run as a script from a checkout
     sys.path[0] = str(pathlib.Path(__file__).resolve().parents[2])
     __package__ = "pipelines.blender"
 
-from ..loop import command
 from ..common.errors import run_main
+from ..loop import command
 from .options import add_common, renderer_of
 
 
 def arguments(words):
-    parser = argparse.ArgumentParser(prog="polyrecon-blender", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        prog="polyrecon-blender", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     add_common(parser)
     command.add_loop_arguments(parser, 8, "uniform samples to begin with: 4 or a multiple of 8 (8)")
-    parser.add_argument("--method", choices=("auto", "osl", "regions"), default="auto",
-                        help="how extra samples are rendered: by a camera with a mask (Blender 5), or as rectangles (auto)")  # fmt: skip
+    parser.add_argument(
+        "--method",
+        choices=("auto", "osl", "regions"),
+        default="auto",
+        help="how extra samples are rendered: by a camera with a mask (Blender 5), or as rectangles (auto)",
+    )
     options = parser.parse_args(words)
     if options.first_pass != 4 and (options.first_pass < 8 or options.first_pass % 8):
         parser.error("--first-pass: 4 or a multiple of 8")
@@ -38,7 +44,9 @@ def arguments(words):
 
 def work(words):
     options = arguments(words)
-    command.run_frames(options, renderer_of(options, options.method), {"visibility": options.visibility, "renderer": "Blender"})
+    command.run_frames(
+        options, renderer_of(options, options.method), {"visibility": options.visibility, "renderer": "Blender"}
+    )
 
 
 def main(words=None):

@@ -25,7 +25,6 @@ seeds of Cycles: its error is then their geometric mean.
 import argparse
 import json
 import math
-import os
 import pathlib
 import resource
 import shutil
@@ -36,10 +35,10 @@ if not __package__:  # run as a script from a checkout
     sys.path[0] = str(pathlib.Path(__file__).resolve().parents[2])
     __package__ = "pipelines.blender"
 
-from ..common import process  # noqa: E402
-from ..common.errors import DriverError, ExitCode, run_main  # noqa: E402
-from ..common.polyrecon_cli import Polyrecon  # noqa: E402
-from . import bench_report  # noqa: E402
+from ..common import process
+from ..common.errors import DriverError, ExitCode, run_main
+from ..common.polyrecon_cli import Polyrecon
+from . import bench_report
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 HERE = pathlib.Path(__file__).resolve().parent
@@ -62,7 +61,9 @@ def arguments(words):
     parser.add_argument("--seconds", default="15,45", help="budgets (%(default)s)")
     parser.add_argument("--clock", choices=("wall", "cpu"), default="wall", help="what the seconds are (wall)")
     parser.add_argument("--methods", default=",".join(METHODS), help="(%(default)s)")
-    parser.add_argument("--reference-spp", type=int, default=1024, help="a multiple of %d (%%(default)s)" % REFERENCE_STEP)
+    parser.add_argument(
+        "--reference-spp", type=int, default=1024, help="a multiple of %d (%%(default)s)" % REFERENCE_STEP
+    )
     parser.add_argument("--draws", type=int, default=1, help="seeds for each cell (%(default)s: the file's own)")
     parser.add_argument("--references", action="store_true", help="render the references and nothing else")
     parser.add_argument("--stop-after", type=float, default=math.inf, metavar="SECONDS", help="begin no run after this")
@@ -80,10 +81,14 @@ def arguments(words):
         if unknown := sorted(set(given) - set(known)):
             parser.error(f"{', '.join(unknown)}: not one of {', '.join(known)}")
     names = [pathlib.Path(scene).stem for scene in options.scenes]
-    if len(set(names)) < len(names) or {pathlib.Path(s).stem for s in options.scenes if s.endswith(".blend")} & set(SCENES):
+    if len(set(names)) < len(names) or {pathlib.Path(s).stem for s in options.scenes if s.endswith(".blend")} & set(
+        SCENES
+    ):
         parser.error("a .blend file is known by its name, which another scene has: copy it to one of its own")
     if options.reference_spp < 2 * REFERENCE_STEP or options.reference_spp % REFERENCE_STEP:
-        parser.error(f"--reference-spp {options.reference_spp}: a multiple of {REFERENCE_STEP}, {2 * REFERENCE_STEP} at least")
+        parser.error(
+            f"--reference-spp {options.reference_spp}: a multiple of {REFERENCE_STEP}, {2 * REFERENCE_STEP} at least"
+        )
     if options.draws < 1:
         parser.error(f"--draws {options.draws}: 1 at least")
     try:
@@ -189,7 +194,9 @@ def uniform(scene, image, samples):
     parts = [scene.folder / f"part_{i}.exr" for i in range(PARTS)]
     merged = scene.folder / "merged.exr"
     rendering = scene.render(scene.folder / "part.exr", spp=samples, parts=PARTS, features=True)
-    scene.polyrecon.run("merge", *parts, "-o", merged, "--samples", str(samples // PARTS), "--compression", "none", "--quiet")
+    scene.polyrecon.run(
+        "merge", *parts, "-o", merged, "--samples", str(samples // PARTS), "--compression", "none", "--quiet"
+    )
     scene.polyrecon.run("denoise", "-i", merged, "-o", image, "--quiet")
     return rendering, {"spp": samples}
 
@@ -236,10 +243,19 @@ def measure(scene, method, budget, knob):
     spent = {"wall": time.perf_counter() - wall, "cpu": children_seconds() - cpu}
     seconds = spent[scene.options.clock]
     rendering = governed[scene.options.clock] if governed else seconds
-    row = {"scene": scene.name, "draw": scene.draw, "budget": budget, "method": method, "knob": knob, "seconds": seconds}
+    row = {
+        "scene": scene.name,
+        "draw": scene.draw,
+        "budget": budget,
+        "method": method,
+        "knob": knob,
+        "seconds": seconds,
+    }
     row |= {"rendering": rendering, **spent, **details, **scene.score(trial), "image": scene.picture_of(method, budget)}
     draw = f" draw {scene.draw}" if scene.draw > 1 else ""
-    print(f"{scene.name}{draw} {budget:g} s: {method} {knob:.4g}: {seconds:.1f} s, relMSE {row['relMSE']:.5f}", flush=True)
+    print(
+        f"{scene.name}{draw} {budget:g} s: {method} {knob:.4g}: {seconds:.1f} s, relMSE {row['relMSE']:.5f}", flush=True
+    )
     return row
 
 

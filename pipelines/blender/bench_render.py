@@ -25,7 +25,9 @@ def arguments():
     parser.add_argument("--denoise", action="store_true")
     parser.add_argument("--features", action="store_true", help="store the denoising features")
     parser.add_argument("--size", help="WIDTHxHEIGHT instead of the file's own")
-    parser.add_argument("--save-blend", help="write the scene, set to Cycles, the size and the seed, here as a .blend file too")
+    parser.add_argument(
+        "--save-blend", help="write the scene, set to Cycles, the size and the seed, here as a .blend file too"
+    )
     parser.add_argument("--timing")
     return parser.parse_args()
 

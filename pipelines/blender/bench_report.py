@@ -5,10 +5,20 @@ import os
 import platform
 
 LETTER = {"uniform": "(a) uniform, polyrecon", "adaptive": "(b) adaptive loop", "cycles": "(c) Cycles adaptive, OIDN"}
-LETTER |= {"oidn": "(d) uniform, OIDN", "prior": "(e) loop with OIDN as prior", "uniform_prior": "(f) uniform with that"}
+LETTER |= {
+    "oidn": "(d) uniform, OIDN",
+    "prior": "(e) loop with OIDN as prior",
+    "uniform_prior": "(f) uniform with that",
+}
 COLOUR = {"uniform": "#4477aa", "adaptive": "#cc3311", "cycles": "#228833", "oidn": "#aa8800"}
 COLOUR |= {"prior": "#aa3377", "uniform_prior": "#66ccee"}
-RATIOS = (("adaptive", "uniform"), ("adaptive", "cycles"), ("prior", "uniform"), ("prior", "uniform_prior"), ("prior", "cycles"))
+RATIOS = (
+    ("adaptive", "uniform"),
+    ("adaptive", "cycles"),
+    ("prior", "uniform"),
+    ("prior", "uniform_prior"),
+    ("prior", "cycles"),
+)
 BEGIN, END = "<!-- bench: begin -->", "<!-- bench: end -->"
 
 
@@ -66,7 +76,9 @@ def write(document, rows, options):
     _, mark, tail = rest.partition(END)
     if not mark:
         raise SystemExit(f"{document}: no '{BEGIN}' ... '{END}'")
-    made = f"{options.size}, references of {options.reference_spp} samples, {os.cpu_count()} cores ({platform.machine()})"
+    made = (
+        f"{options.size}, references of {options.reference_spp} samples, {os.cpu_count()} cores ({platform.machine()})"
+    )
     if options.draws > 1:
         made += f", geometric means of {options.draws} draws"
     clock = {"wall": "seconds", "cpu": "processor seconds"}[options.clock]
@@ -98,6 +110,8 @@ def plot(rows, path, clock):
         axis.set_xlabel(f"{clock}, all included")
         axis.grid(True, which="both", linewidth=0.3)
     axes[0][0].set_ylabel("relMSE, trimmed")
-    figure.legend(*axes[0][0].get_legend_handles_labels(), loc="upper center", bbox_to_anchor=(0.5, 0), ncol=len(LETTER))
+    figure.legend(
+        *axes[0][0].get_legend_handles_labels(), loc="upper center", bbox_to_anchor=(0.5, 0), ncol=len(LETTER)
+    )
     figure.savefig(path, metadata={"Date": None}, bbox_inches="tight")
     plt.close(figure)

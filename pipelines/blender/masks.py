@@ -49,7 +49,9 @@ def _boxes(inside, box, samples):
     whole = PASS + (x1 - x0) * (y1 - y0) * (samples + PIXEL), [box]
     if whole[0] <= 3 * PASS:  # two passes and what is in them cost hardly less
         return whole
-    cuts = [((x0, y0, x, y1), (x, y0, x1, y1)) for x in _places(x0, x1)] + [((x0, y0, x1, y), (x0, y, x1, y1)) for y in _places(y0, y1)]
+    cuts = [((x0, y0, x, y1), (x, y0, x1, y1)) for x in _places(x0, x1)] + [
+        ((x0, y0, x1, y), (x0, y, x1, y1)) for y in _places(y0, y1)
+    ]
     pairs = [[_shrunk(inside, part) for part in cut] for cut in cuts]
     pairs = [pair for pair in pairs if all(pair)]
     if not pairs:
@@ -104,7 +106,12 @@ def write(folder, piece, reach, frame):
     spec = oiio.ImageSpec(mask.shape[1], mask.shape[0], 1, "uint8")
     spec.attribute("compression", "none")
     file = oiio.ImageOutput.create(path)
-    if not file or not file.open(path, spec) or not file.write_image(mask.astype(np.uint8)[..., None] * 255) or not file.close():
+    if (
+        not file
+        or not file.open(path, spec)
+        or not file.write_image(mask.astype(np.uint8)[..., None] * 255)
+        or not file.close()
+    ):
         raise DriverError(ExitCode.OUTPUT, f"{path}: {file.geterror() if file else oiio.geterror()}")
     height, width = frame
     x0, y0, x1, y1 = piece.box

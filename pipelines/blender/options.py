@@ -11,14 +11,25 @@ from .renderer import BlenderRenderer
 def add_common(parser):
     parser.add_argument("scene", type=pathlib.Path, metavar="SCENE.blend")
     add_frame_arguments(parser)
-    parser.add_argument("--visibility", choices=("shadow", "ambient-occlusion", "none"), default="none",
-                        help="pass to render as the feature of that name (none)")  # fmt: skip
-    parser.add_argument("--with-prior", action="store_true",
-                        help="denoise each half by Cycles' own denoiser too, stored as the layers Prior A and Prior B")  # fmt: skip
+    parser.add_argument(
+        "--visibility",
+        choices=("shadow", "ambient-occlusion", "none"),
+        default="none",
+        help="pass to render as the feature of that name (none)",
+    )
+    parser.add_argument(
+        "--with-prior",
+        action="store_true",
+        help="denoise each half by Cycles' own denoiser too, stored as the layers Prior A and Prior B",
+    )
     blender = parser.add_mutually_exclusive_group()
     blender.add_argument("--blender", metavar="PATH", help="Blender to run ($BLENDER, else `blender`)")
-    blender.add_argument("--bpy", action="store_const", const="bpy", dest="blender", help="use the module bpy of this Python")
-    parser.add_argument("--pass-timeout", type=positive, default=3600, metavar="S", help="a pass that takes longer has hung (3600)")
+    blender.add_argument(
+        "--bpy", action="store_const", const="bpy", dest="blender", help="use the module bpy of this Python"
+    )
+    parser.add_argument(
+        "--pass-timeout", type=positive, default=3600, metavar="S", help="a pass that takes longer has hung (3600)"
+    )
 
 
 def renderer_of(options, method="auto"):

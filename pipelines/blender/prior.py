@@ -22,13 +22,19 @@ def add(merged, layer, session):
         priors.update({f"{layer}.Prior {half}.{c}": denoised[f"{layer}.Combined.{c}"] for c in "RGB"})
         source.unlink()
         target.unlink()
-    priors.update({f"{layer}.Prior.{c}": (priors[f"{layer}.Prior A.{c}"] + priors[f"{layer}.Prior B.{c}"]) / 2 for c in "RGB"})
+    priors.update(
+        {f"{layer}.Prior.{c}": (priors[f"{layer}.Prior A.{c}"] + priors[f"{layer}.Prior B.{c}"]) / 2 for c in "RGB"}
+    )
     exr.write(merged, {**channels, **priors}, attributes, compression="none")  # as it was
 
 
 def _half(channels, layer, half):
     """The passes that Cycles' denoiser of files asks for; it wants motion vectors too, and reads them in animations only."""
-    picture = {c: channels[f"{layer}.Combined {half}.{c}"] for c in "RGB"} | {"A": np.ones_like(channels[f"{layer}.Combined.R"])}
+    picture = {c: channels[f"{layer}.Combined {half}.{c}"] for c in "RGB"} | {
+        "A": np.ones_like(channels[f"{layer}.Combined.R"])
+    }
     found = {f"{layer}.{name}.{c}": plane for name in ("Combined", "Noisy Image") for c, plane in picture.items()}
-    found.update({f"{layer}.{name}.{c}": channels[f"{layer}.{name} {half}.{c}"] for name, cs in FEATURES.items() for c in cs})
+    found.update(
+        {f"{layer}.{name}.{c}": channels[f"{layer}.{name} {half}.{c}"] for name, cs in FEATURES.items() for c in cs}
+    )
     return found | {f"{layer}.Vector.{c}": np.zeros_like(picture["A"]) for c in "XYZW"}

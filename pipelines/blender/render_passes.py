@@ -23,7 +23,9 @@ from .options import add_common, renderer_of
 
 
 def arguments(words):
-    parser = argparse.ArgumentParser(prog="polyrecon-blender-passes", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        prog="polyrecon-blender-passes", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     add_common(parser)
     parser.add_argument("--spp", type=int, required=True, metavar="N", help="samples per pixel in all")
     parser.add_argument("--parts", type=int, default=8, metavar="K", help="subsets; more tell the variance better (8)")

@@ -11,7 +11,15 @@ from ..loop.renderer import RENDER_SECONDS, SAMPLE_COUNT, Audit, Renderer, Switc
 from . import masks, prior, regions
 from .session import BlenderSession
 
-PART_LAYERS = {"Combined", "Denoising Albedo", "Denoising Normal", "Denoising Depth", "Shadow", "Ambient Occlusion", "AO"}
+PART_LAYERS = {
+    "Combined",
+    "Denoising Albedo",
+    "Denoising Normal",
+    "Denoising Depth",
+    "Shadow",
+    "Ambient Occlusion",
+    "AO",
+}
 RENDER_TIME = "Render Time"  # of all samples of a pass, in milliseconds of a thread
 OVERHEAD_SECONDS = 0.045  # of a pass, until one was measured
 
@@ -72,7 +80,9 @@ class BlenderRenderer(Renderer):
             notes.append("Python drivers of the file are not run: what they move stays as it was saved")
         method = "masks by a camera shader" if self.masked else f"rectangles, since {found['no_mask_camera']}"
         switches = [Switch(**switch) for switch in found["switches"]]
-        return Audit(found["width"], found["height"], f"{found['view_layer']}.Combined", switches, passes, notes, method)
+        return Audit(
+            found["width"], found["height"], f"{found['view_layer']}.Combined", switches, passes, notes, method
+        )
 
     def uniform(self, first, samples, target):
         own_passes = first == 0 and bool(self.opened["own_passes"])
@@ -149,7 +159,9 @@ class BlenderRenderer(Renderer):
             done += length
             for name, values in more.items():
                 if done > length:
-                    values = channels[name] + (values if _is_time(name) else (values - channels[name]) * (length / done))
+                    values = channels[name] + (
+                        values if _is_time(name) else (values - channels[name]) * (length / done)
+                    )
                 channels[name] = values
             seconds += took
         return channels, seconds
@@ -166,7 +178,11 @@ class BlenderRenderer(Renderer):
     def _write(self, target, channels, counts, keep_all=False):
         layer = self.opened["view_layer"]
         time = next((values for name, values in channels.items() if _is_time(name)), None)
-        part = {name: values for name, values in channels.items() if (keep_all and not _is_time(name)) or name.split(".")[-2] in PART_LAYERS}
+        part = {
+            name: values
+            for name, values in channels.items()
+            if (keep_all and not _is_time(name)) or name.split(".")[-2] in PART_LAYERS
+        }
         part[f"{layer}.{SAMPLE_COUNT}"] = counts
         if time is not None:
             part[f"{layer}.{RENDER_SECONDS}"] = 1e-3 * time

@@ -103,7 +103,12 @@ class BlenderSession:
         self.log = []
         self.answers = queue.Queue()
         self.child = process.start(
-            self.command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace"
+            self.command,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            errors="replace",
         )
         self.listener = threading.Thread(target=self._listen, args=(self.child, self.answers), daemon=True)
         self.listener.start()

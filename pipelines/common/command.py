@@ -9,12 +9,16 @@ from .progress import STYLES, Progress
 
 def add_frame_arguments(parser):
     """What to write, for which frames, and how to tell of it."""
-    parser.add_argument("-o", "--output", required=True, metavar="OUT.exr", help="picture to write; #### or %%04d is the frame")
+    parser.add_argument(
+        "-o", "--output", required=True, metavar="OUT.exr", help="picture to write; #### or %%04d is the frame"
+    )
     frames = parser.add_mutually_exclusive_group()
     frames.add_argument("--frame", type=int, help="frame to render, in place of the scene's own")
     frames.add_argument("--frames", help="frames to render: 1-10,20-40x2")
     parser.add_argument("--polyrecon", metavar="PATH", help="polyrecon to run ($POLYRECON, else `polyrecon`)")
-    parser.add_argument("--passes-dir", type=pathlib.Path, metavar="DIR", help="for all that is made on the way (OUT.passes)")
+    parser.add_argument(
+        "--passes-dir", type=pathlib.Path, metavar="DIR", help="for all that is made on the way (OUT.passes)"
+    )
     parser.add_argument("--progress", choices=STYLES, default="auto", help="json: one object a line on standard error")
     parser.add_argument("-q", "--quiet", action="store_true", help="print nothing but errors")
 

@@ -9,7 +9,9 @@ GRACE_SECONDS = 5
 
 def start(words, **options):
     """subprocess.Popen of a list of words, as the leader of a new process group."""
-    return subprocess.Popen([word if isinstance(word, os.PathLike) else str(word) for word in words], start_new_session=True, **options)
+    return subprocess.Popen(
+        [word if isinstance(word, os.PathLike) else str(word) for word in words], start_new_session=True, **options
+    )
 
 
 def stop(child):
@@ -41,7 +43,9 @@ def run_side_by_side(commands, timeout=None, **options):
     children = []
     try:
         for words in commands:
-            children.append(start(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, errors="replace", **options))
+            children.append(
+                start(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, errors="replace", **options)
+            )
         said = [child.communicate(timeout=timeout) for child in children]
         return [(child.returncode, *texts) for child, texts in zip(children, said)]
     except BaseException:

@@ -16,9 +16,9 @@ from typing import Optional
 import numpy as np
 
 from ..common import exr
+from ..common.errors import DriverError, ExitCode
 from .budget import CONVERGENCE_RATE, Budget, Spent, even_share, next_slice, nothing_left, rest, seconds_per_even_sample
 from .counts import cost_of_samples, quantise, weight_of_samples
-from ..common.errors import DriverError, ExitCode
 from .journal import Journal
 from .renderer import RENDER_SECONDS, SAMPLE_COUNT
 
@@ -28,7 +28,9 @@ ROUND_QUALITY = "draft"
 EVEN_PARTS = 2  # of a half in an even round: what they differ by tells the variance; the longer, the cheaper a sample
 LEAST_CUT, LEAST_EVEN = 8, 1  # samples of a half that are cut so, and that are worth a pass
 EVEN_STEPS = 3  # slices that an even round takes at once: it is not as soon that another map pays
-EXTRA_OVER_UNIFORM = 1.3  # seconds of a sample in a masked pass over one in a whole pass, until they are measured: docs/adaptive.md
+EXTRA_OVER_UNIFORM = (
+    1.3  # seconds of a sample in a masked pass over one in a whole pass, until they are measured: docs/adaptive.md
+)
 # Seconds of a decision over those of merging two parts, until one was made: within a fifth from 480x270 to 1920x1080.
 JUDGING = 8.5
 # Seconds of the last merge and reconstruction, of all samples, and of the report, over those of a decision.
@@ -74,7 +76,10 @@ class _Totals:
     def add(self, part):
         """Adds a part's file; returns its counts."""
         channels = exr.read(part, lambda name: name.endswith((SAMPLE_COUNT, RENDER_SECONDS)))
-        values = {name: next((v for n, v in channels.items() if n.endswith(name)), None) for name in (SAMPLE_COUNT, RENDER_SECONDS)}
+        values = {
+            name: next((v for n, v in channels.items() if n.endswith(name)), None)
+            for name in (SAMPLE_COUNT, RENDER_SECONDS)
+        }
         if values[SAMPLE_COUNT] is None:
             raise DriverError(ExitCode.RENDERER, f"{part}: the renderer wrote no {SAMPLE_COUNT}")
         total = self + _Totals(values[SAMPLE_COUNT].astype(float), values[RENDER_SECONDS])
@@ -147,7 +152,9 @@ class _Loop:
         merged = self.file(0, "first")
         merged.parent.mkdir(exist_ok=True)
         begin = time.monotonic()
-        self.polyrecon.run("merge", *[self.journal.files(half)[0] for half in HALVES], "-o", merged, "--compression", "none", "--quiet")
+        self.polyrecon.run(
+            "merge", *[self.journal.files(half)[0] for half in HALVES], "-o", merged, "--compression", "none", "--quiet"
+        )
         self.judging = JUDGING * (time.monotonic() - begin)
         merged.unlink()
 
@@ -172,7 +179,10 @@ class _Loop:
             place = plan["before"] + index
             if not self.journal.has(plan["round"], half, place):
                 self.tell(f"round {plan['round']}, half {half.upper()}", round=plan["round"])
-                counts = next(iter(exr.read(self.file(plan["round"], f"counts_{half}")).values())).astype(int) // plan["parts"]
+                counts = (
+                    next(iter(exr.read(self.file(plan["round"], f"counts_{half}")).values())).astype(int)
+                    // plan["parts"]
+                )
                 first = plan["first"][half] + index * int(counts.max())
                 self.render_part(plan["round"], half, place, first, counts, 0, plan["worth"] / 2)
         self.journal["plan"] = None
@@ -187,7 +197,14 @@ class _Loop:
             samples = self.renderer.extra(first, counts, self.folder / name)
         seconds = time.monotonic() - begin
         taken = self.totals[half].add(self.folder / name)
-        part = {"file": name, "half": half, "round": round_number, "first": first, "spp": float(taken.mean()), "seconds": seconds}
+        part = {
+            "file": name,
+            "half": half,
+            "round": round_number,
+            "first": first,
+            "spp": float(taken.mean()),
+            "seconds": seconds,
+        }
         part["masked"] = counts is not None and int(counts.min()) < int(counts.max())
         part["worth"] = worth if part["masked"] else part["spp"]  # samples of average cost
         self.journal["parts"].append(part)
@@ -221,7 +238,13 @@ class _Loop:
         if samples and not any(c.any() for c in counts.values()):
             self.why_ended = "no error is left that more samples could lower"
             samples = 0.0
-        entry = {"round": number, "spp": spent.samples, "seconds": spent.seconds, "judging": self.judging, "error": spent.error}
+        entry = {
+            "round": number,
+            "spp": spent.samples,
+            "seconds": spent.seconds,
+            "judging": self.judging,
+            "error": spent.error,
+        }
         entry["extra"] = samples
         self.journal["rounds"].append(entry)
         if samples:
@@ -234,20 +257,50 @@ class _Loop:
         self.tell(f"reconstruction {number}", round=number)
         begin = time.monotonic()
         self.merge_halves(number)
-        files = {half: [self.file(number, f"{kind}_{half}") for kind in ("merged", "clean", "error")] for half in HALVES}
+        files = {
+            half: [self.file(number, f"{kind}_{half}") for kind in ("merged", "clean", "error")] for half in HALVES
+        }
         completing = time.monotonic()
         for merged, _, _ in files.values():
             self.renderer.complete(merged)
         begin += time.monotonic() - completing  # it may render feature passes, once: no later judgement takes as long
         threads = max(1, len(os.sched_getaffinity(0)) // 2)
-        self.polyrecon.run_side_by_side("denoise", [
-            ["-i", merged, "-o", clean, "--quality", ROUND_QUALITY, "--error-map", error, "--threads", threads, "--quiet"]
-            for merged, clean, error in files.values()])  # fmt: skip
+        self.polyrecon.run_side_by_side(
+            "denoise",
+            [
+                [
+                    "-i",
+                    merged,
+                    "-o",
+                    clean,
+                    "--quality",
+                    ROUND_QUALITY,
+                    "--error-map",
+                    error,
+                    "--threads",
+                    threads,
+                    "--quiet",
+                ]
+                for merged, clean, error in files.values()
+            ],
+        )
         self.judging = time.monotonic() - begin
 
     def merge_halves(self, number):
-        self.polyrecon.run_side_by_side("merge", [
-            [*self.journal.files(half), "-o", self.file(number, f"merged_{half}"), "--compression", "none", "--quiet"] for half in HALVES])  # fmt: skip
+        self.polyrecon.run_side_by_side(
+            "merge",
+            [
+                [
+                    *self.journal.files(half),
+                    "-o",
+                    self.file(number, f"merged_{half}"),
+                    "--compression",
+                    "none",
+                    "--quiet",
+                ]
+                for half in HALVES
+            ],
+        )
 
     def spent(self):
         parts = self.journal["parts"]
@@ -280,9 +333,25 @@ class _Loop:
         files = {half: [self.file(number, f"{kind}_{half}") for kind in ("cost", "map")] for half in HALVES}
         for half, (cost_file, _) in files.items():
             exr.write(cost_file, {"Y": costs[half]})
-        self.polyrecon.run_side_by_side("samplemap", [
-            ["--error-map", self.file(number, f"error_{OTHER[half]}"), "--budget", samples / 2, "--max-samples", max(1024, 4 * samples),
-             "--cost", cost_file, "-o", map_file, "--quiet"] for half, (cost_file, map_file) in files.items()])  # fmt: skip
+        self.polyrecon.run_side_by_side(
+            "samplemap",
+            [
+                [
+                    "--error-map",
+                    self.file(number, f"error_{OTHER[half]}"),
+                    "--budget",
+                    samples / 2,
+                    "--max-samples",
+                    max(1024, 4 * samples),
+                    "--cost",
+                    cost_file,
+                    "-o",
+                    map_file,
+                    "--quiet",
+                ]
+                for half, (cost_file, map_file) in files.items()
+            ],
+        )
         counts = {half: quantise(exr.read(map_file)["samples.Y"], costs[half]) for half, (_, map_file) in files.items()}
         for file in itertools.chain(*files.values()):
             file.unlink()
@@ -320,7 +389,10 @@ class _Loop:
         seconds = {masked: [p for p in self.journal["parts"] if p["masked"] is masked] for masked in (False, True)}
         if not seconds[True]:
             return EXTRA_OVER_UNIFORM
-        masked, whole = (sum(p["seconds"] for p in parts) / sum(p["worth"] for p in parts) for parts in (seconds[True], seconds[False]))
+        masked, whole = (
+            sum(p["seconds"] for p in parts) / sum(p["worth"] for p in parts)
+            for parts in (seconds[True], seconds[False])
+        )
         return max(1.0, masked / whole)
 
     def place_in_sequence(self, number, counts):
@@ -328,7 +400,9 @@ class _Loop:
         even ones go on where the sequence has come to."""
         even = all(c.min() == c.max() for c in counts.values())
         parts = min(self.even_parts(int(c.max())) for c in counts.values()) if even else 1
-        before = sum(part["round"] == number for part in self.journal["parts"]) // 2  # parts of a half that the round has
+        before = (
+            sum(part["round"] == number for part in self.journal["parts"]) // 2
+        )  # parts of a half that the round has
         plan = {"round": number, "first": {}, "parts": parts, "before": before}
         free = self.journal["next"]
         (self.folder / f"round_{number}").mkdir(exist_ok=True)
@@ -346,15 +420,37 @@ class _Loop:
         merged, error_map = self.folder / "merged.exr", self.folder / "error.exr"
         self.tell("result", done=1.0)
         halves = [self.journal.files(half) for half in HALVES]
-        self.polyrecon.run("merge", *halves[0], "--half-b", *halves[1], "-o", merged, "--compression", "none", "--quiet")
+        self.polyrecon.run(
+            "merge", *halves[0], "--half-b", *halves[1], "-o", merged, "--compression", "none", "--quiet"
+        )
         self.renderer.complete(merged)
         self.renderer.complete_last(merged)
-        self.polyrecon.run("denoise", "-i", merged, "-o", self.settings.output, "--quality", self.settings.quality, "--error-map",
-                           error_map, "--quiet")  # fmt: skip
+        self.polyrecon.run(
+            "denoise",
+            "-i",
+            merged,
+            "-o",
+            self.settings.output,
+            "--quality",
+            self.settings.quality,
+            "--error-map",
+            error_map,
+            "--quiet",
+        )
         self.save()
         error = float(np.nanmean(exr.read(error_map, lambda name: name == "relmse.Y")["relmse.Y"]))
         samples = sum(p["spp"] for p in self.journal["parts"])
-        return Result(self.audit, self.renderer.name, self.journal, merged, error_map, error, samples, self.seconds(), self.why_ended)
+        return Result(
+            self.audit,
+            self.renderer.name,
+            self.journal,
+            merged,
+            error_map,
+            error,
+            samples,
+            self.seconds(),
+            self.why_ended,
+        )
 
     # Small things.
 
@@ -380,7 +476,19 @@ class _Loop:
     def tell(self, stage, **figures):
         budget, last = self.settings.budget, (self.journal["rounds"] or [{}])[-1]
         samples = sum(p["spp"] for p in self.journal["parts"])
-        done = samples / budget.samples if budget.samples else self.seconds() / budget.seconds if budget.seconds else None
+        done = (
+            samples / budget.samples if budget.samples else self.seconds() / budget.seconds if budget.seconds else None
+        )
         left = budget.seconds - self.seconds() if budget.seconds else None
-        self.progress.update(stage, **{"frame": self.settings.frame, "samples": samples, "error": last.get("error"), "seconds":
-                             round(self.seconds(), 2), "seconds_left": left, "done": done, **figures})  # fmt: skip
+        self.progress.update(
+            stage,
+            **{
+                "frame": self.settings.frame,
+                "samples": samples,
+                "error": last.get("error"),
+                "seconds": round(self.seconds(), 2),
+                "seconds_left": left,
+                "done": done,
+                **figures,
+            },
+        )

@@ -33,8 +33,10 @@ class Journal:
         if not journal.path.exists():
             return journal
         if not resume:
-            raise DriverError(ExitCode.USAGE, f"{journal.path}: passes of an earlier run: --resume goes on with them, or choose "
-                              "another --passes-dir")  # fmt: skip
+            raise DriverError(
+                ExitCode.USAGE,
+                f"{journal.path}: passes of an earlier run: --resume goes on with them, or choose another --passes-dir",
+            )
         try:
             data = json.loads(journal.path.read_text(encoding="utf-8"))
             version, found = data["version"], data["identity"]
@@ -44,8 +46,9 @@ class Journal:
             raise DriverError(ExitCode.BAD_INPUT, f"{journal.path}: of another version of this program")
         for key in sorted(identity.keys() | found.keys()):
             if found.get(key) != identity.get(key):
-                raise DriverError(ExitCode.USAGE, f"{journal.path}: cannot go on, {key} was {found.get(key)}, "
-                                  f"is {identity.get(key)}")  # fmt: skip
+                raise DriverError(
+                    ExitCode.USAGE, f"{journal.path}: cannot go on, {key} was {found.get(key)}, is {identity.get(key)}"
+                )
         for part in data["parts"]:
             if not (journal.path.parent / part["file"]).exists():
                 raise DriverError(ExitCode.MISSING, f"{journal.path.parent / part['file']}: the journal's part is gone")

@@ -16,21 +16,32 @@ CURVE = {"width": 640, "height": 240, "margin": 48}
 
 def text(result, settings, page):
     """A few lines for the terminal."""
-    lines = [f"{settings.output}: {result.samples:.3g} samples per pixel, {result.seconds:.1f} s, estimated relMSE {result.error:.3g}"]
+    lines = [
+        f"{settings.output}: {result.samples:.3g} samples per pixel, {result.seconds:.1f} s, estimated relMSE {result.error:.3g}"
+    ]
     lines += [f"  budget {settings.budget}: {result.why_ended}"]
-    lines += [f"  round {r['round']}: {r['spp']:.3g} spp, {r['seconds']:.1f} s, relMSE {r['error']:.3g}" for r in result.journal["rounds"]]
-    lines += [f"  {switch.effect} {switch.setting}: {switch.reason}" + (f" (saves {switch.saves})" if switch.saves else "")
-              for switch in result.audit.switches]  # fmt: skip
+    lines += [
+        f"  round {r['round']}: {r['spp']:.3g} spp, {r['seconds']:.1f} s, relMSE {r['error']:.3g}"
+        for r in result.journal["rounds"]
+    ]
+    lines += [
+        f"  {switch.effect} {switch.setting}: {switch.reason}" + (f" (saves {switch.saves})" if switch.saves else "")
+        for switch in result.audit.switches
+    ]
     lines += [f"  extra samples: {result.audit.method}"] + [f"  {note}" for note in result.audit.notes]
     return "\n".join([*lines, f"  report: {page}"])
 
 
 def write(result, settings, polyrecon):
     """Writes report.html into the folder of passes; returns its path. One page, pictures inside, nothing loaded."""
-    environment = jinja2.Environment(autoescape=True, trim_blocks=True, lstrip_blocks=True, undefined=jinja2.StrictUndefined)
+    environment = jinja2.Environment(
+        autoescape=True, trim_blocks=True, lstrip_blocks=True, undefined=jinja2.StrictUndefined
+    )
     with tempfile.TemporaryDirectory() as folder:
         entries = result.journal["rounds"]
-        files = [_files_of(entry["round"], settings.passes) for entry in entries] + [[result.merged, settings.output, result.error_map]]
+        files = [_files_of(entry["round"], settings.passes) for entry in entries] + [
+            [result.merged, settings.output, result.error_map]
+        ]
         *pictures, final = _pictures(polyrecon, files, pathlib.Path(folder))
     rounds = [{**entry, "picture": picture} for entry, picture in zip(entries, pictures)]
     page = environment.from_string(TEMPLATE.read_text(encoding="utf-8")).render(
@@ -64,8 +75,9 @@ def _pictures(polyrecon, several, folder):
 def _curve(result):
     """Points of the estimated error against seconds, both logarithmic, in pixels of the drawing: [{x, y, label}]."""
 
-
-    points = [(entry["seconds"], entry["error"]) for entry in result.journal["rounds"]] + [(result.seconds, result.error)]
+    points = [(entry["seconds"], entry["error"]) for entry in result.journal["rounds"]] + [
+        (result.seconds, result.error)
+    ]
     points = [(math.log(max(x, 1e-3)), math.log(y), x, y) for x, y in points if math.isfinite(y) and y > 0]
 
     def scaled(value, values, length):

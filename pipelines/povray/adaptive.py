@@ -37,7 +37,9 @@ def _main(words):
     options = _arguments(ours)
     if not options.scene.is_file():
         raise DriverError(ExitCode.MISSING, f"{options.scene}: no such scene")
-    renderer = PovrayRenderer(options.scene, povrays, options.povray, options.timeout, options.first_pass, options.camera)
+    renderer = PovrayRenderer(
+        options.scene, povrays, options.povray, options.timeout, options.first_pass, options.camera
+    )
     command.run_frames(options, renderer, {"renderer": "POV-Ray", "options": povrays, "camera": options.camera})
 
 

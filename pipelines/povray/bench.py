@@ -78,7 +78,9 @@ def measure(work, name):
         seconds = run("render_passes.py", path, "-o", merged, "--subpixels", grid, "--quiet", *size)
         begun = processor_seconds()
         Polyrecon().run("denoise", "-i", merged, "-o", clean, "--quiet")
-        yield row(f"render_passes.py --subpixels {grid}", work, name, merged, clean, [seconds, processor_seconds() - begun])
+        yield row(
+            f"render_passes.py --subpixels {grid}", work, name, merged, clean, [seconds, processor_seconds() - begun]
+        )
     passes, clean = work / f"{name}.passes", work / f"{name}_adaptive.exr"
     shutil.rmtree(passes, ignore_errors=True)
     options = ["--budget-spp", ADAPTIVE_SAMPLES, "--passes-dir", passes, "--quiet"]
@@ -133,7 +135,9 @@ def reference(work, name):
     channels = {}
     for kind in ("mean", "variance"):
         planes = np.concatenate([getattr(band, kind) for band in bands])
-        channels.update({f"Combined{' Variance' * (kind == 'variance')}.{c}": planes[..., i] for i, c in enumerate("RGB")})
+        channels.update(
+            {f"Combined{' Variance' * (kind == 'variance')}.{c}": planes[..., i] for i, c in enumerate("RGB")}
+        )
     exr.write(target, channels)
     return target
 

@@ -38,9 +38,7 @@ SEEN_SHARE = 0.02  # a pass that answers in fewer pixels than this is not worth 
 DIFFUSE_RESIDUAL = 0.1  # relative departure from c N.D at which the lamps do not measure normals
 DEPTH_RESIDUAL = 0.03  # relative disagreement of lamp and fog at which the camera is elsewhere
 MOST_CAMERAS = 3  # of a scene file that are tried
-AFTER_LOCATION = (
-    "(?:up|right|direction|sky|look_at|angle|aperture|blur_samples|focal_point|confidence|variance|perspective|orthographic)"
-)
+AFTER_LOCATION = "(?:up|right|direction|sky|look_at|angle|aperture|blur_samples|focal_point|confidence|variance|perspective|orthographic)"
 SHADOW = 0.02  # light that a shadow has to take to count as one
 
 
@@ -80,7 +78,7 @@ class Plan:
 
 
 class Lamps:
-    """Renders of one scene at one size, in POV-Ray's working gamma. """
+    """Renders of one scene at one size, in POV-Ray's working gamma."""
 
     def __init__(self, scene, gamma=1.0, scale=1, size=None, crop=None):
         self._scene, self._where, self.gamma = scene, dict(scale=scale, size=size, crop=crop), gamma

@@ -26,7 +26,9 @@ def _split(grid, crop, overhead):
         return [(crop, int(part.max()))]
     _, axis, at = best
     crops = []
-    for piece, x, y in ((part[:at], 0, 0), (part[at:], 0, at)) if axis == 0 else ((part[:, :at], 0, 0), (part[:, at:], at, 0)):
+    for piece, x, y in (
+        ((part[:at], 0, 0), (part[at:], 0, at)) if axis == 0 else ((part[:, :at], 0, 0), (part[:, at:], at, 0))
+    ):
         inner = _tight(piece, crop.x0 + x, crop.y0 + y)
         crops += _split(grid, inner, overhead) if inner else []
     return crops

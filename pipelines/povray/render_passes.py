@@ -119,9 +119,13 @@ def channels(layers):
 
 def add_povray_arguments(parser):
     """The options that both drivers have."""
-    parser.add_argument("--camera", metavar="X,Y,Z", type=_place, help="place of the camera, where the scene does not tell it")
+    parser.add_argument(
+        "--camera", metavar="X,Y,Z", type=_place, help="place of the camera, where the scene does not tell it"
+    )
     parser.add_argument("--povray", default="povray", metavar="PATH", help="the program (povray)")
-    parser.add_argument("--timeout", type=positive, metavar="SECONDS", help="longest time of one POV-Ray run (no limit)")
+    parser.add_argument(
+        "--timeout", type=positive, metavar="SECONDS", help="longest time of one POV-Ray run (no limit)"
+    )
 
 
 def _place(text):

@@ -203,7 +203,9 @@ class Scene:
     def _why(self):
         """The first error that POV-Ray printed, on one line; it wraps its messages at 80 columns."""
         unwrapped = re.sub(r"\n +(?=\S)", " ", self.messages)
-        lines = [line.strip() for line in unwrapped.splitlines() if re.search(r"\b(?:[Ee]rror|[Pp]roblem|[Ff]ailed)\b", line)]
+        lines = [
+            line.strip() for line in unwrapped.splitlines() if re.search(r"\b(?:[Ee]rror|[Pp]roblem|[Ff]ailed)\b", line)
+        ]
         text = " ".join(lines[:2]) or (self.messages.strip().splitlines() or ["it said nothing"])[-1]
         return text.replace(f"{self.work}/scene.pov", self.path.name)
 

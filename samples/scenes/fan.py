@@ -17,7 +17,16 @@ def build():
     _bench()
     _ball()
     _dust()
-    kit.lamp("SPOT", 12000, (1.6, 9.0, 4.6), (1.0, 0.90, 0.72), target=HUB, spot_size=0.5, spot_blend=0.2, shadow_soft_size=0.05)
+    kit.lamp(
+        "SPOT",
+        12000,
+        (1.6, 9.0, 4.6),
+        (1.0, 0.90, 0.72),
+        target=HUB,
+        spot_size=0.5,
+        spot_blend=0.2,
+        shadow_soft_size=0.05,
+    )
     kit.lamp("AREA", 22, (-2.4, -0.6, 2.7), (0.55, 0.70, 1.0), target=(0.3, 2.6, 0.8), shape="DISK", size=0.8)
     kit.sky((0.55, 0.66, 0.80), (0.25, 0.42, 0.75), 0.45)
     kit.camera((1.15, -1.9, 1.5), (-0.1, 4.0, 1.4), 28)
@@ -107,7 +116,9 @@ def _bench():
     kit.cone((-1.5, 2.25, 0.78), 0.10, 0.13, 0.24, kit.plain("Copper pot", (0.90, 0.48, 0.30), 0.2, 1.0))
     kit.box((-1.05, 2.1, 0.78), (-0.75, 2.4, 0.92), kit.plain("Tool box", (0.45, 0.05, 0.03), 0.3), turn=20, bevel=0.01)
     kit.cone((1.45, 2.9, 0), 0.32, 0.32, 0.85, kit.plain("Drum", (0.04, 0.17, 0.22), 0.35))
-    kit.box((0.55, 3.1, 0), (1.05, 3.6, 0.45), kit.checker("Crate", (0.36, 0.24, 0.12), (0.26, 0.16, 0.08), 5.0), turn=12)
+    kit.box(
+        (0.55, 3.1, 0), (1.05, 3.6, 0.45), kit.checker("Crate", (0.36, 0.24, 0.12), (0.26, 0.16, 0.08), 5.0), turn=12
+    )
 
 
 def _ball():

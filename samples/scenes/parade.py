@@ -3,7 +3,6 @@ lamp whose highlight wanders over the metal and the floor, and between frames 6 
 
 import math
 
-import bpy
 import kit
 
 FRAMES, CUT = 10, 7  # the second shot begins with frame 7
@@ -64,7 +63,9 @@ def _curves(action):
     """The curves of an action, of which Blender 5 has one set per layer, strip and slot."""
     if hasattr(action, "fcurves"):
         return list(action.fcurves)
-    return [curve for layer in action.layers for strip in layer.strips for bag in strip.channelbags for curve in bag.fcurves]
+    return [
+        curve for layer in action.layers for strip in layer.strips for bag in strip.channelbags for curve in bag.fcurves
+    ]
 
 
 def _cameras(scene):

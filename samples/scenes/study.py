@@ -3,7 +3,6 @@ the picture is lit indirectly and mirrored in a polished floor. The two lights a
 
 import random
 
-import bpy
 import kit
 
 

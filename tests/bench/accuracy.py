@@ -91,7 +91,10 @@ def steps_table(found):
             [step]
             + [f"{float(f[step]['seconds']):.2f}" for f in found.values()]
             + [f"{float(f[step]['relMSE']):.5f}" for f in found.values()]
-            + [cell(mean([ratio(f, step, c) for f in found.values()]), 2 + (c == "relMSE")) for c in ("seconds", "relMSE")]
+            + [
+                cell(mean([ratio(f, step, c) for f in found.values()]), 2 + (c == "relMSE"))
+                for c in ("seconds", "relMSE")
+            ]
         )
     noisy = [f"{float(f['noisy']['relMSE']):.5f}" for f in found.values()]
     rows.append(["noisy input"] + [""] * len(found) + noisy + ["", ""])
@@ -143,7 +146,9 @@ def write_figures(path, found):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--polyrecon", default=ROOT / "build" / "release" / "src" / "polyrecon")
-    parser.add_argument("--out", type=pathlib.Path, default=ROOT / "out" / "accuracy", help="folder for reports and CSV")
+    parser.add_argument(
+        "--out", type=pathlib.Path, default=ROOT / "out" / "accuracy", help="folder for reports and CSV"
+    )
     parser.add_argument("--only", choices=SAMPLES, nargs="*", help="sweep these; the others' CSV must be there")
     options = parser.parse_args()
     options.out.mkdir(parents=True, exist_ok=True)

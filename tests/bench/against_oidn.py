@@ -27,9 +27,7 @@ def open_image_denoise(frame, size, prefilter, target):
     scene = bpy.context.scene
     scene.compositing_node_group = tree
     tree.interface.new_socket("Image", in_out="OUTPUT", socket_type="NodeSocketColor")
-    output, source, denoise = map(
-        tree.nodes.new, ("NodeGroupOutput", "CompositorNodeImage", "CompositorNodeDenoise")
-    )
+    output, source, denoise = map(tree.nodes.new, ("NodeGroupOutput", "CompositorNodeImage", "CompositorNodeDenoise"))
     source.image = bpy.data.images.load(str(frame.resolve()))
     for name, value in (("HDR", True), ("Prefilter", prefilter), ("Quality", "High")):
         denoise.inputs[name].default_value = value
@@ -50,14 +48,26 @@ def open_image_denoise(frame, size, prefilter, target):
 
 
 def seconds_of_oidn(frame, size, prefilter, folder):
-    command = [sys.executable, __file__, frame, "--size", "x".join(map(str, size)), "--prefilter", prefilter, "--target", folder / "oidn.exr"]
+    command = [
+        sys.executable,
+        __file__,
+        frame,
+        "--size",
+        "x".join(map(str, size)),
+        "--prefilter",
+        prefilter,
+        "--target",
+        folder / "oidn.exr",
+    ]
     told = subprocess.run(command, check=True, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True).stdout
     return float(told.splitlines()[-1])
 
 
 def seconds_of_polyrecon(program, frame, quality, folder):
     begin = time.perf_counter()
-    subprocess.run([program, "denoise", "-i", frame, "-o", folder / "ours.exr", "--quality", quality, "--quiet"], check=True)
+    subprocess.run(
+        [program, "denoise", "-i", frame, "-o", folder / "ours.exr", "--quality", quality, "--quiet"], check=True
+    )
     return time.perf_counter() - begin
 
 

@@ -21,7 +21,6 @@ import time
 
 import numpy as np
 import OpenImageIO as oiio
-
 import scaling
 
 sys.path.append(str(scaling.ROOT))
@@ -251,7 +250,8 @@ def main():
         runs = measure_constants(args.program, shots)
         version = subprocess.run([args.program, "--version"], check=True, capture_output=True, text=True).stdout.strip()
         constants.update(
-            made_by=f"tests/bench/farm_model.py, also with --neighbours and with --scaling, {version}", **rounded(fit_model(runs))
+            made_by=f"tests/bench/farm_model.py, also with --neighbours and with --scaling, {version}",
+            **rounded(fit_model(runs)),
         )
         constants.setdefault("parallel_part", 1.0)
         constants.setdefault("neighbour", {"bytes": 0.0, "seconds": 0.0})

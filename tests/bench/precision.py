@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""Compares the float build with one of -DPOLYRECON_REAL=double on the samples and prints a Markdown table: where rounding decides.
+"""Compares the build for float with one for double on the samples.
+
+Prints a Markdown table of the differences, which rounding causes:
 
     cmake --preset release -B build/double -DPOLYRECON_REAL=double && cmake --build build/double --target polyrecon
     tests/bench/precision.py build/release/src/polyrecon build/double/src/polyrecon
@@ -29,7 +31,9 @@ def run(program, file, folder, effects):
     """The result and its error map, in files of their own: OpenImageIO remembers what it has read."""
     folder = pathlib.Path(tempfile.mkdtemp(dir=folder))
     clean, error = folder / "clean.exr", folder / "error.exr"
-    subprocess.run([program, "denoise", "-i", file, "-o", clean, "--error-map", error, "--quiet", "--effects", effects], check=True)
+    subprocess.run(
+        [program, "denoise", "-i", file, "-o", clean, "--error-map", error, "--quiet", "--effects", effects], check=True
+    )
     return read(clean, "ViewLayer.Combined"), read(error, "mse")
 
 
@@ -40,17 +44,24 @@ def main():
     parser.add_argument("--pixels", type=int, default=0, metavar="N", help="also print the N pixels that differ most")
     parser.add_argument("--effects", default="auto", help="of denoise")
     args = parser.parse_args()
-    print("| sample | largest | root mean square | over 1e-3 | over 1e-4 | sum of the error map |\n|---|---|---|---|---|---|")
+    print(
+        "| sample | largest | root mean square | over 1e-3 | over 1e-4 | sum of the error map |\n|---|---|---|---|---|---|"
+    )
     for sample in args.samples:
         with tempfile.TemporaryDirectory() as folder:
             folder = pathlib.Path(folder)
             # A result has the type of its input: float here, as rounding to half alone differs by up to 5e-4.
-            subprocess.run(["oiiotool", "-a", ROOT / f"samples/{sample}.exr", "-d", "float", "-o", folder / "in.exr"], check=True)
+            subprocess.run(
+                ["oiiotool", "-a", ROOT / f"samples/{sample}.exr", "-d", "float", "-o", folder / "in.exr"], check=True
+            )
             (a, ea), (b, eb) = (run(p, folder / "in.exr", folder, args.effects) for p in args.programs)
         difference = (np.abs(a - b) / np.maximum(np.abs(b), b.mean())).max(axis=2)
         over = [f"{100 * (difference > limit).mean():.2g} %" for limit in (1e-3, 1e-4)]
-        print(f"| {sample} | {difference.max():.2g} | {np.sqrt((difference**2).mean()):.2g} | {over[0]} | {over[1]} "
-              f"| {abs(ea.sum() / eb.sum() - 1):.1g} |", flush=True)  # fmt: skip
+        print(
+            f"| {sample} | {difference.max():.2g} | {np.sqrt((difference**2).mean()):.2g} | {over[0]} | {over[1]} "
+            f"| {abs(ea.sum() / eb.sum() - 1):.1g} |",
+            flush=True,
+        )
         for i in np.argsort(difference, axis=None)[::-1][: args.pixels]:
             y, x = np.unravel_index(i, difference.shape)
             print(f"  ({x}, {y}): {a[y, x]} {b[y, x]}")

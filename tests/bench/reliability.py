@@ -14,7 +14,7 @@ import OpenImageIO as oiio
 from accuracy import ROOT, SAMPLES, table, write_between
 
 matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402
+import matplotlib.pyplot as plt
 
 DECILES = 10
 FLOOR = 0.01  # of relMSE

@@ -11,7 +11,7 @@ import matplotlib
 import numpy as np
 
 matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402
+import matplotlib.pyplot as plt
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PARTS = {
@@ -26,7 +26,12 @@ LEVELS = {"bandwidth/KiB:24": "L1", "bandwidth/KiB:1024": "L2", "bandwidth/KiB:1
 
 
 def rates(program):
-    command = [program, "--benchmark_format=json", "--benchmark_filter=" + "|".join([*PARTS, *PEAKS, *LEVELS]), "--benchmark_repetitions=5"]
+    command = [
+        program,
+        "--benchmark_format=json",
+        "--benchmark_filter=" + "|".join([*PARTS, *PEAKS, *LEVELS]),
+        "--benchmark_repetitions=5",
+    ]
     told = json.loads(subprocess.run(command, check=True, stdout=subprocess.PIPE).stdout)["benchmarks"]
     best = {}
     for row in told:  # the best of five: what disturbs only ever takes time
@@ -45,16 +50,22 @@ def main():
     peak = best["peak<float>"]["flop"]
     for name, label in LEVELS.items():
         axes.plot(intensity, np.minimum(intensity * best[name]["bytes"], peak) / 1e9, color="grey")
-        axes.text(0.035, 0.04 * best[name]["bytes"] / 1e9, f"{label}: {best[name]['bytes'] / 1e9:.0f} GB/s", rotation=32)
+        axes.text(
+            0.035, 0.04 * best[name]["bytes"] / 1e9, f"{label}: {best[name]['bytes'] / 1e9:.0f} GB/s", rotation=32
+        )
     for name, label in PEAKS.items():
         axes.axhline(best[name]["flop"] / 1e9, color="grey", linestyle=":")
         axes.text(100, best[name]["flop"] / 1e9 * 1.05, f"{label}: {best[name]['flop'] / 1e9:.0f} Gflop/s", ha="right")
     print("| part | flop/byte | Gflop/s | GB/s | of the roof of L1 | of L2 |\n|---|---:|---:|---:|---:|---:|")
     for name, label in PARTS.items():
         flop, moved = best[name]["flop"], best[name]["bytes"]
-        roofs = [flop / min(flop / moved * best[level]["bytes"], best["peak<double>"]["flop"]) for level in list(LEVELS)[:2]]
+        roofs = [
+            flop / min(flop / moved * best[level]["bytes"], best["peak<double>"]["flop"]) for level in list(LEVELS)[:2]
+        ]
         axes.plot(flop / moved, flop / 1e9, "o", label=label)
-        print(f"| {label} | {flop / moved:.2f} | {flop / 1e9:.1f} | {moved / 1e9:.1f} | {roofs[0]:.0%} | {roofs[1]:.0%} |")
+        print(
+            f"| {label} | {flop / moved:.2f} | {flop / 1e9:.1f} | {moved / 1e9:.1f} | {roofs[0]:.0%} | {roofs[1]:.0%} |"
+        )
     axes.set(xscale="log", yscale="log", xlabel="operations a byte loaded or stored", ylabel="Gflop/s, one thread")
     axes.legend()
     figure.savefig(ROOT / "docs" / "roofline.png", dpi=80, bbox_inches="tight")

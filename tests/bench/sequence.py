@@ -52,7 +52,9 @@ def denoise(options, spp, radius):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--work", type=pathlib.Path, default=ROOT / "out" / "sequence", help="what make_sequence.py made")
+    parser.add_argument(
+        "--work", type=pathlib.Path, default=ROOT / "out" / "sequence", help="what make_sequence.py made"
+    )
     parser.add_argument("--polyrecon", default=str(ROOT / "build" / "release" / "src" / "polyrecon"))
     parser.add_argument("--spp", type=int, nargs="*", default=[8, 64, 128])
     parser.add_argument("--radius", type=int, nargs="*", default=[0, 1, 2, 3])
@@ -67,7 +69,9 @@ def main():
 
 
 def print_table(spp, rows):
-    print(f"\n| {spp} samples | " + " | ".join(str(frame) for frame in rows[0][1]) + " | mean | flicker | worst frame |")
+    print(
+        f"\n| {spp} samples | " + " | ".join(str(frame) for frame in rows[0][1]) + " | mean | flicker | worst frame |"
+    )
     print("|---" * (len(rows[0][1]) + 4) + "|")
     base = rows[1][1]  # of the first radius
     for name, relmse, flicker in rows:

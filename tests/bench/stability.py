@@ -11,7 +11,7 @@ import matplotlib
 import numpy as np
 
 matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402
+import matplotlib.pyplot as plt
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SAMPLES = {"study_16": "study", "glass_16": "glass", "lighthouse_16": "lighthouse", "study_denoised_16": "study"}
@@ -53,14 +53,23 @@ def draw_residuals(windows):
     figure, axes = plt.subplots(figsize=(7, 4))
     edges = np.logspace(0, 12, 25)
     place = np.digitize(windows["condition"], edges)
-    print("\n| solver | largest residual ratio, condition below 1e4 | below 1e8 | all | no number |\n|---|---:|---:|---:|---:|")
+    print(
+        "\n| solver | largest residual ratio, condition below 1e4 | below 1e8 | all | no number |\n|---|---:|---:|---:|---:|"
+    )
     for solver in SOLVERS:
         ratio = field(windows, solver)
         bins = [k for k in range(1, len(edges)) if (place == k).sum() > 5]
         worst = [np.nanmax(np.append(ratio[place == k], 0)) for k in bins]
-        axes.plot(np.sqrt(edges[np.array(bins) - 1] * edges[bins]), np.maximum(worst, 1e-12), ".-", label=LABELS.get(solver, solver))
+        axes.plot(
+            np.sqrt(edges[np.array(bins) - 1] * edges[bins]),
+            np.maximum(worst, 1e-12),
+            ".-",
+            label=LABELS.get(solver, solver),
+        )
         largest = [np.nanmax(ratio[windows["condition"] < most]) for most in (1e4, 1e8, np.inf)]
-        print(f"| {LABELS.get(solver, solver)} | {' | '.join(f'{value:.2g}' for value in largest)} | {(~np.isfinite(ratio)).mean():.1%} |")
+        print(
+            f"| {LABELS.get(solver, solver)} | {' | '.join(f'{value:.2g}' for value in largest)} | {(~np.isfinite(ratio)).mean():.1%} |"
+        )
     axes.axhline(LAPACK_LIMIT, color="grey", linestyle=":")
     axes.set(xscale="log", yscale="log", xlabel="condition number", ylabel="largest residual ratio")
     axes.legend()
@@ -87,12 +96,16 @@ def draw_columns(columns):
 
 
 def print_limits(limits):
-    print("\n| remainder | variation | error of the fits, geometric mean | columns below | largest overlap |\n|---:|---:|---:|---:|---:|")
+    print(
+        "\n| remainder | variation | error of the fits, geometric mean | columns below | largest overlap |\n|---:|---:|---:|---:|---:|"
+    )
     settings = list(dict.fromkeys(zip(limits["remainder"], limits["variation"])))
     rows = {s: limits[(limits["remainder"] == s[0]) & (limits["variation"] == s[1])] for s in settings}
     for setting in settings:
         ratio = np.exp(np.mean(np.log(rows[setting]["error"] / rows[REMAINDER, VARIATION]["error"])))
-        print(f"| {setting[0]:g} | {setting[1]:g} | {ratio:.4f} | {rows[setting]['dropped'].mean():.1%} | {rows[setting]['overlap'].max():.2g} |")
+        print(
+            f"| {setting[0]:g} | {setting[1]:g} | {ratio:.4f} | {rows[setting]['dropped'].mean():.1%} | {rows[setting]['overlap'].max():.2g} |"
+        )
 
 
 def main():

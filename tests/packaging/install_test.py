@@ -111,7 +111,15 @@ class DebianPackages(Folder):
 
     def test_their_dependencies_are_packages_of_debian_and_enough_to_run(self):
         depends = run("dpkg-deb", "--field", self.packages["polyrecon"], "Depends")
-        for word in ("libc6", "libopenimageio", "libopenexr", "libopencolorio", "libtbb", "libfmt", "fonts-dejavu-core"):
+        for word in (
+            "libc6",
+            "libopenimageio",
+            "libopenexr",
+            "libopencolorio",
+            "libtbb",
+            "libfmt",
+            "fonts-dejavu-core",
+        ):
             self.assertIn(word, depends)
         # Every library that the program and its module load belongs to one of them.
         needed = re.findall(r"NEEDED\)\s+Shared library: \[(\S+)\]", run("readelf", "--dynamic", *self.unpacked()))

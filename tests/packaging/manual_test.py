@@ -17,7 +17,9 @@ import time
 import unittest
 
 PROGRAM, SHARE = (pathlib.Path(word).resolve() for word in sys.argv[1:3])
-COMMANDS = re.findall(r"^  ([a-z]+)  ", subprocess.run([PROGRAM, "--help"], capture_output=True, text=True).stdout, re.M)
+COMMANDS = re.findall(
+    r"^  ([a-z]+)  ", subprocess.run([PROGRAM, "--help"], capture_output=True, text=True).stdout, re.M
+)
 SECONDS = 90  # that a shell may take to answer; on a busy machine zsh reads its completions for half a minute
 
 
@@ -78,7 +80,9 @@ class Manual(unittest.TestCase):
         pages = [SHARE / "man" / "man1" / f"polyrecon{suffix}.1" for suffix in ["", *("-" + c for c in COMMANDS)]]
         for page in pages:
             # The one warning that is left: the pages carry no date, so that they are the same in every build.
-            lint = subprocess.run(["mandoc", "-T", "lint", "-W", "warning", page], capture_output=True, text=True).stdout
+            lint = subprocess.run(
+                ["mandoc", "-T", "lint", "-W", "warning", page], capture_output=True, text=True
+            ).stdout
             self.assertEqual([line for line in lint.splitlines() if "missing date" not in line], [])
 
     def test_a_page_tells_what_the_help_tells(self):

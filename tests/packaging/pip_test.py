@@ -7,9 +7,10 @@ import shutil
 import subprocess
 import sys
 import tempfile
-import tomllib
 import unittest
 import venv
+
+import tomllib
 
 SOURCE, PROGRAM = (pathlib.Path(word).resolve() for word in sys.argv[1:3])
 PIPELINES = SOURCE / "pipelines"

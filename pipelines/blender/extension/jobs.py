@@ -74,7 +74,11 @@ class Job:
 
     def _next(self):
         words = self._commands.popleft()
-        group = {"start_new_session": True} if os.name == "posix" else {"creationflags": subprocess.CREATE_NEW_PROCESS_GROUP}
+        group = (
+            {"start_new_session": True}
+            if os.name == "posix"
+            else {"creationflags": subprocess.CREATE_NEW_PROCESS_GROUP}
+        )
         try:
             self._child = subprocess.Popen(
                 [os.fspath(word) for word in words],

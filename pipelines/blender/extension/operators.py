@@ -71,7 +71,18 @@ class POLYRECON_OT_denoise(_Start, bpy.types.Operator):
         results = _results(clean)
         _save_render(scene, results["NOISY"])
         error_map = results["ERROR"].with_suffix(".exr")
-        denoise = [program, "denoise", "-i", results["NOISY"], "-o", clean, "--error-map", error_map, "--progress", "json"]
+        denoise = [
+            program,
+            "denoise",
+            "-i",
+            results["NOISY"],
+            "-o",
+            clean,
+            "--error-map",
+            error_map,
+            "--progress",
+            "json",
+        ]
         jobs.start("Denoise", [denoise, _error_picture(program, error_map, results)], results)
 
 
@@ -135,7 +146,12 @@ class POLYRECON_OT_adaptive(_Start, bpy.types.Operator):
         words += [copy, "-o", chosen.output_pattern(), *chosen.limit_words(), *chosen.frames_words(scene)]
         words += ["--polyrecon", program, "--progress", "json", *(["--resume"] if chosen.go_on else [])]
         passes = _passes(last)
-        results = {"CLEAN": last, "NOISY": passes / "merged.exr", "ERROR": passes / "error.png", "REPORT": passes / "report.html"}
+        results = {
+            "CLEAN": last,
+            "NOISY": passes / "merged.exr",
+            "ERROR": passes / "error.png",
+            "REPORT": passes / "report.html",
+        }
         jobs.start("Adaptive", [words, _error_picture(program, passes / "error.exr", results)], results)
 
 

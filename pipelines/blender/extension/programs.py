@@ -21,7 +21,9 @@ def find_program(given=""):
                 raise Problem(f"{named}: no such program ({source})")
             return pathlib.Path(named)
     places = [pathlib.Path(found) for found in (shutil.which("polyrecon"),) if found]
-    places += [root / "build" / build / "src" / "polyrecon" for root in HERE.parents[2:3] for build in ("release", "dev")]
+    places += [
+        root / "build" / build / "src" / "polyrecon" for root in HERE.parents[2:3] for build in ("release", "dev")
+    ]
     for place in places:
         if os.access(place, os.X_OK):
             return place
@@ -34,7 +36,11 @@ def driver_words(name, program, blender, folder="", python=""):
 
     The driver is taken from the folder of the preferences, else from the checkout that this add-on or the program belongs
     to, else it is the command that was installed beside the program or stands on the PATH."""
-    places = [folder] if folder else [HERE.parent, *(root / "pipelines" / "blender" for root in program.resolve().parents[3:4])]
+    places = (
+        [folder]
+        if folder
+        else [HERE.parent, *(root / "pipelines" / "blender" for root in program.resolve().parents[3:4])]
+    )
     found = next((script for place in places if (script := pathlib.Path(place) / name).is_file()), None)
     if found:
         return [python or _python(blender), os.fspath(found), *_by(blender)]

@@ -30,14 +30,24 @@ class PolyreconSettings(bpy.types.PropertyGroup):
         ),
     )
     seconds: FloatProperty(name="Seconds", default=120, min=1, soft_max=3600, precision=0, description="For each frame")
-    spp: IntProperty(name="Samples", default=64, min=1, soft_max=4096, description="Average samples per pixel of a frame")
+    spp: IntProperty(
+        name="Samples", default=64, min=1, soft_max=4096, description="Average samples per pixel of a frame"
+    )
     target: FloatProperty(
-        name="Error", default=0.002, min=1e-6, soft_max=0.1, precision=4, description="Mean relative squared error to reach"
+        name="Error",
+        default=0.002,
+        min=1e-6,
+        soft_max=0.1,
+        precision=4,
+        description="Mean relative squared error to reach",
     )
     frames: EnumProperty(
         name="Frames",
         default="CURRENT",
-        items=(("CURRENT", "Current", "The current frame"), ("RANGE", "Range", "The scene's frame range with its step")),
+        items=(
+            ("CURRENT", "Current", "The current frame"),
+            ("RANGE", "Range", "The scene's frame range with its step"),
+        ),
     )
     go_on: BoolProperty(
         name="Go On",

@@ -2,8 +2,21 @@
 
 import bpy
 
-DYNAMIC_MODIFIERS = {"CLOTH", "SOFT_BODY", "FLUID", "DYNAMIC_PAINT", "EXPLODE", "OCEAN", "BUILD", "WAVE",
-                     "MESH_CACHE", "MESH_SEQUENCE_CACHE", "PARTICLE_SYSTEM", "PARTICLE_INSTANCE", "NODES"}  # fmt: skip
+DYNAMIC_MODIFIERS = {
+    "CLOTH",
+    "SOFT_BODY",
+    "FLUID",
+    "DYNAMIC_PAINT",
+    "EXPLODE",
+    "OCEAN",
+    "BUILD",
+    "WAVE",
+    "MESH_CACHE",
+    "MESH_SEQUENCE_CACHE",
+    "PARTICLE_SYSTEM",
+    "PARTICLE_INSTANCE",
+    "NODES",
+}
 
 
 def effects(scene, view_layer):
@@ -19,9 +32,13 @@ def effects(scene, view_layer):
         "animation": moves(scene),
         "lamps": sum(o.type == "LIGHT" for o in view_layer.objects),
         "denoising": bool(scene.cycles.use_denoising),
-        "scripted drivers": sum(1 for owner in _data() for d in _drivers(owner) if d.driver.type == "SCRIPTED"
-                                and not d.driver.is_simple_expression),
-    }  # fmt: skip
+        "scripted drivers": sum(
+            1
+            for owner in _data()
+            for d in _drivers(owner)
+            if d.driver.type == "SCRIPTED" and not d.driver.is_simple_expression
+        ),
+    }
 
 
 def moves(scene):
@@ -63,8 +80,11 @@ def _shader_trees():
 
 
 def _volume_linked(tree):
-    return any(node.inputs["Volume"].is_linked for node in tree.nodes if node.bl_idname.startswith("ShaderNodeOutput")
-               and "Volume" in node.inputs)  # fmt: skip
+    return any(
+        node.inputs["Volume"].is_linked
+        for node in tree.nodes
+        if node.bl_idname.startswith("ShaderNodeOutput") and "Volume" in node.inputs
+    )
 
 
 def _set_or_linked(node, names, zero):
@@ -76,8 +96,12 @@ def _set_or_linked(node, names, zero):
 
 
 def _transmits(node):
-    if node.bl_idname in ("ShaderNodeBsdfGlass", "ShaderNodeBsdfRefraction", "ShaderNodeBsdfTransparent",
-                          "ShaderNodeBsdfTranslucent"):  # fmt: skip
+    if node.bl_idname in (
+        "ShaderNodeBsdfGlass",
+        "ShaderNodeBsdfRefraction",
+        "ShaderNodeBsdfTransparent",
+        "ShaderNodeBsdfTranslucent",
+    ):
         return True
     return node.bl_idname == "ShaderNodeBsdfPrincipled" and _set_or_linked(
         node, ("Transmission", "Transmission Weight"), lambda value: value == 0
@@ -85,8 +109,13 @@ def _transmits(node):
 
 
 def _emits_texture(node):
-    socket = node.inputs.get({"ShaderNodeEmission": "Color", "ShaderNodeBackground": "Color",
-                              "ShaderNodeBsdfPrincipled": "Emission Color"}.get(node.bl_idname, ""))  # fmt: skip
+    socket = node.inputs.get(
+        {
+            "ShaderNodeEmission": "Color",
+            "ShaderNodeBackground": "Color",
+            "ShaderNodeBsdfPrincipled": "Emission Color",
+        }.get(node.bl_idname, "")
+    )
     return bool(socket and socket.is_linked)
 
 
@@ -101,17 +130,32 @@ def switch_off(scene, view_layer):
 
     render, cycles = scene.render, scene.cycles
     switch(cycles, "use_adaptive_sampling", False, "Cycles' adaptive sampling", "the loop decides where samples go")
-    switch(cycles, "use_denoising", False, "Cycles' denoiser", "polyrecon reconstructs", "the denoiser's time in every pass")
+    switch(
+        cycles,
+        "use_denoising",
+        False,
+        "Cycles' denoiser",
+        "polyrecon reconstructs",
+        "the denoiser's time in every pass",
+    )
     switch(cycles, "time_limit", 0, "time limit of a render", "a pass has to be whole")
     switch(cycles, "use_layer_samples", "IGNORE", "samples of the view layer", "the loop counts samples")
-    switch(render, "use_compositing", False, "compositor", "it does not touch the render layers", "its time in every pass")
+    switch(
+        render, "use_compositing", False, "compositor", "it does not touch the render layers", "its time in every pass"
+    )
     switch(render, "use_sequencer", False, "sequencer", "it does not touch the render layers", "its time in every pass")
     switch(render, "use_freestyle", False, "Freestyle", "its scripts would run code of the file; lines are not drawn")
     switch(render, "use_multiview", False, "stereo", "one view is rendered")
     switch(render, "use_border", False, "render border", "the whole frame is rendered")
     if render.use_motion_blur and not moves(scene):
-        switch(render, "use_motion_blur", False, "motion blur", "nothing in the file can move",
-               "two more evaluations of the scene in every synchronisation")  # fmt: skip
+        switch(
+            render,
+            "use_motion_blur",
+            False,
+            "motion blur",
+            "nothing in the file can move",
+            "two more evaluations of the scene in every synchronisation",
+        )
     for layer in scene.view_layers:
         if layer != view_layer:
             switch(layer, "use", False, f"view layer {layer.name}", f"{view_layer.name} is rendered")

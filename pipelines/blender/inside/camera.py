@@ -58,8 +58,11 @@ def why_not(scene, camera_object, depsgraph):
         return "the lens may change within the shutter"
     if scene.cycles.use_camera_cull or scene.cycles.use_distance_cull:
         return "objects are culled by the camera"
-    if any(m.type == "SUBSURF" and getattr(m, "use_adaptive_subdivision", False)
-           for o in scene.objects for m in o.modifiers):
+    if any(
+        m.type == "SUBSURF" and getattr(m, "use_adaptive_subdivision", False)
+        for o in scene.objects
+        for m in o.modifiers
+    ):
         return "adaptive subdivision dices by the camera"
     if _uses_window_coordinates():
         return "a material uses window coordinates"
@@ -71,8 +74,9 @@ def why_not(scene, camera_object, depsgraph):
 def _uses_window_coordinates():
     trees = [m.node_tree for m in bpy.data.materials] + [w.node_tree for w in bpy.data.worlds]
     trees += [light.node_tree for light in bpy.data.lights] + [g for g in bpy.data.node_groups if g.type == "SHADER"]
-    return any(node.type == "TEX_COORD" and node.outputs["Window"].is_linked
-               for tree in trees if tree for node in tree.nodes)
+    return any(
+        node.type == "TEX_COORD" and node.outputs["Window"].is_linked for tree in trees if tree for node in tree.nodes
+    )
 
 
 def _reaches_beyond(camera_object, depsgraph):
@@ -116,10 +120,14 @@ class MaskCamera:
         scale = 1.0 if orthographic else -1.0 / corners[0].z
         xs, ys = [c.x * scale for c in corners], [c.y * scale for c in corners]
         return {
-            "left": min(xs), "bottom": min(ys), "width": max(xs) - min(xs), "height": max(ys) - min(ys),
+            "left": min(xs),
+            "bottom": min(ys),
+            "width": max(xs) - min(xs),
+            "height": max(ys) - min(ys),
             "aperture_scale": 1.0 if orthographic else camera.lens * 1e-3,  # Cycles counts it in focal lengths there
-            "orthographic": orthographic, "near": camera.clip_start,
-        }  # fmt: skip
+            "orthographic": orthographic,
+            "near": camera.clip_start,
+        }
 
     def _compile(self):
         from cycles import osl

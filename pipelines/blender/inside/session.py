@@ -15,12 +15,12 @@ import traceback
 
 import bpy
 
-import _cycles  # noqa: I001  (comes with bpy)
+import _cycles  # isort: skip (bpy makes it importable)
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
-import audit  # noqa: E402
-import camera  # noqa: E402
+import audit
+import camera
 
 MARK = "@polyrecon "
 # Samples of one sequence; further ones have other seeds. Cycles lays out a table for a whole sequence, and where that is too
@@ -120,8 +120,12 @@ class Session:
         wanted = {"shadow": "use_pass_shadow", "ambient-occlusion": "use_pass_ambient_occlusion"}.get(visibility)
         if wanted and not hasattr(layer, wanted):
             raise RuntimeError(f"Blender {bpy.app.version_string} has no pass {visibility}")
-        for owner, name in ((layer, "use_pass_combined"), (layer.cycles, "denoising_store_passes"), (layer, wanted),
-                            (layer.cycles, "pass_render_time")):  # fmt: skip
+        for owner, name in (
+            (layer, "use_pass_combined"),
+            (layer.cycles, "denoising_store_passes"),
+            (layer, wanted),
+            (layer.cycles, "pass_render_time"),
+        ):
             if name and hasattr(owner, name):
                 setattr(owner, name, True)
         self.every_part = self.passes_on()

@@ -117,8 +117,10 @@ def hostile(scene):
     text.use_module = True
     handler = bpy.data.texts.new("handlers.py")
     events = "load_post render_init render_pre frame_change_post depsgraph_update_post render_complete"
-    handler.write(f"import bpy\ndef run(*_): {code('handler')}\n"
-                  f"for event in {events.split()!r}: getattr(bpy.app.handlers, event).append(run)\n")  # fmt: skip
+    handler.write(
+        f"import bpy\ndef run(*_): {code('handler')}\n"
+        f"for event in {events.split()!r}: getattr(bpy.app.handlers, event).append(run)\n"
+    )
     handler.use_module = True
     drawing = bpy.data.texts.new("lines.py")
     drawing.write(code("freestyle"))
@@ -131,7 +133,18 @@ def hostile(scene):
     driver.expression = f"(exec({code('driver')!r}), 0)[1]"
 
 
-MADE = (lens, depth_of_field, caustic, orthographic, panoramic, still_motion_blur, moving, seed_animated, switched_on, hostile)
+MADE = (
+    lens,
+    depth_of_field,
+    caustic,
+    orthographic,
+    panoramic,
+    still_motion_blur,
+    moving,
+    seed_animated,
+    switched_on,
+    hostile,
+)
 KINDS = {f.__name__: f for f in MADE}
 
 

@@ -32,4 +32,6 @@ class SceneTest(unittest.TestCase):
     def driver(self, script, *words, **environment):
         """Runs a driver as a user does; returns the finished process."""
         command = [sys.executable, ROOT / "pipelines" / "blender" / script, *map(str, words)]
-        return subprocess.run(command, capture_output=True, text=True, cwd=self.folder, env={**os.environ, **environment})
+        return subprocess.run(
+            command, capture_output=True, text=True, cwd=self.folder, env={**os.environ, **environment}
+        )

@@ -15,7 +15,11 @@ class Audits(SceneTest):
         try:
             audit = renderer.begin(None)
             renderer.uniform(0, 2, self.folder / "part.exr")
-            return audit, renderer.opened["effects"], exr.read(self.folder / "part.exr", lambda name: ".Combined." in name)
+            return (
+                audit,
+                renderer.opened["effects"],
+                exr.read(self.folder / "part.exr", lambda name: ".Combined." in name),
+            )
         finally:
             renderer.close()
 
@@ -35,7 +39,9 @@ class Audits(SceneTest):
 
     def test_effects_are_found(self):
         _, effects, _ = self.render(self.scene("lens"))
-        self.assertEqual({k: v for k, v in effects.items() if v}, {"depth of field": True, "lamps": 1, "denoising": True})
+        self.assertEqual(
+            {k: v for k, v in effects.items() if v}, {"depth of field": True, "lamps": 1, "denoising": True}
+        )
 
 
 if __name__ == "__main__":

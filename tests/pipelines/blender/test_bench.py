@@ -42,7 +42,15 @@ class Run(unittest.TestCase):
 
     def test_small_scene_end_to_end_and_nothing_is_rendered_twice(self):
         with tempfile.TemporaryDirectory() as folder:
-            words = ["meadow", "--size=24x16", "--seconds=0.5", "--methods=oidn", "--reference-spp=128", "--work", folder]
+            words = [
+                "meadow",
+                "--size=24x16",
+                "--seconds=0.5",
+                "--methods=oidn",
+                "--reference-spp=128",
+                "--work",
+                folder,
+            ]
             code, said = self.call(*words)
             self.assertEqual(code, 0, said)
             self.assertIn("| meadow | 0.5 s |", said)
@@ -55,11 +63,18 @@ class Run(unittest.TestCase):
             before = {path: path.stat().st_mtime_ns for path in work.rglob("*.exr")}
             self.assertIn("| meadow | 0.5 s |", self.call(*words)[1])
             self.assertEqual({path: path.stat().st_mtime_ns for path in work.rglob("*.exr")}, before)
-            before.pop(work / "meadow" / "trial.exr", None)  # of a run that is not the nearest; the next one's takes its place
+            before.pop(
+                work / "meadow" / "trial.exr", None
+            )  # of a run that is not the nearest; the next one's takes its place
             self.call(*words, "--draws=2")
             self.assertEqual({path: path.stat().st_mtime_ns for path in before}, before)
-            first, second = (min((r for r in json.loads((work / "results_wall.json").read_text()) if r["draw"] == draw),
-                                 key=lambda row: abs(row["seconds"] - 0.5)) for draw in (1, 2))
+            first, second = (
+                min(
+                    (r for r in json.loads((work / "results_wall.json").read_text()) if r["draw"] == draw),
+                    key=lambda row: abs(row["seconds"] - 0.5),
+                )
+                for draw in (1, 2)
+            )
             self.assertEqual(first["image"], best["image"])
             self.assertTrue((work / "meadow" / second["image"]).exists())
             self.assertNotEqual(second["relMSE"], first["relMSE"])
@@ -72,15 +87,27 @@ class Run(unittest.TestCase):
             bpy.ops.wm.read_factory_settings()  # the cube, for EEVEE
             bpy.ops.wm.save_as_mainfile(filepath=str(own))
             before = own.read_bytes()
-            code, said = self.call(own, "--size=24x16", "--seconds=0.5", "--methods=oidn", "--reference-spp=128", "--work", folder)
+            code, said = self.call(
+                own, "--size=24x16", "--seconds=0.5", "--methods=oidn", "--reference-spp=128", "--work", folder
+            )
             self.assertEqual(code, 0, said)
             self.assertIn("| own | 0.5 s |", said)
             self.assertEqual(own.read_bytes(), before)
 
     def test_wrong_use(self):
-        for words in (["nowhere"], ["glass", "--methods=magic"], ["--seconds=soon"], ["--reference-spp=65"], ["a/glass.blend"],
-                      ["a/x.blend", "b/x.blend"]):
-            with self.subTest(words), contextlib.redirect_stderr(io.StringIO()), self.assertRaises(SystemExit) as raised:
+        for words in (
+            ["nowhere"],
+            ["glass", "--methods=magic"],
+            ["--seconds=soon"],
+            ["--reference-spp=65"],
+            ["a/glass.blend"],
+            ["a/x.blend", "b/x.blend"],
+        ):
+            with (
+                self.subTest(words),
+                contextlib.redirect_stderr(io.StringIO()),
+                self.assertRaises(SystemExit) as raised,
+            ):
                 bench.arguments(words)
             self.assertEqual(raised.exception.code, 2)
 
@@ -88,15 +115,20 @@ class Run(unittest.TestCase):
 class Report(unittest.TestCase):
     def test_ratios(self):
         figures = (("uniform", 0.02, 0.01), ("adaptive", 0.01, 0.008), ("prior", 0.004, 0.004))
-        made = [{"scene": "fan", "budget": 9.0, "method": m, "seconds": 9.1, "relMSE": e, "trimmed": t} for m, e, t in figures]
+        made = [
+            {"scene": "fan", "budget": 9.0, "method": m, "seconds": 9.1, "relMSE": e, "trimmed": t}
+            for m, e, t in figures
+        ]
         table = bench_report.table(made)
         cells = "| 0.02000 / 0.01000 (9.1 s) | 0.01000 / 0.00800 (9.1 s) | 0.00400 / 0.00400 (9.1 s) |"
         self.assertIn(f"| fan | 9 s {cells} 0.50 / 0.80 | 0.20 / 0.40 |", table)
         self.assertIn("| (b) / (a) | (e) / (a) |", table)
 
     def test_draws_are_averaged(self):
-        made = [{"scene": "fan", "budget": 9.0, "method": "oidn", "seconds": s, "relMSE": e, "trimmed": e / 2}
-                for s, e in ((8.0, 0.01), (9.0, 0.04))]
+        made = [
+            {"scene": "fan", "budget": 9.0, "method": "oidn", "seconds": s, "relMSE": e, "trimmed": e / 2}
+            for s, e in ((8.0, 0.01), (9.0, 0.04))
+        ]
         self.assertIn("| fan | 9 s | 0.02000 / 0.01000 (8.5 s) |", bench_report.table(made))
 
 

@@ -105,7 +105,9 @@ class Masks(SceneTest):
     def test_passes_lie_one_in_another_and_go_on_in_the_sequence(self):
         counts = np.array([[0, 4, 4], [0, 0, 1]])
         passes = [(p.skip, p.samples, p.box, p.inside.tolist()) for p in masks.plan(counts)]
-        self.assertEqual(passes, [(0, 1, (1, 0, 3, 2), [[True, True], [False, True]]), (1, 3, (1, 0, 3, 1), [[True, True]])])
+        self.assertEqual(
+            passes, [(0, 1, (1, 0, 3, 2), [[True, True], [False, True]]), (1, 3, (1, 0, 3, 1), [[True, True]])]
+        )
         self.assertEqual(masks.plan(np.zeros((2, 2))), [])
 
     def test_passes_are_cut_where_what_lies_between_costs_more_than_another_pass(self):

@@ -37,7 +37,9 @@ class Adaptive(SceneTest):
     def check(self, scene, blender, method):
         before = hashlib.sha256(scene.read_bytes()).digest()
         out = self.folder / "out.exr"
-        done = self.driver("adaptive.py", scene, "-o", out, "--budget-spp", 16, "--first-pass", 4, "--quality", "draft", *blender)
+        done = self.driver(
+            "adaptive.py", scene, "-o", out, "--budget-spp", 16, "--first-pass", 4, "--quality", "draft", *blender
+        )
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn(f"extra samples: {method}", done.stdout)
         self.assertEqual(before, hashlib.sha256(scene.read_bytes()).digest())
@@ -67,19 +69,50 @@ class Adaptive(SceneTest):
         scene = self.scene("moving", "-a 'b' \"{c}\" #ä日.blend")
         folder = self.folder / "out {x} #1"
         folder.mkdir()
-        done = self.driver("adaptive.py", "--bpy", "--budget-spp", 4, "--first-pass", 4, "--frames", "1-3x2", "--quality", "draft", "-o",
-                           folder / "<i>ä_##.exr", "--", scene.name)  # fmt: skip
+        done = self.driver(
+            "adaptive.py",
+            "--bpy",
+            "--budget-spp",
+            4,
+            "--first-pass",
+            4,
+            "--frames",
+            "1-3x2",
+            "--quality",
+            "draft",
+            "-o",
+            folder / "<i>ä_##.exr",
+            "--",
+            scene.name,
+        )
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertEqual(sorted(p.name for p in folder.iterdir()),
-                         ["<i>ä_01.exr", "<i>ä_01.passes", "<i>ä_03.exr", "<i>ä_03.passes"])  # fmt: skip
+        self.assertEqual(
+            sorted(p.name for p in folder.iterdir()), ["<i>ä_01.exr", "<i>ä_01.passes", "<i>ä_03.exr", "<i>ä_03.passes"]
+        )
         first, second = (exr.read(folder / f"<i>ä_0{n}.exr")["ViewLayer.Combined.R"] for n in (1, 3))
         self.assertGreater(np.abs(first - second).max(), 0.05)
         self.assertIn("&lt;i&gt;ä_01.exr", (folder / "<i>ä_01.passes" / "report.html").read_text())
 
     def test_case31_case32_killed_outright_it_goes_on_within_its_seconds(self):
         out, passes = self.folder / "out.exr", self.folder / "out.passes"
-        words = [self.scene(), "-o", out, "--budget-seconds", 8, "--first-pass", 4, "--quality", "draft", "--max-rounds", 99, "--bpy"]
-        killed = subprocess.Popen([sys.executable, ROOT / "pipelines" / "blender" / "adaptive.py", *map(str, words)], stderr=subprocess.DEVNULL)
+        words = [
+            self.scene(),
+            "-o",
+            out,
+            "--budget-seconds",
+            8,
+            "--first-pass",
+            4,
+            "--quality",
+            "draft",
+            "--max-rounds",
+            99,
+            "--bpy",
+        ]
+        killed = subprocess.Popen(
+            [sys.executable, ROOT / "pipelines" / "blender" / "adaptive.py", *map(str, words)],
+            stderr=subprocess.DEVNULL,
+        )
         while not (passes / "part_0a1.exr").exists():  # a journal is there; two more to come: Blender is the only child
             self.assertIsNone(killed.poll())
             time.sleep(0.005)
@@ -123,7 +156,9 @@ class RenderPasses(SceneTest):
     def test_the_subsets_are_the_ordinary_render(self):
         scene = self.scene()
         for parts, name in ((8, "many.exr"), (2, "few.exr")):
-            done = self.driver("render_passes.py", scene, "-o", self.folder / name, "--spp", 8, "--parts", parts, "--bpy")
+            done = self.driver(
+                "render_passes.py", scene, "-o", self.folder / name, "--spp", 8, "--parts", parts, "--bpy"
+            )
             self.assertEqual(done.returncode, 0, done.stderr)
         self.assertEqual(sorted(p.name for p in self.folder.iterdir()), ["few.exr", "many.exr", "plain.blend"])
         many, few = (exr.read(self.folder / name) for name in ("many.exr", "few.exr"))
@@ -142,8 +177,22 @@ class Hostile(SceneTest):
             for mark in self.folder.glob("ran_*"):  # made while the file was built
                 mark.unlink()
             out = self.folder / "out.exr"
-            done = self.driver("adaptive.py", scene, "-o", out, "--budget-spp", 8, "--first-pass", 4, "--blender", blender,
-                               "--quality", "draft", "--passes-dir", self.folder / f"passes_{blender == 'bpy'}")  # fmt: skip
+            done = self.driver(
+                "adaptive.py",
+                scene,
+                "-o",
+                out,
+                "--budget-spp",
+                8,
+                "--first-pass",
+                4,
+                "--blender",
+                blender,
+                "--quality",
+                "draft",
+                "--passes-dir",
+                self.folder / f"passes_{blender == 'bpy'}",
+            )
             self.assertEqual(done.returncode, 0, done.stderr)
             self.assertIn("Freestyle off", done.stdout)
             self.assertIn("Python drivers of the file are not run", done.stdout)
@@ -151,7 +200,9 @@ class Hostile(SceneTest):
 
     def test_the_file_would_run_it_if_it_were_let(self):
         """The test above can fail: Blender itself, told to trust the file, runs all of it."""
-        trust = "import sys, bpy; bpy.ops.wm.open_mainfile(filepath=sys.argv[1], use_scripts=True); bpy.ops.render.render()"
+        trust = (
+            "import sys, bpy; bpy.ops.wm.open_mainfile(filepath=sys.argv[1], use_scripts=True); bpy.ops.render.render()"
+        )
         for blender in ("bpy", BLENDER_3):
             scene = self.scene("hostile", blender=blender)
             command = [sys.executable, "-c", trust, scene]
@@ -172,7 +223,9 @@ class BadRenderers(SceneTest):
         scene = self.scene(blender=BLENDER_3)
         passes = self.folder / "p"
         session = self.folder / "blender"
-        executable(session, f"""#!/usr/bin/env python3
+        executable(
+            session,
+            f"""#!/usr/bin/env python3
 import subprocess, sys
 child = subprocess.Popen([{BLENDER_3!r}, *sys.argv[1:]], stdin=subprocess.PIPE, text=True)
 passes = 0
@@ -182,8 +235,21 @@ for line in sys.stdin:
 {body}
     child.stdin.write(line)
     child.stdin.flush()
-""")  # fmt: skip
-        arguments = [scene, "-o", self.folder / "o.exr", "--passes-dir", passes, "--budget-spp", 8, "--first-pass", 4, "--quality", "draft"]
+""",
+        )
+        arguments = [
+            scene,
+            "-o",
+            self.folder / "o.exr",
+            "--passes-dir",
+            passes,
+            "--budget-spp",
+            8,
+            "--first-pass",
+            4,
+            "--quality",
+            "draft",
+        ]
         done = self.driver("adaptive.py", *arguments, "--blender", session, *words)
         self.assertEqual(done.returncode, 7, done.stderr)
         self.assertEqual(len(done.stderr.strip().splitlines()), 1)
@@ -199,7 +265,9 @@ for line in sys.stdin:
     def test_case30_it_hangs(self):
         begin = time.monotonic()
         mark = f"{self.folder}/pid"
-        line = self.failing(f"        open({mark!r}, 'w').write(str(child.pid)); import time; time.sleep(1000)", "--pass-timeout", 15)
+        line = self.failing(
+            f"        open({mark!r}, 'w').write(str(child.pid)); import time; time.sleep(1000)", "--pass-timeout", 15
+        )
         self.assertIn("did not answer within 15 s", line)
         self.assertLess(time.monotonic() - begin, 200)
         with self.assertRaises(ProcessLookupError):

@@ -9,12 +9,15 @@ import time
 import unittest
 
 _resources = tempfile.TemporaryDirectory(prefix="polyrecon_resources_")
-os.environ["BLENDER_USER_RESOURCES"] = _resources.name  # read when bpy is imported: the user's own Blender is left alone
+os.environ["BLENDER_USER_RESOURCES"] = (
+    _resources.name
+)  # read when bpy is imported: the user's own Blender is left alone
 
-import bpy  # noqa: E402
-import numpy as np  # noqa: E402
-from pipelines.common import exr  # noqa: E402
-from pipelines.common.polyrecon_cli import find_polyrecon  # noqa: E402
+import bpy
+import numpy as np
+
+from pipelines.common import exr
+from pipelines.common.polyrecon_cli import find_polyrecon
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 SOURCE = ROOT / "pipelines" / "blender" / "extension"
@@ -24,7 +27,9 @@ PATIENCE = 240  # seconds for a job on a busy machine
 
 def extension_tool(*words):
     """Blender's own tool behind `blender --command extension`."""
-    tool = pathlib.Path(bpy.utils.resource_path("LOCAL")) / "scripts" / "addons_core" / "bl_pkg" / "cli" / "blender_ext.py"
+    tool = (
+        pathlib.Path(bpy.utils.resource_path("LOCAL")) / "scripts" / "addons_core" / "bl_pkg" / "cli" / "blender_ext.py"
+    )
     return subprocess.run([sys.executable, str(tool), *map(str, words)], capture_output=True, text=True)
 
 
@@ -128,7 +133,10 @@ class Extension(unittest.TestCase):
         noisy, clean = self.combined("clean_0001_noisy.exr"), self.combined("clean_0001.exr")
         self.assertGreater(np.abs(clean - noisy).max(), 1e-3)
         self.assertAlmostEqual(clean.mean() / noisy.mean(), 1, delta=1e-3)
-        for which, name, kind in (("CLEAN", "clean_0001.exr", "MULTILAYER"), ("ERROR", "clean_0001_error.png", "IMAGE")):
+        for which, name, kind in (
+            ("CLEAN", "clean_0001.exr", "MULTILAYER"),
+            ("ERROR", "clean_0001_error.png", "IMAGE"),
+        ):
             self.assertEqual(bpy.ops.polyrecon.show(which=which), {"FINISHED"})
             len(bpy.data.images[name].pixels)  # Blender reads a file when somebody looks
             self.assertEqual(bpy.data.images[name].type, kind)

@@ -43,8 +43,20 @@ class Prior(SceneTest):
         self.assertEqual(priors, {"ViewLayer.Prior", "ViewLayer.Prior A", "ViewLayer.Prior B"})
 
     def test_the_loop(self):
-        done = self.driver("adaptive.py", self.scene(), "-o", "out.exr", "--budget-spp", 8, "--first-pass", 4, "--quality", "draft",
-                           "--bpy", "--with-prior")  # fmt: skip
+        done = self.driver(
+            "adaptive.py",
+            self.scene(),
+            "-o",
+            "out.exr",
+            "--budget-spp",
+            8,
+            "--first-pass",
+            4,
+            "--quality",
+            "draft",
+            "--bpy",
+            "--with-prior",
+        )
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("Prior A, B", (self.folder / "out.passes" / "report.html").read_text())
         self.assertLessEqual(PRIORS, set(exr.read(self.folder / "out.passes" / "merged.exr")))
@@ -52,7 +64,9 @@ class Prior(SceneTest):
     @unittest.skipUnless(BLENDER_3, "no blender on the path")
     def test_a_blender_without_the_denoiser_is_told(self):
         scene = self.scene(blender=BLENDER_3)
-        done = self.driver("render_passes.py", scene, "-o", "out.exr", "--spp", 8, "--blender", BLENDER_3, "--with-prior")
+        done = self.driver(
+            "render_passes.py", scene, "-o", "out.exr", "--spp", 8, "--blender", BLENDER_3, "--with-prior"
+        )
         self.assertEqual(done.returncode, 2, done.stderr)
         self.assertIn("OpenImageDenoise", done.stderr)
 

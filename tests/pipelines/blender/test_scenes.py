@@ -8,6 +8,7 @@ import time
 import unittest
 
 import numpy as np
+
 from pipelines.common import exr
 
 RENDER = pathlib.Path(__file__).resolve().parents[3] / "samples" / "scenes" / "render.py"

@@ -13,14 +13,14 @@ import tempfile
 
 sys.path[0] = str(pathlib.Path(__file__).resolve().parents[3])
 
-import numpy as np  # noqa: E402
+import numpy as np
 
-from pipelines.blender.renderer import BlenderRenderer  # noqa: E402
-from pipelines.common import exr  # noqa: E402
-from pipelines.loop import adaptive  # noqa: E402
-from pipelines.loop.budget import Budget  # noqa: E402
-from pipelines.common.polyrecon_cli import Polyrecon  # noqa: E402
-from pipelines.common.progress import Progress  # noqa: E402
+from pipelines.blender.renderer import BlenderRenderer
+from pipelines.common import exr
+from pipelines.common.polyrecon_cli import Polyrecon
+from pipelines.common.progress import Progress
+from pipelines.loop import adaptive
+from pipelines.loop.budget import Budget
 
 MAKE_SCENE = pathlib.Path(__file__).with_name("make_scene.py")
 
@@ -72,10 +72,14 @@ def main():
     whole = (frames[0].mean() - frames[1].mean()) / np.sqrt(sum(f.var(ddof=1) / n for f in frames))
     print(f"{n} seeds, {np.mean(counts):.1f} samples per pixel, {np.min(counts):.0f} to {np.max(counts):.0f}")
     print(f"frame mean: adaptive {frames[0].mean():.6f}, uniform {frames[1].mean():.6f}: z = {whole:.2f}")
-    print(f"pixels: rms of z {np.sqrt((z**2).mean()):.3f} (1 expected), mean {z.mean():+.3f}, beyond 3: {(abs(z) > 3).mean():.4f} (0.0027 expected)")
+    print(
+        f"pixels: rms of z {np.sqrt((z**2).mean()):.3f} (1 expected), mean {z.mean():+.3f}, beyond 3: {(abs(z) > 3).mean():.4f} (0.0027 expected)"
+    )
     variance = [np.maximum(run.var(0), 1e-12) for run in (adapted, uniform)]
     ratios = [np.median(variance[0] / variance[1]), variance[0].mean() / variance[1].mean()]
-    print(f"variance of a pixel, adaptive / uniform: median {ratios[0]:.3f}; of their means, which single samples may rule, {ratios[1]:.3f}")
+    print(
+        f"variance of a pixel, adaptive / uniform: median {ratios[0]:.3f}; of their means, which single samples may rule, {ratios[1]:.3f}"
+    )
     return int(abs(whole) > 3 or np.sqrt((z**2).mean()) > 1.1)
 
 

@@ -50,7 +50,12 @@ class Recipes(unittest.TestCase):
             (cls.folder / "bin" / name).symlink_to(target)
         environment = dict(os.environ, PATH=f"{cls.folder}/bin:{os.environ['PATH']}", COMPOSITING=str(COMPOSITING))
         done = subprocess.run(
-            ["bash", "recipes.sh"], cwd=cls.folder, env=environment, capture_output=True, text=True, stdin=subprocess.DEVNULL
+            ["bash", "recipes.sh"],
+            cwd=cls.folder,
+            env=environment,
+            capture_output=True,
+            text=True,
+            stdin=subprocess.DEVNULL,
         )
         if done.returncode != 0:
             raise AssertionError(f"the recipes end with {done.returncode}: {done.stdout}\n{done.stderr}")
@@ -75,7 +80,10 @@ class Recipes(unittest.TestCase):
             self.assertTrue(same_bits(beauty[c], clean[f"ViewLayer.Combined.{c}"]), c)
 
     def test_grain_is_a_fifth_of_the_noise(self):
-        clean, noisy = layer(self.read("clean.exr"), "ViewLayer.Combined"), layer(self.read("render.exr"), "ViewLayer.Combined")
+        clean, noisy = (
+            layer(self.read("clean.exr"), "ViewLayer.Combined"),
+            layer(self.read("render.exr"), "ViewLayer.Combined"),
+        )
         np.testing.assert_allclose(layer(self.read("grain.exr")), 0.8 * clean + 0.2 * noisy, rtol=2e-3, atol=1e-4)
 
     def test_the_mask_is_where_the_error_is(self):
@@ -85,7 +93,9 @@ class Recipes(unittest.TestCase):
         self.assertTrue(np.array_equal((mask > 0.5)[decided], (error > 0.01)[decided]))
 
     def test_what_was_removed_is_shown_about_grey(self):
-        removed = layer(self.read("render.exr"), "ViewLayer.Combined") - layer(self.read("clean.exr"), "ViewLayer.Combined")
+        removed = layer(self.read("render.exr"), "ViewLayer.Combined") - layer(
+            self.read("clean.exr"), "ViewLayer.Combined"
+        )
         np.testing.assert_allclose(layer(self.read("removed.exr")), 10 * removed + 0.5, rtol=2e-3, atol=1e-2)
 
     def test_light_groups_are_mixed_anew(self):

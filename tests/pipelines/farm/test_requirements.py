@@ -6,9 +6,9 @@ import tempfile
 import unittest
 from pathlib import Path
 
+from pipelines.common.errors import DriverError, ExitCode
 from pipelines.farm import frames
 from pipelines.farm.requirements import Frame, Model, Node, chunk_for, frame_of, threads_for
-from pipelines.common.errors import DriverError, ExitCode
 
 from .shot import make_shot
 

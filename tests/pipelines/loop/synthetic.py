@@ -7,11 +7,11 @@ import sys
 import numpy as np
 
 from pipelines.common import exr
-from pipelines.loop import adaptive
-from pipelines.loop.budget import Budget
 from pipelines.common.errors import run_main
 from pipelines.common.polyrecon_cli import Polyrecon
 from pipelines.common.progress import Progress
+from pipelines.loop import adaptive
+from pipelines.loop.budget import Budget
 from pipelines.loop.renderer import RENDER_SECONDS, SAMPLE_COUNT, Audit, Renderer
 
 

@@ -14,9 +14,9 @@ from pathlib import Path
 import numpy as np
 
 from pipelines.common import exr
+from pipelines.common.errors import DriverError, ExitCode
 from pipelines.loop import budget
 from pipelines.loop.budget import Budget
-from pipelines.common.errors import DriverError, ExitCode
 from pipelines.loop.renderer import SAMPLE_COUNT
 from tests.pipelines.loop.synthetic import SyntheticRenderer, loop
 
@@ -51,7 +51,9 @@ class Statistics(Folder):
             self.assertLess(abs(z.mean()) * math.sqrt(z.size), 4, f"{name}: the mean is {z.mean():.4f} sigma off")
             self.assertLess(abs((z**2).mean() - 1), 0.08, f"{name}: variance {(z**2).mean():.3f} of what is expected")
             estimated = merged["L.Combined Variance.R"][place].mean() / variance[place].mean()
-            self.assertLess(abs(estimated - 1), 0.1, f"{name}: the estimated variance is {estimated:.3f} of the true one")
+            self.assertLess(
+                abs(estimated - 1), 0.1, f"{name}: the estimated variance is {estimated:.3f} of the true one"
+            )
         self.assertTrue(np.allclose(merged[f"L.{SAMPLE_COUNT}"], counts))
 
     def test_judging_a_half_by_itself_would_be_biased(self):
@@ -160,7 +162,9 @@ class HardFrames(Folder):
         for name, values in arrays.items():
             setattr(renderer, name, values)
         _, result = loop(self.folder, Budget(samples=24), renderer=renderer)
-        self.assertTrue(all(np.isfinite(p).all() for p in exr.read(self.folder / "out.exr", lambda n: ".Combined." in n).values()))
+        self.assertTrue(
+            all(np.isfinite(p).all() for p in exr.read(self.folder / "out.exr", lambda n: ".Combined." in n).values())
+        )
         return result
 
     def test_case34_a_frame_without_noise_ends_at_once_and_says_why(self):
@@ -243,7 +247,10 @@ class Resuming(Folder):
         loop(self.folder, Budget(samples=8))
         journal = self.folder / "passes" / "journal.json"
         good = journal.read_text()
-        for text, line in ((good[:-20], "no journal"), (good.replace('"first_pass": 8', '"first_pass": 16'), "first_pass was 16")):
+        for text, line in (
+            (good[:-20], "no journal"),
+            (good.replace('"first_pass": 8', '"first_pass": 16'), "first_pass was 16"),
+        ):
             journal.write_text(text)
             with self.assertRaisesRegex(DriverError, line):
                 loop(self.folder, Budget(samples=16), resume=True)

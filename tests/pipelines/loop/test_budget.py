@@ -1,9 +1,9 @@
 import unittest
 from pathlib import Path
 
-from pipelines.loop.budget import Budget, Spent, even_share, next_slice, nothing_left, rest, seconds_per_even_sample
 from pipelines.common.errors import DriverError
 from pipelines.common.frames import frame_path, parse_frames
+from pipelines.loop.budget import Budget, Spent, even_share, next_slice, nothing_left, rest, seconds_per_even_sample
 
 
 def spent(samples, seconds=10.0, error=0.1, judging=0.5):

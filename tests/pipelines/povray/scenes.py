@@ -7,7 +7,9 @@ import unittest
 
 SIZE = ("+W64", "+H48")
 HEAD = "#version 3.7; global_settings { assumed_gamma %g }\n"
-CAMERA = "camera { location <0,0,-5> right x*4/3 up y direction z*1.5 }\n"  # a ray is (0.667 x, 0.5 y, 1.5), -1 < x, y < 1
+CAMERA = (
+    "camera { location <0,0,-5> right x*4/3 up y direction z*1.5 }\n"  # a ray is (0.667 x, 0.5 y, 1.5), -1 < x, y < 1
+)
 # A ball of radius 1 at the origin before a wall at z = 2; the lamp's shadow of the ball falls on the wall.
 BALL = """sphere { 0, 1 pigment { rgb <0.8,0.4,0.2> } finish { ambient 0.1 diffuse 0.6 } }
 plane { -z, -2 hollow pigment { rgb <0.3,0.5,0.7> } finish { ambient 0.1 diffuse 0.6 } }

@@ -57,7 +57,10 @@ class Adaptive(InFolder):
         self.assertGreater(counts[noisy].mean(), 1.3 * counts[~noisy].mean())
         # Unbiased and better: the clean picture is nearer to the reference than the noisy one.
         errors = [
-            np.mean((np.stack([found[f"Combined.{c}"] for c in "RGB"], -1) - reference.mean) ** 2 / (reference.mean**2 + 0.01))
+            np.mean(
+                (np.stack([found[f"Combined.{c}"] for c in "RGB"], -1) - reference.mean) ** 2
+                / (reference.mean**2 + 0.01)
+            )
             for found in (merged, exr.read("ball.exr"))
         ]
         self.assertLess(errors[1], errors[0])

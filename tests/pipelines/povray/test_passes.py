@@ -48,7 +48,9 @@ class Passes(InFolder):
             self.assertIsNotNone(plan.depth.place)
             on_ball = self.check_ball(found)
             colour = np.array([0.8, 0.4, 0.2]) ** gamma
-            np.testing.assert_allclose(found["Denoising Albedo"][on_ball], np.broadcast_to(colour, (on_ball.sum(), 3)), rtol=0.01)
+            np.testing.assert_allclose(
+                found["Denoising Albedo"][on_ball], np.broadcast_to(colour, (on_ball.sum(), 3)), rtol=0.01
+            )
             # The ball's own shadow: lit by ambient light alone, though it faces the lamp.
             shadow = found["Visibility"][..., 0] < 0.9
             self.assertGreater((shadow & ~truth()[2]).sum(), 20)
@@ -61,14 +63,21 @@ class Passes(InFolder):
         self.check_ball(found)
 
     def test_a_named_camera_after_one_that_is_not_there(self):
-        named = CAMERA.replace("camera {", "#declare C = camera {") + "#if (0) camera { location <9,9,9> } #end camera { C }\n"
+        named = (
+            CAMERA.replace("camera {", "#declare C = camera {")
+            + "#if (0) camera { location <9,9,9> } #end camera { C }\n"
+        )
         plan, found = self.look(HEAD % 1 + named + BALL + LAMP)
         self.assertIn("not at <9", self.decided(plan, "depth by lamp").reason)
         self.assertIn("-5.0", plan.depth.place)
         self.check_ball(found)
 
     def test_fog_for_mirrors_and_glass(self):
-        glass = BALL.replace("<0.8,0.4,0.2>", "rgbf 1").replace("rgb rgbf", "rgbf").replace("diffuse 0.6", "diffuse 0 reflection 0.9", 1)
+        glass = (
+            BALL.replace("<0.8,0.4,0.2>", "rgbf 1")
+            .replace("rgb rgbf", "rgbf")
+            .replace("diffuse 0.6", "diffuse 0 reflection 0.9", 1)
+        )
         plan, found = self.look(HEAD % 1 + CAMERA + glass + LAMP)
         self.assertIn("fog sees them", self.decided(plan, "depth by lamp").reason)
         distance, _, on_ball = truth()

@@ -26,11 +26,21 @@ class RenderPasses(InFolder):
         before = scene.stat()
         said = self.run_driver(scene, "-o", "merged.exr", "--", *SIZE).stdout
         self.assertIn("yes more subpixels", said)
-        self.assertEqual((scene.stat().st_mtime_ns, sorted(os.listdir())), (before.st_mtime_ns, [scene.name, "merged.exr"]))
+        self.assertEqual(
+            (scene.stat().st_mtime_ns, sorted(os.listdir())), (before.st_mtime_ns, [scene.name, "merged.exr"])
+        )
 
         merged = exr.read("merged.exr")
-        layers = {"Combined": "RGB", "Denoising Albedo": "RGB", "Denoising Normal": "XYZ", "Denoising Depth": "Z", "Visibility": "X"}
-        names = {f"{layer}{kind}.{c}" for layer, cs in layers.items() for kind in ("", " Variance", " A", " B") for c in cs}
+        layers = {
+            "Combined": "RGB",
+            "Denoising Albedo": "RGB",
+            "Denoising Normal": "XYZ",
+            "Denoising Depth": "Z",
+            "Visibility": "X",
+        }
+        names = {
+            f"{layer}{kind}.{c}" for layer, cs in layers.items() for kind in ("", " Variance", " A", " B") for c in cs
+        }
         self.assertEqual(set(merged), names | {"Sample Count.X"})
         self.assertTrue(all(np.isfinite(plane).all() and plane.shape == (48, 64) for plane in merged.values()))
         # Some of the frame has no noise: the wall out of the ball's shadow.

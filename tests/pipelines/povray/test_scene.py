@@ -45,7 +45,9 @@ class Scenes(InFolder):
         folder = pathlib.Path("-d'i r\"#{}$(x) ünï")
         (folder / "sub").mkdir(parents=True)
         (folder / "sub" / "flat.inc").write_text(FLAT)
-        scene = self.scene('#include "sub/flat.inc"\n#include "from_library.inc"\n#include "from_here.inc"\n', folder / "-s c'e\"n.pov")
+        scene = self.scene(
+            '#include "sub/flat.inc"\n#include "from_library.inc"\n#include "from_here.inc"\n', folder / "-s c'e\"n.pov"
+        )
         library = pathlib.Path("li b'\"rary")
         library.mkdir()
         (library / "from_library.inc").write_text("#declare A = 1;\n")
@@ -76,7 +78,9 @@ class Scenes(InFolder):
         self.assertIn("option", self.fails(ExitCode.RENDERER, flat, ["Nonsense=1"]))
 
     def test_a_program_that_writes_nothing(self):
-        self.assertIn("ended with code 7", self.fails(ExitCode.RENDERER, self.scene(FLAT), povray=self.program("exit 7")))
+        self.assertIn(
+            "ended with code 7", self.fails(ExitCode.RENDERER, self.scene(FLAT), povray=self.program("exit 7"))
+        )
         self.assertIn("no image", self.fails(ExitCode.RENDERER, self.scene(FLAT), povray=self.program("exit 0")))
 
     def program(self, text):
@@ -102,10 +106,18 @@ class Scenes(InFolder):
         self.assertIn("--timeout", self.fails(ExitCode.RENDERER, self.scene(SLOW), SIZE, timeout=1))
 
     def test_an_interrupt_leaves_no_renderer_and_no_file(self):
-        command = [sys.executable, "-B", pathlib.Path(__file__).parents[3] / "pipelines" / "povray" / "render_passes.py"]
+        command = [
+            sys.executable,
+            "-B",
+            pathlib.Path(__file__).parents[3] / "pipelines" / "povray" / "render_passes.py",
+        ]
         for number, code in ((signal.SIGINT, 130), (signal.SIGTERM, 143)):
             driver = subprocess.Popen([*command, self.scene(SLOW), "-o", "out.exr"], stderr=subprocess.PIPE, text=True)
-            while not (children := subprocess.run(["pgrep", "-P", str(driver.pid)], capture_output=True, text=True).stdout.split()):
+            while not (
+                children := subprocess.run(
+                    ["pgrep", "-P", str(driver.pid)], capture_output=True, text=True
+                ).stdout.split()
+            ):
                 time.sleep(0.05)
             driver.send_signal(number)
             said = driver.communicate(timeout=20)[1]
