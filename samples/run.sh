@@ -25,4 +25,4 @@ for sample in study glass lighthouse; do
 done
 oiiotool out/{study,glass,lighthouse}/comparison.png --mosaic 1x3 --ch R,G,B -o out/samples.png
 echo
-echo "The picture to look at: out/samples.png (docs/samples.jpg is this one)"
+echo "The picture to look at: out/samples.png (docs/results/samples.jpg is this one)"

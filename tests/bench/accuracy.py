@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""What every setting and every part of the method is worth on the samples, in error and in time: runs `polyrecon sweep`
-on each and writes the tables into docs/accuracy.md, and the figures that --time-budget and --target choose by into
-src/tradeoff/step_figures.cpp (built in with the next build). The sweeps' own reports stay in out/accuracy/.
+"""Measures what every setting and every part of the method brings on the samples, in error and in time. Runs
+`polyrecon sweep` on each sample, writes the tables of docs/results/accuracy.md, and writes the figures that
+--time-budget and --target choose by into src/tradeoff/step_figures.cpp, which the next build compiles in. The
+reports of the sweeps stay in out/accuracy/.
 
 Build the release preset first; let nothing else run meanwhile. Under ten minutes on two cores.
 """
@@ -14,7 +15,16 @@ import subprocess
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SAMPLES = {"study": "study", "glass": "glass", "lighthouse": "lighthouse", "study_denoised": "study"}  # : reference
-STEPS = ("draft, order 0", "draft", "draft, stages 2", "stages 1", "standard", "order 3", "best, coverage 2", "best")
+BUDGET_SETTINGS = (
+    "draft, order 0",
+    "draft",
+    "draft, stages 2",
+    "stages 1",
+    "standard",
+    "order 3",
+    "best, coverage 2",
+    "best",
+)
 # Each part of the method alone, and the setting of the sweep that takes it out.
 PARTS = (
     ("weights and features from the other half", "weights from the own half"),
@@ -30,9 +40,9 @@ PARTS = (
     ("choice pixel by pixel (else by regions five times as wide)", "choice by wide regions"),
     ("orders averaged on a near tie (else rounding decides)", "order by least error alone"),
     ("finer centres where coverage is low", "coverage 0"),
-    ("outlier handling", "no outlier removal"),
+    ("firefly handling", "no outlier removal"),
     ("variance floor", "no variance floor"),
-    ("feature cleaning", "no feature cleaning"),
+    ("feature prefilter", "no feature cleaning"),
     ("noise bound", "no noise bound"),
     ("raising of undershoot", "no raising of undershoot"),
     ("totals restored", "totals not restored"),
@@ -43,6 +53,7 @@ PARTS = (
     ("visibility", "without visibility"),
     ("denoised layer of the file", "without prior"),
 )
+ALL_STEPS = "all effects"  # the setting of the sweep in which no step is left out
 NUMBERS = ("levels 2", "levels 4", "stride ", "radius ", "order ", "coverage 6", "patch ", "four band", "one guided")
 PAYS = 1.003  # a part whose removal raises the error by less than 0.3 % does not pay for itself
 
@@ -83,16 +94,16 @@ def table(head, rows):
     return "\n".join("| " + " | ".join(line) + " |" for line in lines)
 
 
-def steps_table(found):
-    head = ["step"] + [f"{s}: s" for s in found] + [f"{s}: relMSE" for s in found] + ["time", "error"]
+def budget_table(found):
+    head = ["settings"] + [f"{s}: s" for s in found] + [f"{s}: relMSE" for s in found] + ["time", "error"]
     rows = []
-    for step in STEPS:
+    for name in BUDGET_SETTINGS:
         rows.append(
-            [step]
-            + [f"{float(f[step]['seconds']):.2f}" for f in found.values()]
-            + [f"{float(f[step]['relMSE']):.5f}" for f in found.values()]
+            [name]
+            + [f"{float(f[name]['seconds']):.2f}" for f in found.values()]
+            + [f"{float(f[name]['relMSE']):.5f}" for f in found.values()]
             + [
-                cell(mean([ratio(f, step, c) for f in found.values()]), 2 + (c == "relMSE"))
+                cell(mean([ratio(f, name, c) for f in found.values()]), 2 + (c == "relMSE"))
                 for c in ("seconds", "relMSE")
             ]
         )
@@ -111,15 +122,15 @@ def ratios_table(found, entries, verdict):
         if error is None:
             continue
         row = [label] + [cell(e) for e in errors] + [cell(error), cell(seconds, 2)]
-        rows.append(row + [] if not verdict else row + ["" if error >= PAYS else "does not pay"])
+        rows.append([*row, "" if error >= PAYS else "does not pay"] if verdict else row)
     return table(head + [""] * verdict, rows)
 
 
-def effects_table(found):
-    """--effects auto against all."""
+def steps_table(found):
+    """--steps auto against all."""
     rows = []
     for sample, f in found.items():
-        back = [1 / ratio(f, "all effects", column) for column in ("seconds", "relMSE")]
+        back = [1 / ratio(f, ALL_STEPS, column) for column in ("seconds", "relMSE")]
         rows.append([sample, cell(back[0], 2), cell(back[1], 4)])
     return table(["sample", "time, auto / all", "error, auto / all"], rows)
 
@@ -131,11 +142,19 @@ def write_between(path, name, text, script="accuracy.py"):
     path.write_text(f"{before}{begin}\n\n{text}\n\n{end}{rest.split(end)[1]}", encoding="utf-8")
 
 
+def write_tables(document, found):
+    numbers = [(s, s) for s in found["study"] if s.startswith(NUMBERS) and s != "order 0"]
+    write_between(document, "budget", budget_table(found))
+    write_between(document, "parts", ratios_table(found, PARTS, True))
+    write_between(document, "numbers", ratios_table(found, numbers, False))
+    write_between(document, "steps", steps_table(found))
+
+
 def write_figures(path, found):
     lines = []
-    for step in STEPS:
-        figures = [mean([ratio(f, step, column) for f in found.values()]) for column in ("seconds", "relMSE")]
-        lines.append(f"      {{{figures[0]:.3g}, {figures[1]:.4g}}},  // {step}")
+    for name in BUDGET_SETTINGS:
+        figures = [mean([ratio(f, name, column) for f in found.values()]) for column in ("seconds", "relMSE")]
+        lines.append(f"      {{{figures[0]:.3g}, {figures[1]:.4g}}},  // {name}")
     source = path.read_text(encoding="utf-8")
     before, rest = source.split("figures{{\n")
     # clang-format aligns the comments.
@@ -153,12 +172,7 @@ def main():
     options = parser.parse_args()
     options.out.mkdir(parents=True, exist_ok=True)
     found = {sample: sweep(options, sample) for sample in SAMPLES}
-    numbers = [(s, s) for s in found["study"] if s.startswith(NUMBERS) and s != "order 0"]
-    document = ROOT / "docs" / "accuracy.md"
-    write_between(document, "steps", steps_table(found))
-    write_between(document, "parts", ratios_table(found, PARTS, True))
-    write_between(document, "numbers", ratios_table(found, numbers, False))
-    write_between(document, "effects", effects_table(found))
+    write_tables(ROOT / "docs" / "results" / "accuracy.md", found)
     write_figures(ROOT / "src" / "tradeoff" / "step_figures.cpp", found)
 
 

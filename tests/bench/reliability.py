@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""How far the error map can be trusted: the true squared error against the estimated one, by decile of the estimate, on
-the samples (and on renders of your own: IN.exr=REFERENCE.exr ...). Writes docs/error_map.png and the table of
-docs/accuracy.md for the samples; prints the table of the others. Needs matplotlib. Under a minute."""
+"""Compares the true squared error with the estimated one by decile of the estimate, on the samples or on other
+renders (IN.exr=REFERENCE.exr ...). For the samples it writes docs/results/error_map.png and the table of
+docs/results/reliability.md; for others it prints the table. Needs matplotlib. Under a minute."""
 
 import argparse
 import pathlib
@@ -89,8 +89,8 @@ def main():
         files = ROOT / "samples" / f"{name}_16.exr", ROOT / "samples" / f"{reference}_ref.exr"
         found[name] = errors(options.polyrecon, *files)
     text = markdown([row(name, *f) for name, f in found.items()])
-    write_between(ROOT / "docs/accuracy.md", "reliability", text, "reliability.py")
-    plot(found, ROOT / "docs/error_map.png")
+    write_between(ROOT / "docs/results/reliability.md", "reliability", text, "reliability.py")
+    plot(found, ROOT / "docs/results/error_map.png")
 
 
 if __name__ == "__main__":

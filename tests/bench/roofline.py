@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Draws docs/roofline.png and prints the table of docs/performance.md: how far the inner parts are from what a core can do. Runs the
-program `benchmarks` of the dev preset (one thread); needs matplotlib. Half a minute."""
+"""Draws docs/results/roofline.png and prints the table of docs/results/performance.md: how far the inner parts are from
+what a core can do. Runs the program `benchmarks` of the dev preset (one thread); needs matplotlib. Half a minute."""
 
 import argparse
 import json
@@ -68,7 +68,7 @@ def main():
         )
     axes.set(xscale="log", yscale="log", xlabel="operations a byte loaded or stored", ylabel="Gflop/s, one thread")
     axes.legend()
-    figure.savefig(ROOT / "docs" / "roofline.png", dpi=80, bbox_inches="tight")
+    figure.savefig(ROOT / "docs" / "results" / "roofline.png", dpi=80, bbox_inches="tight")
 
 
 if __name__ == "__main__":
