@@ -2,7 +2,8 @@
 
 import pathlib
 
-from .frames import frame_path, parse_frames
+from .errors import DriverError, ExitCode
+from .frame_names import frame_path, is_pattern, parse_ranges
 from .polyrecon_cli import Polyrecon
 from .progress import STYLES, Progress
 
@@ -27,14 +28,23 @@ def each_frame(options, renderer, work):
     """Calls work(frame, output, passes, polyrecon, progress) for every frame asked for: its picture and the folder of its
     passes. Closes the renderer."""
     try:
-        frames = parse_frames(options.frames) if options.frames else [options.frame]
+        frames = parse_ranges(options.frames) if options.frames else [options.frame]
         polyrecon = Polyrecon(options.polyrecon)
         with Progress("none" if options.quiet else options.progress) as progress:
             for frame in frames:
-                output = frame_path(options.output, frame, bool(options.frames))
+                output = _output_of(options, frame)
                 passes = options.passes_dir or output.with_suffix(".passes")
                 if options.frames and options.passes_dir:
-                    passes = passes / f"{frame:04d}"
+                    passes = passes / frame_path("####", frame)
                 work(frame, output, passes, polyrecon, progress)
     finally:
         renderer.close()
+
+
+def _output_of(options, frame):
+    """The picture of one frame. The name of a single frame needs no place for its number."""
+    if frame is not None and is_pattern(options.output):
+        return pathlib.Path(frame_path(options.output, frame))
+    if options.frames:
+        raise DriverError(ExitCode.USAGE, f"-o {options.output}: several frames need #### or %04d in the file's name")
+    return pathlib.Path(options.output)

@@ -9,12 +9,17 @@ import tempfile
 from dataclasses import dataclass, field
 
 from ..common.errors import DriverError, ExitCode
-from . import frames as frame_names
+from ..common.frame_names import ranges_text
 
 JOB_FILE = "job.json"
 RECORDS = "records"
 REPORT_FILE = "report.json"
 COMPLAINT = re.compile(r"polyrecon: frame (-?\d+): (.*)")  # of one frame, by the program
+
+
+def chunks(frames, size):
+    """The frames in groups of `size`, in order."""
+    return [frames[k : k + size] for k in range(0, len(frames), size)]
 
 
 @dataclass
@@ -31,12 +36,12 @@ class Job:
 
     @property
     def chunks(self):
-        return frame_names.chunks(self.frames, self.chunk)
+        return chunks(self.frames, self.chunk)
 
     def words(self, frames, *more):
         """The command that denoises these frames, those that are finished already left out."""
         words = [self.polyrecon, "denoise", "-i", self.input, "-o", self.output]
-        words += ["--frames", frame_names.text(frames), "--skip-existing"]
+        words += ["--frames", ranges_text(frames), "--skip-existing"]
         if self.threads:
             words += ["--threads", str(self.threads)]
         if self.memory:

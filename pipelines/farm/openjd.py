@@ -12,8 +12,8 @@ if not __package__:  # run as a script from a checkout
     __package__ = "pipelines.farm"
 
 from ..common.errors import DriverError, ExitCode, run_main
+from ..common.frame_names import parse_ranges, ranges_text
 from ..common.polyrecon_cli import Polyrecon
-from . import frames as frame_names
 from .plan import add_plan_options, first_frame, limit_of, parse_words, quality_of, request_of, seconds_of, size
 from .requirements import MIB, Node, chunk_for, threads_for
 
@@ -38,7 +38,7 @@ def load_template():
 
 def range_text(frames):
     """Ranges without steps, which Open Job Description and the program write alike."""
-    return frame_names.text(sorted(frames))
+    return ranges_text(sorted(frames))
 
 
 def template_for(template, request, threads, more):
@@ -65,7 +65,7 @@ def without_quality(words):
 
 
 def write_bundle(options):
-    frames = frame_names.parse(options.frames)
+    frames = parse_ranges(options.frames)
     polyrecon = Polyrecon(options.polyrecon)
     frame = first_frame(options, frames, polyrecon)
     request = request_of(options, frame)

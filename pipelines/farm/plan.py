@@ -6,7 +6,7 @@ import os
 import re
 
 from ..common.errors import DriverError, ExitCode
-from . import frames as frame_names
+from ..common.frame_names import frame_path, is_pattern
 from .requirements import DEFAULT_RADIUS, MEMORY_MARGIN, Model, frame_of
 
 
@@ -26,7 +26,7 @@ def positive(text):
 
 
 def pattern(text):
-    if not frame_names.is_pattern(text):
+    if not is_pattern(text):
         raise argparse.ArgumentTypeError(f"{text}: needs #### or %04d for the frame")
     return text
 
@@ -83,14 +83,14 @@ def model_of(options):
 def first_frame(options, frames, polyrecon):
     """What the model needs to know, of the first frame that is there; before the render there may be none."""
     for frame in frames:
-        path = frame_names.path(options.input, frame)
+        path = frame_path(options.input, frame)
         if os.path.exists(path):
             return frame_of(json.loads(polyrecon.run("inspect", "--json", path)))
     if options.memory and options.threads and options.chunk:
         return None
     raise DriverError(
         ExitCode.MISSING,
-        f"{frame_names.path(options.input, frames[0])}: no frame is there to tell memory and time from: "
+        f"{frame_path(options.input, frames[0])}: no frame is there to tell memory and time from: "
         "give --memory, --threads and --chunk",
     )
 

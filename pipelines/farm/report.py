@@ -16,9 +16,9 @@ if not __package__:  # run as a script from a checkout
 
 from ..common import process
 from ..common.errors import DriverError, ExitCode, run_main
+from ..common.frame_names import parse_ranges, ranges_text
 from ..common.polyrecon_cli import find_polyrecon
-from . import frames as frame_names
-from .job import COMPLAINT, RECORDS, REPORT_FILE, Job, write_json
+from .job import COMPLAINT, RECORDS, REPORT_FILE, Job, chunks, write_json
 
 EXAMPLES = """\
 examples:
@@ -33,9 +33,7 @@ def look_at(job, frames):
     this very input with these settings. Returns (finished frames, {frame: what is wrong with its input})."""
     code, output, errors = process.run(job.words(frames, "--dry-run"))
     if code not in (ExitCode.DONE, ExitCode.MISSING):
-        raise DriverError(
-            ExitCode.CHECK, f"frames {frame_names.text(frames)}: {errors.strip() or f'ended with {code}'}"
-        )
+        raise DriverError(ExitCode.CHECK, f"frames {ranges_text(frames)}: {errors.strip() or f'ended with {code}'}")
     finished = {int(match[1]) for line in output.splitlines() if (match := FINISHED.fullmatch(line))}
     return finished, {int(match[1]): match[2] for line in errors.splitlines() if (match := COMPLAINT.match(line))}
 
@@ -45,7 +43,7 @@ def look_at_all(job, processes, done):
     size = min(50, max(1, math.ceil(len(job.frames) / processes)))
     finished, wrong, seen = set(), {}, 0
     with concurrent.futures.ThreadPoolExecutor(processes) as pool:
-        groups = frame_names.chunks(job.frames, size)
+        groups = chunks(job.frames, size)
         for group, (some, bad) in zip(groups, pool.map(lambda group: look_at(job, group), groups)):
             finished |= some
             wrong.update(bad)
@@ -66,7 +64,7 @@ def records_of(folder):
 
 
 def frames_in(text):
-    return len(frame_names.parse(text)) if text else 0
+    return len(parse_ranges(text)) if text else 0
 
 
 def nodes_of(ended):
@@ -92,7 +90,7 @@ def summary(job, finished, wrong, records):
     return {
         "frames": len(job.frames),
         "finished": len(job.frames) - len(unfinished),
-        "unfinished": frame_names.text(unfinished),
+        "unfinished": ranges_text(unfinished),
         "reasons": {str(frame): wrong[frame] for frame in unfinished if frame in wrong},
         "attempts": len(records),
         "attempts_without_end": [f"{r['node']}: {r['frames']}" for r in records if "exit_code" not in r],
@@ -178,7 +176,7 @@ def main(words=None):
         if options.folder:
             job = Job.load(options.folder)
         else:
-            frames = frame_names.parse(options.frames)
+            frames = parse_ranges(options.frames)
             program = str(find_polyrecon(options.polyrecon))
             job = Job(options.input, options.output, frames, program, options.options)
         make_report(job, options.folder, max(1, options.processes), options.progress == "openjd")

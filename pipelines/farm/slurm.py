@@ -19,8 +19,8 @@ if not __package__:  # run as a script from a checkout
 
 from ..common import process
 from ..common.errors import DriverError, ExitCode, run_main
+from ..common.frame_names import parse_ranges
 from ..common.polyrecon_cli import Polyrecon
-from . import frames as frame_names
 from .job import JOB_FILE, REPORT_FILE, Job
 from .plan import add_plan_options, first_frame, limit_of, parse_words, positive, request_of, seconds_of
 from .requirements import MIB, Node, chunk_for, threads_for
@@ -76,7 +76,7 @@ def most_tasks():
 
 def plan(options):
     """The job, and the bytes to ask for each task (0: the cluster does not manage memory)."""
-    frames = frame_names.parse(options.frames)
+    frames = parse_ranges(options.frames)
     polyrecon = Polyrecon(options.polyrecon)
     frame = first_frame(options, frames, polyrecon)
     request = request_of(options, frame)

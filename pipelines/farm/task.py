@@ -15,7 +15,7 @@ if not __package__:  # run as a script from a checkout
 
 from ..common import process
 from ..common.errors import DriverError, ExitCode, run_main
-from . import frames as frame_names
+from ..common.frame_names import frame_path, ranges_text
 from .job import COMPLAINT, RECORDS, Job, write_json
 
 
@@ -24,7 +24,7 @@ def identities(job, frames):
     found = {}
     for frame in frames:
         try:
-            status = os.stat(frame_names.path(job.output, frame))
+            status = os.stat(frame_path(job.output, frame))
             found[frame] = (status.st_ino, status.st_mtime_ns)
         except OSError:
             found[frame] = None
@@ -83,16 +83,16 @@ def run_chunk(folder, index):
     frames = job.chunks[index]
     path = pathlib.Path(folder) / RECORDS / attempt_name(index)
     node = os.environ.get("SLURMD_NODENAME") or socket.gethostname()
-    record = {"chunk": index, "frames": frame_names.text(frames), "node": node, "begun": time.time()}
+    record = {"chunk": index, "frames": ranges_text(frames), "node": node, "begun": time.time()}
     write_json(path, record)
     before = identities(job, frames)
     code, counts = run_counted(job.words(frames, "--progress", "none"))
     after = identities(job, frames)
     written = [frame for frame in frames if after[frame] and after[frame] != before[frame]]
-    write_json(path, {**record, **counts, "written": frame_names.text(written)})
+    write_json(path, {**record, **counts, "written": ranges_text(written)})
     if code:
         known = code in ExitCode.__members__.values()
-        raise DriverError(code if known else ExitCode.INTERNAL, f"frames {frame_names.text(frames)}: ended with {code}")
+        raise DriverError(code if known else ExitCode.INTERNAL, f"frames {ranges_text(frames)}: ended with {code}")
 
 
 def main(words=None):

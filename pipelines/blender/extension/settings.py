@@ -10,6 +10,18 @@ from .programs import Problem
 
 # Blender 4.5 and later want to be told that "//" may stand in front.
 _RELATIVE = {"options": {"PATH_SUPPORTS_BLEND_RELATIVE"}} if bpy.app.version >= (4, 5) else {}
+_PLACE = re.compile(r"#+|%(?:0[1-9])?d")
+
+
+def frame_path(pattern, frame):
+    """The pattern with the frame's number in its place. The drivers have the same rules in common/frame_names.py, which
+    Blender cannot import where the add-on is installed alone."""
+    places = _PLACE.findall(pattern.rpartition("/")[2])
+    if not places:
+        return pattern
+    place = places[-1]
+    number = place % frame if place.startswith("%") else f"{'-' if frame < 0 else ''}{abs(frame):0{len(place)}d}"
+    return _PLACE.sub(lambda match: number if match.group() == place else match.group(), pattern)
 
 
 class PolyreconSettings(bpy.types.PropertyGroup):
@@ -83,9 +95,8 @@ class PolyreconSettings(bpy.types.PropertyGroup):
         return path
 
     def output_of(self, frame):
-        """The last #### of the name is the frame's number, as for the drivers."""
-        pattern = self.output_pattern()
-        return pattern.with_name(re.sub(r"#+(?!.*#)", lambda hashes: f"{frame:0{len(hashes[0])}d}", pattern.name))
+        """The output of one frame."""
+        return pathlib.Path(frame_path(str(self.output_pattern()), frame))
 
 
 CLASSES = (PolyreconSettings,)

@@ -1,5 +1,6 @@
 """The Blender extension, built, checked, installed and used by Blender 5 itself, without a window."""
 
+import json
 import os
 import pathlib
 import subprocess
@@ -9,9 +10,8 @@ import time
 import unittest
 
 _resources = tempfile.TemporaryDirectory(prefix="polyrecon_resources_")
-os.environ["BLENDER_USER_RESOURCES"] = (
-    _resources.name
-)  # read when bpy is imported: the user's own Blender is left alone
+# bpy reads this when it is imported; the user's own settings stay untouched.
+os.environ["BLENDER_USER_RESOURCES"] = _resources.name
 
 import bpy
 import numpy as np
@@ -96,6 +96,15 @@ class Extension(unittest.TestCase):
         checked = extension_tool("validate", SOURCE)
         self.assertEqual(checked.returncode, 0, checked.stdout + checked.stderr)
         self.assertNotIn("warning", (checked.stdout + checked.stderr).lower())
+
+    def test_frame_names_are_those_of_the_drivers(self):
+        """By the table that the tests of the drivers read."""
+        frame_path = sys.modules[MODULE + ".settings"].frame_path
+        table = json.loads((ROOT / "tests" / "inputs" / "frame_names.json").read_text(encoding="utf-8"))
+        for row in table["names"]:
+            self.assertEqual(frame_path(row["pattern"], row["frame"]), row["name"])
+        for name in table["no_patterns"]:
+            self.assertEqual(frame_path(name, 7), name)
 
     def test_panel_is_in_render_properties(self):
         panel = bpy.types.POLYRECON_PT_render

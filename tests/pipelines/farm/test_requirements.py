@@ -7,7 +7,6 @@ import unittest
 from pathlib import Path
 
 from pipelines.common.errors import DriverError, ExitCode
-from pipelines.farm import frames
 from pipelines.farm.requirements import Frame, Model, Node, chunk_for, frame_of, threads_for
 
 from .shot import make_shot
@@ -15,33 +14,6 @@ from .shot import make_shot
 ROOT = Path(__file__).resolve().parents[3]
 POLYRECON = os.path.abspath(os.environ["POLYRECON"])
 GB = 10**9
-
-
-class Frames(unittest.TestCase):
-    def test_ranges(self):
-        self.assertEqual(frames.parse("1-3,10-20x5,15-16,7"), [1, 2, 3, 10, 15, 20, 16, 7])
-        self.assertEqual(frames.parse("-2-1"), [-2, -1, 0, 1])
-        self.assertEqual(frames.parse("10-20:5"), [10, 15, 20])
-        for wrong in ("", "a", "3-1", "1-4x0", "1,,2", "1-"):
-            with self.assertRaises(DriverError) as caught:
-                frames.parse(wrong)
-            self.assertEqual(caught.exception.code, ExitCode.USAGE)
-
-    def test_text_comes_back(self):
-        for numbers in ([1, 2, 3, 9], [5], [-3, -2, 7, 8, 20], [3, 1, 2]):
-            self.assertEqual(frames.parse(frames.text(numbers)), numbers)
-
-    def test_names_are_those_of_the_program(self):
-        with tempfile.TemporaryDirectory() as folder:
-            for pattern in ("a.####.exr", "b_%04d.exr", "c#.exr", "d.%d.exr"):
-                plan = subprocess.run(
-                    [POLYRECON, "denoise", "-i", f"{folder}/{pattern}", "-o", f"{folder}/o.####.exr"]
-                    + ["--frames=-3,7,12345", "--dry-run"],
-                    capture_output=True,
-                    text=True,
-                )
-                for frame in (-3, 7, 12345):
-                    self.assertIn(f"{folder}/{Path(frames.path(pattern, frame))}: ", plan.stderr)
 
 
 class Threads(unittest.TestCase):

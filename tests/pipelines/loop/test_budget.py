@@ -1,8 +1,5 @@
 import unittest
-from pathlib import Path
 
-from pipelines.common.errors import DriverError
-from pipelines.common.frames import frame_path, parse_frames
 from pipelines.loop.budget import Budget, Spent, even_share, next_slice, nothing_left, rest, seconds_per_even_sample
 
 
@@ -70,24 +67,6 @@ class Slices(unittest.TestCase):
         self.assertAlmostEqual(next_slice(Budget(target=0.1 * 2**-0.75), spent(8.0))[0], 8)
         self.assertAlmostEqual(next_slice(Budget(target=0.1 * (8 / 9) ** 0.75), spent(8.0))[0], 1)
         self.assertEqual(next_slice(Budget(target=0.1 / 8), spent(8.0))[0], 8)  # far: one step, then it is judged again
-
-
-class Frames(unittest.TestCase):
-    def test_ranges(self):
-        self.assertEqual(parse_frames("1-3,10-20x5,2"), [1, 2, 3, 10, 15, 20])
-        self.assertEqual(parse_frames("7"), [7])
-        self.assertEqual(parse_frames("-2-1"), [-2, -1, 0, 1])
-        for bad in ("", "a", "3-1", "1-", "1-5x0", "1;2"):
-            with self.assertRaises(DriverError, msg=bad):
-                parse_frames(bad)
-
-    def test_names(self):
-        self.assertEqual(frame_path("o/a#b_####.exr", 7), Path("o/a#b_0007.exr"))
-        self.assertEqual(frame_path("o/a_%03d.exr", 7), Path("o/a_007.exr"))
-        self.assertEqual(frame_path("o/a_#.exr", None), Path("o/a_#.exr"))
-        self.assertEqual(frame_path("o/a.exr", 7), Path("o/a.exr"))
-        with self.assertRaises(DriverError):
-            frame_path("o/a.exr", 7, several=True)
 
 
 if __name__ == "__main__":
