@@ -1,4 +1,5 @@
 // Writes the man pages and shell completions below a folder, laid out as below /usr/share: polyrecon_manual FOLDER
+// Writes the page docs/reference/command_line.md: polyrecon_manual --markdown FILE
 
 #include <fmt/format.h>
 
@@ -14,6 +15,7 @@
 #include "manual/command_line.h"
 #include "manual/completion.h"
 #include "manual/man_page.h"
+#include "manual/markdown_page.h"
 
 namespace {
 
@@ -25,11 +27,14 @@ void write(const fs::path& path, const std::string& text) {
   if (!(file << text).flush()) throw std::runtime_error(path.string() + ": cannot be written");
 }
 
-void write_all(const fs::path& folder) {
+polyrecon::CommandInfo program_of_command_line() {
   CLI::App app;
   polyrecon::Command unused;
   polyrecon::setup_app(app, unused);
-  const polyrecon::CommandInfo program = polyrecon::describe(app);
+  return polyrecon::describe(app);
+}
+
+void write_all(const polyrecon::CommandInfo& program, const fs::path& folder) {
   const fs::path pages = folder / "man" / "man1";
   write(pages / "polyrecon.1", polyrecon::program_page(program, POLYRECON_VERSION));
   for (const polyrecon::CommandInfo& command : program.commands)
@@ -44,8 +49,13 @@ void write_all(const fs::path& folder) {
 
 int main(int argc, char** argv) {
   try {
-    if (argc != 2) throw std::runtime_error("give the folder to write to");
-    write_all(argv[1]);
+    const polyrecon::CommandInfo program = program_of_command_line();
+    if (argc == 3 && std::string(argv[1]) == "--markdown")
+      write(argv[2], polyrecon::markdown_page(program));
+    else if (argc == 2)
+      write_all(program, argv[1]);
+    else
+      throw std::runtime_error("give the folder to write to, or --markdown and the page");
     return 0;
   } catch (const std::exception& e) {
     std::fputs(fmt::format("polyrecon_manual: {}\n", e.what()).c_str(), stderr);

@@ -1,0 +1,30 @@
+"""docs/reference/command_line.md is what the command line's options say today."""
+
+import difflib
+import os
+import pathlib
+import subprocess
+import tempfile
+import unittest
+
+from . import tree
+
+PAGE = pathlib.Path("docs/reference/command_line.md")
+UPDATE = "cmake --build --preset dev --target command_line_page"
+
+
+class CommandLine(unittest.TestCase):
+    def test_page_is_up_to_date(self):
+        with tempfile.TemporaryDirectory() as folder:
+            fresh = pathlib.Path(folder, "page.md")
+            subprocess.run([os.environ["POLYRECON_MANUAL"], "--markdown", fresh], check=True)
+            written = fresh.read_text(encoding="utf-8").splitlines()
+        change = "\n".join(
+            difflib.unified_diff(tree.read(PAGE).splitlines(), written, str(PAGE), "the program", lineterm="")
+        )
+        if change:
+            self.fail(f"{PAGE} is stale. Update it with `{UPDATE}` and commit it. What differs:\n{change}")
+
+
+if __name__ == "__main__":
+    unittest.main()
