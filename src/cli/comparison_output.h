@@ -13,7 +13,7 @@ namespace polyrecon {
 /// A line for each comparison.
 std::string comparison_text(const std::vector<Comparison>& comparisons);
 
-/// The same with stable keys; docs/formats.md lists them. Figures that are not finite are null.
+/// The same with stable keys; docs/reference/report.md lists them. Figures that are not finite are null.
 nlohmann::ordered_json comparison_json(const std::string& reference, const std::vector<Comparison>& comparisons);
 
 /// Names of the layers, each once, in order of appearance.

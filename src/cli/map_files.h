@@ -31,7 +31,7 @@ ErrorMapFile read_error_map(const std::string& path);
 /// Channel order.Y.
 void write_order_map(const std::string& target, const Image& order, const MapWindows& windows);
 
-/// Who is to read a sample map; docs/formats.md tells what each takes and how we know.
+/// Who is to read a sample map; docs/reference/formats.md tells what each takes and how we know.
 enum class SampleMapFormat { Polyrecon, Appleseed, Luxcore, Vray };
 
 /// What the attributes of a sample map say beyond its own figures.

@@ -37,7 +37,7 @@ std::string report_text(const RunReport& run);
 std::string decision_text(const Decision& decision);
 nlohmann::ordered_json decisions_json(const std::vector<Decision>& decisions);
 
-/// The same with stable keys; docs/formats.md lists them.
+/// The same with stable keys; docs/reference/report.md lists them.
 nlohmann::ordered_json report_json(const RunReport& run, const FrameSource& source);
 
 }  // namespace polyrecon

@@ -1,0 +1,36 @@
+"""docs/reference/exit_codes.md, the library's enum, the drivers' enum and `polyrecon --help` agree."""
+
+import os
+import re
+import subprocess
+import unittest
+
+from pipelines.common.errors import ExitCode
+
+from . import tree
+
+
+def documented():
+    return {
+        int(code): name.strip("`") for code, name, *_ in tree.table(tree.read("docs/reference/exit_codes.md"), "code")
+    }
+
+
+class ExitCodes(unittest.TestCase):
+    def test_names_and_numbers_are_those_of_the_library(self):
+        enum = re.search(r"enum class ExitCode \{(.*?)\};", tree.read("src/core/error.h"), re.S)[1]
+        in_library = {int(code): name for name, code in re.findall(r"(\w+) = (\d+)", enum)}
+        self.assertGreater(len(in_library), 5)
+        self.assertEqual(in_library, documented())
+
+    def test_numbers_are_those_of_the_drivers(self):
+        self.assertEqual({int(code) for code in ExitCode}, set(documented()))
+
+    def test_numbers_are_those_of_the_help(self):
+        text = subprocess.run([os.environ["POLYRECON"], "--help"], capture_output=True, text=True, check=True).stdout
+        listed = re.findall(r"^  ((?:\d+, )*\d+)  ", text, re.M)
+        self.assertEqual(sorted(documented()), sorted(int(code) for codes in listed for code in codes.split(", ")))
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,121 @@
+"""docs/reference/report.md has a row for each key that the program and the drivers print, with its type, and each row's
+key is printed in one of the runs made here."""
+
+import json
+import os
+import pathlib
+import re
+import subprocess
+import tempfile
+import unittest
+
+from . import tree
+
+PROGRAM = os.environ["POLYRECON"]
+SAMPLES = pathlib.Path(os.environ["POLYRECON_SAMPLES"])
+SMALL = SAMPLES / "study_small_0.exr"
+PAGE = "docs/reference/report.md"
+
+
+def run(*words):
+    done = subprocess.run([PROGRAM, *map(str, words)], capture_output=True, text=True)
+    if done.returncode:
+        raise AssertionError(f"polyrecon {' '.join(map(str, words))}: exit code {done.returncode}\n{done.stderr}")
+    return done
+
+
+def leaves(value, path=""):
+    """(key path, value) of everything that is no object: `a.b`, `list[].c`; a list of objects counts itself too."""
+    if isinstance(value, dict):
+        for key, inner in value.items():
+            yield from leaves(inner, f"{path}.{key}" if path else key)
+        return
+    yield path, value
+    if isinstance(value, list):
+        for inner in value:
+            if isinstance(inner, dict):
+                yield from leaves(inner, path + "[]")
+
+
+def is_of_type(value, name):
+    if count := re.fullmatch(r"list of (\d+) numbers", name):
+        return is_of_type(value, "list of numbers") and len(value) == int(count[1])
+    if match := re.fullmatch(r"list of (\w+)s", name):
+        return isinstance(value, list) and all(is_of_type(inner, match[1]) for inner in value)
+    if isinstance(value, bool):
+        return name == "boolean"
+    kinds = {"string": str, "integer": int, "number": (int, float), "object": dict, "null": type(None)}
+    return isinstance(value, kinds[name])
+
+
+def documented(heading):
+    """{key: type} of the table below a heading of the page."""
+    text = re.split(rf"^## {re.escape(heading)}$", tree.read(PAGE), flags=re.M)[1]
+    rows = tree.table(re.split(r"^## ", text, flags=re.M)[0], "key")
+    return {row[0].strip("`"): row[1] for row in rows}
+
+
+class Keys(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def check(self, heading, *printed):
+        """All documents of one kind, printed by different runs, against the table."""
+        table, seen = documented(heading), set()
+        for path, value in (leaf for document in printed for leaf in leaves(document)):
+            seen.add(path)
+            key = next((key for key in table if re.fullmatch(re.escape(key).replace("NAME", r"[^.]+"), path)), None)
+            self.assertIsNotNone(key, f"{PAGE}, {heading}: no row for `{path}`")
+            fits = any(is_of_type(value, name) for name in table[key].split(" or "))
+            self.assertTrue(fits, f"{PAGE}, {heading}: `{key}` is {value!r}, documented as {table[key]}")
+            seen.add(key)
+        # An object that may be null has a row of its own; where it is one, its keys were seen.
+        never = [key for key in table if key not in seen and not any(path.startswith(key + ".") for path in seen)]
+        self.assertEqual([], never, f"{PAGE}, {heading}: documented, but not printed")
+
+    def denoise(self, *options):
+        report = self.folder / "report.json"
+        run("denoise", "-i", SMALL, "-o", self.folder / "clean.exr", "--report", report, "--quiet", *options)
+        return json.loads(report.read_text())
+
+    def test_report_of_denoise(self):
+        plain = self.denoise("--quality", "draft")
+        ample, scarce = (self.denoise("--time-budget", seconds) for seconds in ("60", "0.001"))
+        self.check("Report of denoise", plain, ample, scarce)
+
+    def test_inspect(self):
+        merged = self.folder / "merged.exr"
+        run("merge", *sorted(SAMPLES.glob("study_small_*.exr"))[:2], "-o", merged, "--quiet")
+        found = [json.loads(run("inspect", path, "--json").stdout) for path in (merged, SMALL)]
+        self.check("inspect --json", *found)
+
+    def test_compare(self):
+        done = run("compare", SMALL, SAMPLES / "study_small_1.exr", "--json")
+        self.check("compare --json", json.loads(done.stdout))
+
+    def test_progress(self):
+        for frame in (1, 2):
+            (self.folder / f"shot.{frame}.exr").symlink_to(SMALL)
+        words = ["-i", self.folder / "shot.#.exr", "-o", self.folder / "clean.#.exr", "--quality", "draft"]
+        lines = run("denoise", *words, "--frames", "1-2", "--progress", "json").stderr.splitlines()
+        self.check("Progress lines", *map(json.loads, lines))
+
+
+class TheCheckItself(unittest.TestCase):
+    def test_leaves(self):
+        value = {"a": {"b": 1, "c": []}, "d": [{"e": None}, {"e": "x"}], "f": [1, 2]}
+        paths = ["a.b", "a.c", "d", "d[].e", "d[].e", "f"]
+        self.assertEqual(paths, [path for path, _ in leaves(value)])
+
+    def test_types(self):
+        self.assertTrue(is_of_type([1, 2.5, 3], "list of 3 numbers"))
+        self.assertFalse(is_of_type([1, 2], "list of 3 numbers"))
+        self.assertFalse(is_of_type(True, "integer"))
+        self.assertFalse(is_of_type(None, "number"))
+        self.assertTrue(is_of_type([{}], "list of objects"))
+
+
+if __name__ == "__main__":
+    unittest.main()
