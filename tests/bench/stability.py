@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Draws docs/stability_*.png and prints the tables of docs/stability.md: the condition of the windows met on the samples, what
-each solver makes of them, and what the limits of regression/least_squares.h do. Builds on the dev preset's program
-`stability`; needs matplotlib. Under a minute."""
+"""Draws docs/dev/stability_*.png and prints the tables of docs/dev/stability.md: the condition of the windows met
+on the samples, what each solver makes of them, and what the limits of regression/least_squares.h do. Builds on the dev
+preset's program `stability`; needs matplotlib. Under a minute."""
 
 import argparse
 import pathlib
@@ -30,7 +30,7 @@ def field(rows, name):
 
 
 def save(figure, name):
-    figure.savefig(ROOT / "docs" / f"stability_{name}.png", dpi=80, bbox_inches="tight")
+    figure.savefig(ROOT / "docs" / "dev" / f"stability_{name}.png", dpi=80, bbox_inches="tight")
 
 
 def draw_conditions(windows):
