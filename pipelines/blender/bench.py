@@ -68,7 +68,7 @@ def arguments(words):
     parser.add_argument("--references", action="store_true", help="render the references and nothing else")
     parser.add_argument("--stop-after", type=float, default=math.inf, metavar="SECONDS", help="begin no run after this")
     parser.add_argument("--work", type=pathlib.Path, default=ROOT / "out" / "bench", help="folder for all files")
-    parser.add_argument("--docs", type=pathlib.Path, help="write table and plot into this adaptive.md")
+    parser.add_argument("--docs", type=pathlib.Path, help="write table and plot here (docs/results/adaptive.md)")
     parser.add_argument("--python", default=sys.executable, help="a Python with bpy 5 (this one)")
     parser.add_argument("--polyrecon", help="the program")
     options = parser.parse_args(words)

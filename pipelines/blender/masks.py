@@ -11,7 +11,8 @@ import OpenImageIO as oiio
 from ..common.errors import DriverError, ExitCode
 
 SUBPIXELS = 4
-# What a pass and each pixel of its box cost beside the samples, as so many samples outside the mask (docs/adaptive.md).
+# What a pass and each pixel of its box cost in addition to the samples, in samples outside the mask
+# (docs/lab/2026-11-27-loop-seconds.md).
 PASS, PIXEL = 100_000, 2.5
 LEAST_SIDE, PLACES = 8, 16  # of a box that is cut, and tried on each of its sides
 

@@ -4,7 +4,7 @@ import numpy as np
 
 from ..common import exr
 
-OVER_ROUND = 1.3  # seconds of add over those of a round's decision: docs/adaptive.md
+OVER_ROUND = 1.3  # seconds of add over those of a round's decision: docs/lab/2026-11-28-adaptive-loop.md
 FEATURES = {"Denoising Albedo": "RGB", "Denoising Normal": "XYZ", "Denoising Depth": "Z"}
 
 

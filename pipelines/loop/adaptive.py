@@ -28,9 +28,8 @@ ROUND_QUALITY = "draft"
 EVEN_PARTS = 2  # of a half in an even round: what they differ by tells the variance; the longer, the cheaper a sample
 LEAST_CUT, LEAST_EVEN = 8, 1  # samples of a half that are cut so, and that are worth a pass
 EVEN_STEPS = 3  # slices that an even round takes at once: it is not as soon that another map pays
-EXTRA_OVER_UNIFORM = (
-    1.3  # seconds of a sample in a masked pass over one in a whole pass, until they are measured: docs/adaptive.md
-)
+# Seconds of a sample in a masked pass over one in a whole pass, until measured: docs/lab/2026-11-27-loop-seconds.md.
+EXTRA_OVER_UNIFORM = 1.3
 # Seconds of a decision over those of merging two parts, until one was made: within a fifth from 480x270 to 1920x1080.
 JUDGING = 8.5
 # Seconds of the last merge and reconstruction, of all samples, and of the report, over those of a decision.

@@ -6,7 +6,7 @@ MOST = 1 << 12  # samples of one pixel in one pass
 COST_BLUR = 4.0  # pixels, standard deviation
 LEAST_OVER_MEAN = 0.25  # the lowest count: below it a pass costs more than its samples are worth
 WINDOW = 3.5  # pixels, standard deviation: how far a sample helps (SampleMapParams::radius / 2)
-COHERENCE = 6.0  # pixels, standard deviation of the blur: docs/adaptive.md
+COHERENCE = 6.0  # pixels, standard deviation of the blur: docs/lab/2026-11-27-loop-seconds.md
 
 
 def quantise(wanted, cost):

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Makes the figures of docs/povray.md: for each scene a reference of 1024 subpixels a pixel, render_passes.py and `polyrecon
-denoise`, adaptive.py; relMSE and processor seconds of each. A reference that is there in --work is not made again. With
---picture its picture instead."""
+"""Makes the table of POV-Ray in docs/results/adaptive.md: for each scene a reference of 1024 subpixels a pixel,
+render_passes.py and `polyrecon denoise`, adaptive.py; relMSE and processor seconds of each. A reference that is there
+in --work is not made again. With --picture its picture instead."""
 
 if not __package__:  # run as a script from a checkout
     import pathlib

@@ -9,7 +9,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double write_over_read = 4;   // docs/performance.md: compressing, and reading back to check
+constexpr double write_over_read = 4;   // docs/results/performance.md: compressing, and reading back to check
 constexpr double left_alone = 0.1;      // of the error to reach: pixels with less noise hardly count in its mean
 constexpr double least_seconds = 1e-3;  // a budget that is spent already still asks for the fastest settings
 

@@ -34,14 +34,14 @@ struct SampleMap {
 /// How fast the error of a reconstruction falls: with n^-rate. A polynomial of order k over a plane, at its best
 /// bandwidth h, has bias^2 ~ h^(2(k+1)) and variance ~ 1 / (n h^2), so that both fall with n^(-(k+1)/(k+2)): 3/4 at
 /// order 2 (2/3 at order 0 or 1 with symmetric windows; Moon, Carr and Yoon, Adaptive Rendering Based on Weighted Local
-/// Regression, 2014, predict with this). docs/adaptive.md has what was measured.
+/// Regression, 2014, predict with this). docs/lab/2026-11-26-where-samples-go.md has what was measured.
 inline constexpr double convergence_rate = 0.75;
 
 /// The adaptive sampling of the report's section 3: extra samples go where they reduce the relative MSE most, until the
 /// budget is spent or the target reached. A sample helps every pixel of its window: with v_j = relative_variance and
 /// sum_i K_ij = 1, V_i = sum_j K_ij v_j is what the noise of pixel i does. After few samples v is as noisy as they are;
 /// so is the noise u_j = relative_noise of the input, but its errors are others: where it is known, V_i is sqrt(sum_j
-/// K_ij v_j sum_j K_ij u_j) (docs/adaptive.md has what this is worth). The minimum of sum_i V_i n_i / (n_i + dn_i)
+/// K_ij v_j sum_j K_ij u_j) (measured on the same page). The minimum of sum_i V_i n_i / (n_i + dn_i)
 /// under sum_i c_i dn_i = C is the water-filling
 ///
 ///     dn_i = clamp(sqrt(V_i n_i / (lambda c_i)) - n_i, 0, max_samples),

@@ -10,7 +10,8 @@ namespace polyrecon {
 
 /// Gives back what remove_outliers took: equations (10) and (11) with a gain that is proportional to the pixel's
 /// brightness, yhat(i) += e_o kappa yhat(i)^2 / sum over Omega_o of kappa yhat^2, which of all ways to add e_o costs
-/// the least relative squared error, sum (d / yhat)^2 / kappa (docs/accuracy.md); the sum of every channel is what it
+/// the least relative squared error, sum (d / yhat)^2 / kappa (docs/lab/2026-11-28-fireflies.md);
+/// the sum of every channel is what it
 /// was to double rounding. kappa = min(1, sigma / (max_gain yhat)), sigma being the standard deviation of the input's
 /// noise: a pixel that carries less noise than the gain would show (a sky of one colour) is known better than to take
 /// part in full. Omega_o is a square around o that grows until the root mean square of the gain, weighed by kappa, is

@@ -14,7 +14,7 @@ namespace polyrecon {
 
 enum class Quality { Draft, Standard, Best };
 
-/// Parts of the method that can be taken out, to measure what each is worth (docs/accuracy.md).
+/// Parts of the method that can be taken out, to measure what each is worth (docs/results/accuracy.md).
 struct Parts {
   bool cross_filter = true;      ///< A half is fitted with weights and features of the other one.
   bool shrinkage = true;         ///< Columns enter with the factor of least error, not whole (order_selection.h).

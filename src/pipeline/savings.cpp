@@ -9,7 +9,7 @@ namespace polyrecon {
 namespace {
 
 // One more feature channel makes the polynomials dearer by about this part: without normal, albedo (3 channels each)
-// and depth (1) a run takes 0.83, 0.80 and 0.91 of the time (docs/accuracy.md).
+// and depth (1) a run takes 0.83, 0.80 and 0.91 of the time (docs/results/accuracy.md).
 constexpr double seconds_per_channel = 0.05;
 
 /// Seconds that one thread takes to clean one channel of one pixel.

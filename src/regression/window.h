@@ -9,7 +9,8 @@ namespace polyrecon {
 
 /// Weighted root mean square over a window that a feature, whose values are of order 1, must have beside the columns
 /// before it. What varies by less is rounding, of cleaned features above all: even where they are flat, every pixel is
-/// a quotient of other sums. As a column of its own it would be fitted to the noise (docs/reliability.md).
+/// a quotient of other sums. As a column of its own it would be fitted to the noise
+/// (docs/lab/2026-11-27-float-and-double.md).
 inline constexpr double least_variation = 2e-4;
 
 /// The pixels of one window Omega_c that may carry weight, gathered from the images into contiguous columns. Reused

@@ -93,8 +93,8 @@ void add_inputs(const Frame& frame, Settings& list) {
   if (!frame.prior.mean.empty()) list.vary("prior", "without prior", [](Setting& s) { s.without_prior = true; });
 }
 
-/// Each part of the method taken out alone: the ablation of docs/accuracy.md. What a number can switch off is varied
-/// above (stages 1, levels 1, order 0, coverage 0, no guided windows, features, halves, prior).
+/// Each part of the method taken out alone: the ablation of docs/results/accuracy.md. What a number can switch off is
+/// varied above (stages 1, levels 1, order 0, coverage 0, no guided windows, features, halves, prior).
 void add_parts(const Frame& frame, Settings& list) {
   const auto without = [&](const char* name, const auto& change) { list.vary("parts", name, change); };
   without("weights from the own half", [](Setting& s) { s.params.parts.cross_filter = false; });

@@ -4,8 +4,8 @@
 
 #include "core/simd.h"
 
-// What the core can do at best, for the roofline of docs/performance.md: sums and products in registers, and loads and
-// stores from each level of memory.
+// What the core can do at best, for the roofline of docs/results/performance.md: sums and products in registers, and
+// loads and stores from each level of memory.
 
 namespace polyrecon::bench {
 namespace {

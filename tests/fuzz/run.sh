@@ -5,7 +5,7 @@
 # with it).
 #   tests/fuzz/run.sh [SECONDS [FILES]]
 # A build of OpenEXR with the same flags, given by CMAKE_PREFIX_PATH (and LD_LIBRARY_PATH), lets the fuzzer see into the
-# library too; docs/reliability.md says how it was made.
+# library too; docs/dev/files_from_strangers.md says how it was made.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 seconds=${1:-7200} files=${2:-100000}

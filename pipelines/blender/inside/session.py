@@ -24,7 +24,7 @@ import camera
 
 MARK = "@polyrecon "
 # Samples of one sequence; further ones have other seeds. Cycles lays out a table for a whole sequence, and where that is too
-# long for the processor's caches a sample takes up to a tenth longer (docs/adaptive.md).
+# long for the processor's caches a sample takes up to a tenth longer (docs/lab/2026-11-27-loop-seconds.md).
 SEQUENCE = 1 << 8
 LONGEST_SEQUENCE = 1 << 13  # of Cycles; what follows is spread less well
 MOST_SEED = (1 << 31) - 1
