@@ -6,8 +6,11 @@ import os
 import pathlib
 import re
 import subprocess
+import sys
 import tempfile
 import unittest
+
+from pipelines.farm.job import Job
 
 from . import tree
 
@@ -66,7 +69,7 @@ class Keys(unittest.TestCase):
         table, seen = documented(heading), set()
         for path, value in (leaf for document in printed for leaf in leaves(document)):
             seen.add(path)
-            key = next((key for key in table if re.fullmatch(re.escape(key).replace("NAME", r"[^.]+"), path)), None)
+            key = next((key for key in table if re.fullmatch(re.escape(key).replace("NAME", ".+"), path)), None)
             self.assertIsNotNone(key, f"{PAGE}, {heading}: no row for `{path}`")
             fits = any(is_of_type(value, name) for name in table[key].split(" or "))
             self.assertTrue(fits, f"{PAGE}, {heading}: `{key}` is {value!r}, documented as {table[key]}")
@@ -101,6 +104,19 @@ class Keys(unittest.TestCase):
         words = ["-i", self.folder / "shot.#.exr", "-o", self.folder / "clean.#.exr", "--quality", "draft"]
         lines = run("denoise", *words, "--frames", "1-2", "--progress", "json").stderr.splitlines()
         self.check("Progress lines", *map(json.loads, lines))
+
+    def test_report_of_a_farm(self):
+        """Two of three frames are there, so that the report has a reason and a failed attempt to tell."""
+        for frame in (1, 2):
+            (self.folder / f"shot.{frame}.exr").symlink_to(SMALL)
+        places = [str(self.folder / name) for name in ("shot.#.exr", "clean.#.exr")]
+        job = Job(*places, [1, 2, 3], PROGRAM, ["--quality", "draft", "--frame-radius", "0"], chunk=3)
+        job.save(self.folder / "job")
+        for program, *words in (("task.py", self.folder / "job", "0"), ("report.py", self.folder / "job")):
+            command = [sys.executable, "-B", tree.ROOT / "pipelines" / "farm" / program, *words]
+            done = subprocess.run(command, capture_output=True, text=True)
+            self.assertEqual(4, done.returncode, done.stderr)
+        self.check("Report of a farm", json.loads((self.folder / "job" / "report.json").read_text()))
 
 
 class TheCheckItself(unittest.TestCase):
