@@ -13,7 +13,7 @@
 #endif
 
 #include "cli/app.h"
-#include "cli/signals.h"
+#include "cli/common/signals.h"
 #include "core/error.h"
 
 namespace {

@@ -8,7 +8,7 @@ GROWTH = 1.0  # a round takes as much as was spent before it, so the slices doub
 LEAST_SAMPLES = 0.25  # per pixel: a smaller round does not pay its overhead
 EVEN_SHARE = 0.25  # of a budget of seconds, spent evenly before anything is judged: see even_share
 MOST_JUDGING = 0.05  # of a round's seconds, where seconds are the budget: fewer and larger rounds where judging is dear
-CONVERGENCE_RATE = 0.75  # the error falls with n^-this: src/estimate/sample_map.h
+CONVERGENCE_RATE = 0.75  # the error falls with n^-this: src/maps/sample_map.h
 SAMPLES_SPENT, SECONDS_SPENT = "the samples are spent", "the seconds are spent"
 
 

@@ -52,7 +52,7 @@ def gaussian_blur(image, sigma):
 
 def weight_of_samples(variance, noise):
     """What the noise of each pixel does to the result, in any unit: the geometric mean that sample maps go by
-    (estimate/sample_map.h), of a result's relative variance and its input's relative noise."""
+    (maps/sample_map.h), of a result's relative variance and its input's relative noise."""
     spread = [gaussian_blur(np.maximum(np.nan_to_num(values.astype(float)), 0), WINDOW) for values in (variance, noise)]
     return np.sqrt(spread[0] * spread[1])
 

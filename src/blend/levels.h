@@ -3,7 +3,7 @@
 #include <cstddef>
 
 #include "blend/select.h"
-#include "features/half_pair.h"
+#include "core/half_pair.h"
 
 namespace polyrecon {
 

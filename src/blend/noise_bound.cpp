@@ -132,18 +132,18 @@ Image noise_reach(const Image& variance) {
   return reach;
 }
 
-BoundLight bind_to_noise(const HalfPair& pair, const Image& reach, double max_lost, Candidate& result) {
+BoundEnergy bind_to_noise(const HalfPair& pair, const Image& reach, double max_lost, Candidate& result) {
   std::array<double, 3> strength{};
   for (int color = 0; color < 3; ++color)
     strength[static_cast<std::size_t>(color)] = strength_of(pair, reach, result, max_lost, color);
   const auto colors = static_cast<std::size_t>(pair.color[0].channels() / 3 * 3);
-  std::vector<BoundLight> of_row(static_cast<std::size_t>(pair.height()), {0, std::vector<double>(colors, 0.0)});
+  std::vector<BoundEnergy> of_row(static_cast<std::size_t>(pair.height()), {0, std::vector<double>(colors, 0.0)});
   for_rows(pair.height(), [&](int y) {
-    BoundLight& row = of_row[static_cast<std::size_t>(y)];
+    BoundEnergy& row = of_row[static_cast<std::size_t>(y)];
     for (int x = 0; x < pair.width(); ++x) row.pixels += bind_pixel(pair, reach, strength, x, y, result, row.energy);
   });
-  BoundLight all{0, std::vector<double>(colors, 0.0)};
-  for (const BoundLight& row : of_row) {
+  BoundEnergy all{0, std::vector<double>(colors, 0.0)};
+  for (const BoundEnergy& row : of_row) {
     all.pixels += row.pixels;
     for (std::size_t c = 0; c < colors; ++c) all.energy[c] += row.energy[c];
   }

@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "blend/select.h"
+#include "core/half_pair.h"
 #include "core/image.h"
-#include "features/half_pair.h"
 
 namespace polyrecon {
 
@@ -16,7 +16,7 @@ namespace polyrecon {
 Image noise_reach(const Image& variance);
 
 /// What a result lost where it was bound.
-struct BoundLight {
+struct BoundEnergy {
   std::size_t pixels = 0;
   std::vector<double> energy;  ///< Of each colour channel (beauty, then each AOV), radiance x pixels.
 };
@@ -26,6 +26,6 @@ struct BoundLight {
 /// colour, so that layers that add up still do. A last single channel (alpha) is left alone. The bias shrinks with the
 /// distance. What is lost has to be given to the whole image (restore_everywhere): where that would be more than
 /// max_lost of a colour's light (a frame whose light is one glint), all its pixels are brought nearer by less.
-BoundLight bind_to_noise(const HalfPair& pair, const Image& reach, double max_lost, Candidate& result);
+BoundEnergy bind_to_noise(const HalfPair& pair, const Image& reach, double max_lost, Candidate& result);
 
 }  // namespace polyrecon

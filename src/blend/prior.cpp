@@ -9,7 +9,7 @@
 #include "blend/sharpen.h"
 #include "core/gaussian.h"
 #include "core/parallel.h"
-#include "core/sanitise.h"
+#include "core/repair.h"
 
 namespace polyrecon {
 namespace {
@@ -36,7 +36,7 @@ double exposure_gain(const Image& prior, const HalfPair& pair, int c) {
 }
 
 /// D / E of the candidate that takes this share of the prior.
-Image contradiction(const Image& own, const MendedPrior& prior, double share, const Image& mse, double epsilon,
+Image contradiction(const Image& own, const CorrectedPrior& prior, double share, const Image& mse, double epsilon,
                     double sigma) {
   Image terms(own.width(), own.height(), 2);
   for_rows(own.height(), [&](int y) {
@@ -82,7 +82,7 @@ Image toward(Image own, const Image& prior, Real share, const Image& belief) {
 
 }  // namespace
 
-MendedPrior mend_prior(Pass prior, const HalfPair& pair, const Image& own) {
+CorrectedPrior correct_prior(Pass prior, const HalfPair& pair, const Image& own) {
   Image out =
       prior.has_halves() ? mean_of_halves({std::move(prior.half_a), std::move(prior.half_b)}) : std::move(prior.mean);
   for (int c = 0; c < beauty_channels; ++c) {
@@ -113,10 +113,10 @@ double noise_in_prior(const Image& prior, const HalfPair& pair, const Image& own
   return input > 0 ? shared / input : 0;
 }
 
-Candidate add_prior(const HalfPair& pair, const MendedPrior& prior, const Image& mse, Candidate own,
+Candidate add_prior(const HalfPair& pair, const CorrectedPrior& prior, const Image& mse, Candidate own,
                     const SelectParams& params, std::size_t max_bytes) {
   const auto make = [&](const std::array<Image, 2>& beauty, const Rect& region) {
-    const MendedPrior part{crop(prior.value, region), crop(prior.sharpening, region)};
+    const CorrectedPrior part{crop(prior.value, region), crop(prior.sharpening, region)};
     const Image mean = mean_of_halves(beauty), error = crop(mse, region);
     std::vector<std::array<Image, 2>> corrected(shares.size());
     for (std::size_t k = 0; k < shares.size(); ++k) {

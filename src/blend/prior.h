@@ -4,12 +4,12 @@
 
 #include "blend/select.h"
 #include "core/frame.h"
-#include "features/half_pair.h"
+#include "core/half_pair.h"
 
 namespace polyrecon {
 
 /// A denoised layer of the file, made usable; 3 channels each.
-struct MendedPrior {
+struct CorrectedPrior {
   Image value;
   Image sharpening;  ///< What was added to make it as sharp as our own result, part of value.
 };
@@ -19,7 +19,7 @@ struct MendedPrior {
 /// 2: noise hardly moves a sum over the frame, so what differs is the prior's exposure. Pixels that are not usable, and
 /// all of a prior without a usable one, take the value of own. Last, a blurred one is sharpened (blend/sharpen.h).
 /// 3 channels; prior is not empty and of the pair's size.
-MendedPrior mend_prior(Pass prior, const HalfPair& pair, const Image& own);
+CorrectedPrior correct_prior(Pass prior, const HalfPair& pair, const Image& own);
 
 /// How much of the input's noise the prior holds, 1 if it is the input itself: slope of its difference from own over
 /// the input's, relative to the brightest of the three. An upper bound, since detail that own misses counts too. All 3
@@ -33,7 +33,7 @@ double noise_in_prior(const Image& prior, const HalfPair& pair, const Image& own
 /// estimated error is wrong, whatever the noise of the validation lets it score; and what had to be sharpened may be
 /// wrong by twice what that changed. mse: estimated squared error of own (ErrorMap::mse). Only the beauty changes;
 /// bias, variance and order stay those of own. max_bytes: as in select_correction.
-Candidate add_prior(const HalfPair& pair, const MendedPrior& prior, const Image& mse, Candidate own,
+Candidate add_prior(const HalfPair& pair, const CorrectedPrior& prior, const Image& mse, Candidate own,
                     const SelectParams& params, std::size_t max_bytes);
 
 }  // namespace polyrecon

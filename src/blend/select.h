@@ -5,8 +5,8 @@
 #include <functional>
 #include <vector>
 
+#include "core/half_pair.h"
 #include "core/image.h"
-#include "features/half_pair.h"
 
 namespace polyrecon {
 

@@ -7,13 +7,13 @@
 #include <string>
 #include <vector>
 
-#include "cli/checks.h"
-#include "cli/choice.h"
 #include "cli/commands.h"
-#include "cli/read_limits.h"
+#include "cli/common/checks.h"
+#include "cli/common/choice.h"
+#include "cli/common/read_limits.h"
 #include "core/error.h"
 #include "core/parallel.h"
-#include "io/exr_file.h"
+#include "io/exr/file.h"
 
 namespace polyrecon {
 namespace {

@@ -1,4 +1,4 @@
-#include "io/preview.h"
+#include "io/pictures/preview.h"
 
 #include <fmt/format.h>
 
@@ -10,14 +10,14 @@
 #include <string>
 #include <vector>
 
-#include "cli/checks.h"
 #include "cli/commands.h"
-#include "cli/display_options.h"
-#include "cli/layers.h"
+#include "cli/common/checks.h"
+#include "cli/common/display_options.h"
+#include "cli/common/layers.h"
 #include "core/error.h"
-#include "io/color.h"
-#include "io/false_color.h"
-#include "io/png_file.h"
+#include "io/pictures/color.h"
+#include "io/pictures/false_color.h"
+#include "io/pictures/png_file.h"
 
 namespace polyrecon {
 namespace {

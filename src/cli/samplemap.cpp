@@ -4,11 +4,11 @@
 #include <memory>
 #include <string>
 
-#include "cli/checks.h"
 #include "cli/commands.h"
-#include "cli/map_files.h"
-#include "cli/progress_output.h"
-#include "cli/sample_map_options.h"
+#include "cli/common/checks.h"
+#include "cli/common/map_files.h"
+#include "cli/common/progress_output.h"
+#include "cli/common/sample_map_options.h"
 
 namespace polyrecon {
 namespace {

@@ -1,4 +1,4 @@
-#include "tradeoff/sweep.h"
+#include "sweep/sweep.h"
 
 #include <fmt/format.h>
 
@@ -10,15 +10,15 @@
 #include <string>
 #include <vector>
 
-#include "cli/checks.h"
 #include "cli/commands.h"
-#include "cli/layers.h"
-#include "cli/progress_output.h"
+#include "cli/common/checks.h"
+#include "cli/common/layers.h"
+#include "cli/common/progress_output.h"
 #include "core/error.h"
 #include "core/parallel.h"
 #include "io/atomic_file.h"
 #include "io/read_frame.h"
-#include "tradeoff/page.h"
+#include "sweep/page.h"
 
 namespace polyrecon {
 namespace {

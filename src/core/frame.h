@@ -15,7 +15,7 @@ struct Pass {
   Image variance;    ///< Variance of the mean, same shape; empty where unknown.
   Image half_a;      ///< Means over two independent halves of the samples; both there or both empty.
   Image half_b;
-  bool variance_is_estimated = false;  ///< From the mean (estimate/variance.h), not told by the file.
+  bool variance_is_estimated = false;  ///< From the mean (noise/variance.h), not told by the file.
 
   bool has_halves() const { return !half_a.empty(); }
   bool noise_is_told() const { return !variance.empty() || has_halves(); }

@@ -9,13 +9,13 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
-#include "core/sanitise.h"
-#include "features/fission.h"
+#include "core/repair.h"
+#include "noise/fission.h"
 
 namespace polyrecon {
 namespace {
 
-constexpr int mend_reach = 8;         // pixels; deeper holes carry no information for their middle anyway
+constexpr int repair_radius = 8;      // pixels; deeper holes carry no information for their middle anyway
 constexpr double sky_depth = 1e9;     // renderers write 1e10 or larger for a ray that hits nothing
 constexpr double noise_floor = 1e-5;  // noise below this part of a feature's own variance is not worth cleaning
 
@@ -135,16 +135,16 @@ double median_depth(const Image& depth) {
   return static_cast<double>(*middle);
 }
 
-bool allowed(FeatureKind kind, const Effects& effects) {
+bool allowed(FeatureKind kind, const Steps& steps) {
   switch (kind) {
     case FeatureKind::Normal:
-      return effects.normal;
+      return steps.normal;
     case FeatureKind::Albedo:
-      return effects.albedo;
+      return steps.albedo;
     case FeatureKind::Depth:
-      return effects.depth;
+      return steps.depth;
     case FeatureKind::Visibility:
-      return effects.visibility;
+      return steps.visibility;
   }
   return true;
 }
@@ -164,17 +164,17 @@ const char* kind_name(FeatureKind kind) {
 }
 
 /// Whether a feature takes part, and why (or why not).
-Decision decide_on_feature(const FeatureLook& look, const Feature& feature, const Effects& effects) {
-  const std::string effect = std::string("feature ") + kind_name(feature.kind);
+Decision decide_on_feature(const FeatureLook& look, const Feature& feature, const Steps& steps) {
+  const std::string step = std::string("feature ") + kind_name(feature.kind);
   const Image& mean = feature.pass.mean;
-  if (!allowed(feature.kind, effects)) return {effect, false, "not asked for"};
-  if (look.usable_pixels == 0) return {effect, false, "no finite value"};
-  if (!effects.decide) return {effect, true, "asked for"};
+  if (!allowed(feature.kind, steps)) return {step, false, "not asked for"};
+  if (look.usable_pixels == 0) return {step, false, "no finite value"};
+  if (!steps.decide) return {step, true, "asked for"};
   const bool has_sky = feature.kind == FeatureKind::Depth && look.usable_pixels < mean.pixels();
   if (look.all.high - look.all.low <= 1e-6 * look.all.largest() && !has_sky)
-    return {effect, false, "constant", Spared::Columns, mean.channels()};
-  if (look.noise > 0.9 * look.variance) return {effect, false, "nothing but noise", Spared::Columns, mean.channels()};
-  return {effect, true, "varies over the frame"};
+    return {step, false, "constant", Spared::Columns, mean.channels()};
+  if (look.noise > 0.9 * look.variance) return {step, false, "nothing but noise", Spared::Columns, mean.channels()};
+  return {step, true, "varies over the frame"};
 }
 
 void transform(const FeatureUse& use, Image& image) {
@@ -215,16 +215,16 @@ void scale(Image& image, Real factor) {
   });
 }
 
-/// Both halves of a pass, taken from it and mended; split from the mean where the file has none. half_variance: of one
-/// half; may be empty.
-std::array<Image, 2> halves_of(Pass& pass, const Image& half_variance, std::uint64_t stream, std::size_t& mended) {
+/// Both halves of a pass, taken from it and repaired; split from the mean where the file has none. half_variance: of
+/// one half; may be empty.
+std::array<Image, 2> halves_of(Pass& pass, const Image& half_variance, std::uint64_t stream, std::size_t& repaired) {
   if (pass.has_halves()) {
     std::array<Image, 2> halves{std::move(pass.half_a), std::move(pass.half_b)};
-    for (Image& half : halves) mended += mend(half, mend_reach);
+    for (Image& half : halves) repaired += repair_nonfinite(half, repair_radius);
     return halves;
   }
   Image mean = pass.mean;
-  mended += mend(mean, mend_reach);
+  repaired += repair_nonfinite(mean, repair_radius);
   if (half_variance.empty()) return {mean, mean};
   Image variance = half_variance;
   scale(variance, Real(0.5));
@@ -233,10 +233,10 @@ std::array<Image, 2> halves_of(Pass& pass, const Image& half_variance, std::uint
 
 /// Noise variance of one half of a feature; empty where nothing is known of it. Where it is estimated both halves are
 /// the mean itself: what a split adds costs as much as it tells.
-Image feature_half_variance(Pass& pass, std::size_t& mended) {
+Image feature_half_variance(Pass& pass, std::size_t& repaired) {
   if (!pass.variance.empty()) {
     Image variance = std::move(pass.variance);
-    mended += mend(variance, mend_reach);
+    repaired += repair_nonfinite(variance, repair_radius);
     make_non_negative(variance);
     if (!pass.variance_is_estimated) scale(variance, 2);
     return variance;
@@ -248,7 +248,7 @@ Image feature_half_variance(Pass& pass, std::size_t& mended) {
     Real* values = variance.row(c, y);
     for (int x = 0; x < variance.width(); ++x) values[x] = (values[x] - b[x]) * (values[x] - b[x]) / 2;
   });
-  mended += mend(variance, mend_reach);
+  repaired += repair_nonfinite(variance, repair_radius);
   return variance;
 }
 
@@ -267,9 +267,9 @@ std::size_t negative_pixels(const Image& image) {
 
 /// Halves of a colour pass that has none: it takes its share, pass / beauty, of what sets the beauty's halves apart.
 /// Passes that add up to the beauty have halves that add up to its halves.
-std::array<Image, 2> split_like(const std::array<Image, 2>& beauty, const Pass& pass, std::size_t& mended) {
+std::array<Image, 2> split_like(const std::array<Image, 2>& beauty, const Pass& pass, std::size_t& repaired) {
   Image mean = pass.mean;
-  mended += mend(mean, mend_reach);
+  repaired += repair_nonfinite(mean, repair_radius);
   std::array<Image, 2> halves{mean, mean};
   for (int c = 0; c < 3; ++c)
     for (std::size_t i = 0; i < mean.pixels(); ++i) {
@@ -294,30 +294,31 @@ void append_channels(const Image& from, Image& to, int& channel) {
 }
 
 std::array<Image, 2> prepared_feature(Feature feature, const FeatureUse& use, std::size_t stream,
-                                      const PrefilterParams& cleaning, std::size_t& mended, Progress& progress) {
-  Image variance = feature_half_variance(feature.pass, mended);
-  auto halves = halves_of(feature.pass, feature.pass.variance_is_estimated ? Image() : variance, stream, mended);
-  if (use.clean && !variance.empty()) {
-    mend(feature.pass.mean, mend_reach);
+                                      const PrefilterParams& prefilter_params, std::size_t& repaired,
+                                      Progress& progress) {
+  Image variance = feature_half_variance(feature.pass, repaired);
+  auto halves = halves_of(feature.pass, feature.pass.variance_is_estimated ? Image() : variance, stream, repaired);
+  if (use.prefilter && !variance.empty()) {
+    repair_nonfinite(feature.pass.mean, repair_radius);
     transform_variance(use, feature.pass.mean, variance);
     for (Image& half : halves) transform(use, half);
-    return prefilter(halves, variance, cleaning, progress);
+    return prefilter(halves, variance, prefilter_params, progress);
   }
   for (Image& half : halves) transform(use, half);
   return halves;
 }
 
 /// Whether a feature is cleaned, and why (or why not).
-Decision decide_on_cleaning(const std::string& feature, const Pass& pass, const FeatureLook& look,
-                            const Effects& effects) {
-  const std::string effect = feature + " cleaning";
-  if (!effects.cleaning) return {effect, false, "not asked for"};
-  if (!pass.noise_is_told()) return {effect, false, "nothing is known of its noise"};
-  if (!effects.decide) return {effect, true, "asked for"};
+Decision decide_on_prefilter(const std::string& feature, const Pass& pass, const FeatureLook& look,
+                             const Steps& steps) {
+  const std::string step = feature + " prefilter";
+  if (!steps.prefilter) return {step, false, "not asked for"};
+  if (!pass.noise_is_told()) return {step, false, "nothing is known of its noise"};
+  if (!steps.decide) return {step, true, "asked for"};
   const bool noisy = look.noise > noise_floor * look.variance;
-  if (!noisy) return {effect, false, "the pass is clean", Spared::Cleaning, pass.mean.channels()};
+  if (!noisy) return {step, false, "the pass is clean", Spared::Prefilter, pass.mean.channels()};
   const double share = static_cast<double>(look.noisy_pixels) / static_cast<double>(pass.mean.pixels());
-  return {effect, true, fmt::format("the pass is noisy in {:.0f} % of its pixels", 100 * share)};
+  return {step, true, fmt::format("the pass is noisy in {:.0f} % of its pixels", 100 * share)};
 }
 
 }  // namespace
@@ -327,7 +328,7 @@ void require_usable(const Frame& frame) {
     throw Error(ExitCode::CheckFailed, "layer '" + frame.beauty.name + "': no finite pixel; render the frame again");
 }
 
-Preparation look_at(const Frame& frame, const Effects& effects) {
+Preparation look_at(const Frame& frame, const Steps& steps) {
   require_usable(frame);
   Preparation out;
   const double brightness = mean_brightness(frame.beauty.mean);
@@ -338,7 +339,7 @@ Preparation look_at(const Frame& frame, const Effects& effects) {
   for (std::size_t i = 0; i < frame.features.size(); ++i) {
     const Feature& feature = frame.features[i];
     const FeatureLook& look = looks[i];
-    Decision decision = decide_on_feature(look, feature, effects);
+    Decision decision = decide_on_feature(look, feature, steps);
     if (decision.run && channels + feature.pass.mean.channels() > max_feature_channels) {
       decision.run = false;
       decision.reason = "the model is full: " + std::to_string(max_feature_channels) + " channels";
@@ -348,24 +349,24 @@ Preparation look_at(const Frame& frame, const Effects& effects) {
     channels += feature.pass.mean.channels();
     FeatureUse use;
     use.index = i;
-    const Decision cleaning = decide_on_cleaning(decision.effect, feature.pass, look, effects);
-    use.clean = cleaning.run;
+    const Decision prefilter = decide_on_prefilter(decision.step, feature.pass, look, steps);
+    use.prefilter = prefilter.run;
     if (const double largest = look.usual.largest(); largest > 0) use.scale = std::exp2(-std::ilogb(largest));
     if (feature.kind == FeatureKind::Depth) use.half_depth = median_depth(feature.pass.mean);
     out.features.push_back(use);
-    out.decisions.push_back(cleaning);
+    out.decisions.push_back(prefilter);
   }
   return out;
 }
 
-Prepared prepare(Frame& frame, const Preparation& preparation, const Image& variance, const PrefilterParams& cleaning,
-                 bool with_alpha, Progress& progress) {
+Prepared prepare(Frame& frame, const Preparation& preparation, const Image& variance,
+                 const PrefilterParams& prefilter_params, bool with_alpha, Progress& progress) {
   Prepared out;
   HalfPair& pair = out.pair;
   pair.epsilon = preparation.epsilon;
   out.independent_halves = frame.beauty.has_halves();
   pair.variance = variance;
-  mend(pair.variance, mend_reach);
+  repair_nonfinite(pair.variance, repair_radius);
   make_non_negative(pair.variance);
   scale(pair.variance, 2);  // of a half, from that of the mean
   out.negative_pixels = negative_pixels(frame.beauty.mean);
@@ -382,16 +383,17 @@ Prepared prepare(Frame& frame, const Preparation& preparation, const Image& vari
     }
     begin = end;
   };
-  const auto beauty = halves_of(frame.beauty, pair.variance, preparation.stream, out.mended_pixels);
+  const auto beauty = halves_of(frame.beauty, pair.variance, preparation.stream, out.repaired_pixels);
   append(beauty);
   frame.beauty.variance = {};
   for (Pass& aov : frame.aovs) {
-    append(aov.has_halves() ? halves_of(aov, {}, 0, out.mended_pixels) : split_like(beauty, aov, out.mended_pixels));
+    append(aov.has_halves() ? halves_of(aov, {}, 0, out.repaired_pixels)
+                            : split_like(beauty, aov, out.repaired_pixels));
     aov.variance = {};
   }
   if (alpha) {
     Pass pass{"alpha", frame.alpha, {}, {}, {}};
-    append(halves_of(pass, {}, 0, out.mended_pixels));
+    append(halves_of(pass, {}, 0, out.repaired_pixels));
   }
 
   int feature_channels = 0;
@@ -400,7 +402,7 @@ Prepared prepare(Frame& frame, const Preparation& preparation, const Image& vari
   int channel = 0;
   for (const FeatureUse& use : preparation.features) {
     const auto halves = prepared_feature(std::move(frame.features[use.index]), use, preparation.stream + use.index + 1,
-                                         cleaning, out.mended_pixels, progress);
+                                         prefilter_params, out.repaired_pixels, progress);
     int end = channel;
     for (std::size_t h = 0; h < 2; ++h) {
       end = channel;

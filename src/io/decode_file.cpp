@@ -5,8 +5,8 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
-#include "io/exr_bands.h"
-#include "io/exr_file.h"
+#include "io/exr/bands.h"
+#include "io/exr/file.h"
 
 namespace polyrecon {
 

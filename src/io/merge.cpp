@@ -24,8 +24,8 @@
 #include "core/parallel.h"
 #include "io/channel_names.h"
 #include "io/channel_reader.h"
-#include "io/exr_bands.h"
-#include "io/exr_single_part.h"
+#include "io/exr/bands.h"
+#include "io/exr/single_part.h"
 #include "io/merge_sums.h"
 
 namespace polyrecon {

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "io/exr_file.h"
+#include "io/exr/file.h"
 
 namespace polyrecon {
 

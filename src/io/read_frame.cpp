@@ -214,7 +214,7 @@ class FrameBuilder {
                            pass.role == Role::Visibility;
       if (feature) shape.feature_channels += channels_of(pass.role);
       if (feature && pass.role != Role::Depth && pass.variance < 0 && pass.half_a < 0)
-        shape.channels += channels_of(pass.role);  // for a variance that is estimated (estimate/variance.h)
+        shape.channels += channels_of(pass.role);  // for a variance that is estimated (noise/variance.h)
       if (pass.role == Role::Prior)
         for (const int index : {pass.mean, pass.variance, pass.half_a, pass.half_b})
           shape.prior_channels += index < 0 ? 0 : channels_of(pass.role);
@@ -327,7 +327,7 @@ ReadResult read_frame(const std::string& path, const ReadOptions& options) {
   return FrameBuilder(choose_layers(path, options), options).build();
 }
 
-ReadResult plan_frame(const std::string& path, const ReadOptions& options) {
+ReadResult read_frame_header(const std::string& path, const ReadOptions& options) {
   LayerChoice choice = choose_layers(path, options);
   ReadResult result;
   result.source = std::move(choice.source);

@@ -6,7 +6,7 @@
 
 #include "core/frame.h"
 #include "io/channel_names.h"
-#include "io/exr_file.h"
+#include "io/exr/file.h"
 
 namespace polyrecon {
 
@@ -68,12 +68,12 @@ struct ReadResult {
 };
 
 /// Reads one view layer of a render. Layers that play a role are read whole, so that a cut last chunk is noticed; NaN
-/// and Inf are kept (mending them is a stage's work). Depth and visibility have one channel: a layer of more is
+/// and Inf are kept (repairing them is a stage's work). Depth and visibility have one channel: a layer of more is
 /// averaged. Throws Error{Missing} where the file or a layer asked for is not there, Error{BadInput} where the file is
 /// damaged, has no beauty or its layers do not fit together, Error{OutOfMemory} beyond options.limits.max_bytes.
 ReadResult read_frame(const std::string& path, const ReadOptions& options = {});
 
 /// Layers, choice of roles and notes only, without pixels; the same errors.
-ReadResult plan_frame(const std::string& path, const ReadOptions& options = {});
+ReadResult read_frame_header(const std::string& path, const ReadOptions& options = {});
 
 }  // namespace polyrecon

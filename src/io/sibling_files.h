@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "io/channel_names.h"
-#include "io/exr_file.h"
+#include "io/exr/file.h"
 
 namespace polyrecon {
 

@@ -26,9 +26,9 @@
 
 #include "core/error.h"
 #include "io/atomic_file.h"
-#include "io/exr_bands.h"
-#include "io/exr_raw.h"
-#include "io/exr_single_part.h"
+#include "io/exr/bands.h"
+#include "io/exr/raw.h"
+#include "io/exr/single_part.h"
 
 namespace polyrecon {
 namespace {

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "io/false_color.h"
+#include "io/pictures/false_color.h"
+#include "io/pictures/preview.h"
 #include "io/plain_image_file.h"
-#include "io/preview.h"
 
 namespace polyrecon {
 

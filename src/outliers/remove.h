@@ -2,8 +2,8 @@
 
 #include <vector>
 
+#include "core/half_pair.h"
 #include "core/progress.h"
-#include "features/half_pair.h"
 #include "outliers/outlier.h"
 
 namespace polyrecon {

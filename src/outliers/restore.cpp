@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/parallel.h"
-#include "core/sanitise.h"
+#include "core/repair.h"
 
 namespace polyrecon {
 namespace {

@@ -31,7 +31,7 @@ void restore_everywhere(const std::vector<double>& energy, const Image& variance
 
 /// The same for what the fit itself gained or lost: every channel's sum becomes `totals` (one value a channel, as many
 /// as are to be restored). Only where that is at most max_gain of the channel; a larger difference is not rounding or
-/// the pull of the weights but content (an input of both signs, a hole that was mended), and stays.
+/// the pull of the weights but content (an input of both signs, a hole that was repaired), and stays.
 /// Returns the gain of each of the first three channels.
 std::array<double, 3> restore_totals(const std::vector<double>& totals, const Image& variance, double quiet,
                                      double max_gain, Image& image);

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "core/error.h"
-#include "estimate/variance.h"
+#include "noise/variance.h"
 #include "pipeline/stage.h"
 
 namespace polyrecon {

@@ -22,8 +22,8 @@ Params params_for(Quality quality) {
     params.stride = 5;
     params.coverage = 0.25;
     params.max_order = 1;
-    params.cleaning.search_radius = 2;
-    params.cleaning.patch_radius = 2;
+    params.prefilter.search_radius = 2;
+    params.prefilter.patch_radius = 2;
   } else if (quality == Quality::Best) {
     params.radius = 11;
     params.stride = 3;

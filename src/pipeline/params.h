@@ -18,7 +18,7 @@ enum class Quality { Draft, Standard, Best };
 struct Parts {
   bool cross_filter = true;      ///< A half is fitted with weights and features of the other one.
   bool shrinkage = true;         ///< Columns enter with the factor of least error, not whole (order_selection.h).
-  bool variance_floor = true;    ///< features/variance_floor.h
+  bool variance_floor = true;    ///< noise/variance_floor.h
   bool noise_bound = true;       ///< blend/noise_bound.h
   bool raise_undershoot = true;  ///< blend/undershoot.h
   bool restore_totals = true;    ///< The result's channels are brought to the sums of the input's.
@@ -39,10 +39,10 @@ struct Params {
   std::vector<Real> guided_bandwidths{Real(0.5), Real(1)};    ///< Later stages, weights from the stage before.
   double order_tolerance = 0.02;  ///< Orders are averaged whose estimated errors are within this of the least.
   double coverage = 2;            ///< Sum of weights below which finer centres are added; 0: none.
-  PrefilterParams cleaning;       ///< Of noisy feature passes.
+  PrefilterParams prefilter;      ///< Of noisy feature passes.
   SelectParams selection;
   double enough = 0;  ///< Pixels whose noise variance over (value^2 + 0.01) is below this stay as they are.
-  Effects effects;
+  Steps steps;
   Parts parts;
   TemporalParams temporal;         ///< How neighbours in time join, where there are any.
   bool reconstruct_alpha = false;  ///< Reconstruct alpha with the beauty's windows instead of keeping it.

@@ -9,9 +9,9 @@
 #include "blend/prior.h"
 #include "blend/undershoot.h"
 #include "core/parallel.h"
-#include "estimate/variance.h"
 #include "features/prepare.h"
-#include "features/variance_floor.h"
+#include "noise/variance.h"
+#include "noise/variance_floor.h"
 #include "outliers/remove.h"
 #include "outliers/restore.h"
 #include "pipeline/memory.h"
@@ -105,16 +105,16 @@ void note_fits(const FitCounters& counters, Report& report) {
   report.pixels_fallen_back_to_input = counters.uncovered_pixels;
 }
 
-void note_outliers(const std::vector<Outlier>& outliers, const Effects& effects, Report& report) {
-  if (!effects.outliers) {
-    report.decisions.push_back({"outlier removal", false, "not asked for"});
+void note_outliers(const std::vector<Outlier>& outliers, const Steps& steps, Report& report) {
+  if (!steps.outliers) {
+    report.decisions.push_back({"firefly removal", false, "not asked for"});
     return;
   }
   report.outliers = outliers.size();
   for (const Outlier& outlier : outliers)
     for (std::size_t c = 0; c < 3; ++c) report.outlier_energy[c] += outlier.energy[c];
   report.decisions.push_back(
-      {"outlier removal", !outliers.empty(),
+      {"firefly removal", !outliers.empty(),
        outliers.empty() ? "no pixel stands out alone" : std::to_string(outliers.size()) + " pixels stand out alone"});
 }
 
@@ -139,7 +139,7 @@ Candidate use_prior(Pass pass, const HalfPair& pair, const ErrorMap& error, cons
                     std::size_t max_bytes, Candidate solved, std::vector<Decision>& decisions) {
   const std::string layer = "layer '" + pass.name;
   Image own = average(pair, solved);
-  const MendedPrior prior = mend_prior(std::move(pass), pair, own);
+  const CorrectedPrior prior = correct_prior(std::move(pass), pair, own);
   const bool denoised = noise_in_prior(prior.value, pair, own) < most_noise_in_prior;
   own = {};
   decisions.push_back({"prior", denoised, layer + (denoised ? "'" : "' is the noisy image itself")});
@@ -165,8 +165,9 @@ Neighbour prepare_neighbour(const Frame& frame, int number, const Params& params
   colors.alpha = frame.alpha;
   Preparation preparation;
   preparation.stream = 64 * (std::uint64_t{static_cast<std::uint32_t>(number)} + 1);
-  Prepared prepared = prepare(colors, preparation, noise.variance, params.cleaning, params.reconstruct_alpha, progress);
-  if (params.effects.outliers)
+  Prepared prepared =
+      prepare(colors, preparation, noise.variance, params.prefilter, params.reconstruct_alpha, progress);
+  if (params.steps.outliers)
     remove_outliers(prepared.pair, prepared.independent_halves, outlier_params(noise), progress);
   if (params.parts.variance_floor) prepared.pair.variance = floor_variance(prepared.pair.variance);
   return {std::move(prepared.pair), frame.motion};
@@ -193,29 +194,29 @@ Result reconstruct(Frame& frame, const std::vector<TimedNeighbour>& neighbours, 
   require_usable(frame);
   const auto rows = static_cast<std::size_t>(frame.height());
   const NoiseVariance noise = timed(report, progress, "noise variance", rows * 2 * (1 + frame.features.size()), [&] {
-    if (params.effects.cleaning) estimate_feature_variance(frame, progress);
+    if (params.steps.prefilter) estimate_feature_variance(frame, progress);
     return noise_variance(frame, progress);
   });
-  const Preparation preparation = look_at(frame, params.effects);
+  const Preparation preparation = look_at(frame, params.steps);
   report.decisions = preparation.decisions;
   report.variance_source = noise.source;
   Prepared prepared = timed(report, progress, "features", rows / 4, [&] {
-    return prepare(frame, preparation, noise.variance, params.cleaning, params.reconstruct_alpha, progress);
+    return prepare(frame, preparation, noise.variance, params.prefilter, params.reconstruct_alpha, progress);
   });
   HalfPair& pair = prepared.pair;
-  report.mended_pixels = prepared.mended_pixels;
+  report.repaired_pixels = prepared.repaired_pixels;
   report.negative_pixels = prepared.negative_pixels;
   const std::vector<double> totals = color_totals(frame);
   // Of the noise as it is told: where an outlier goes from one half, the other may still be as wrong as that noise. An
   // estimate knows regions, no single pixels.
   const Image reach = params.parts.noise_bound && noise.measured ? noise_reach(pair.variance) : Image();
   const auto outliers = timed(report, progress, "outliers", rows * 2, [&]() -> std::vector<Outlier> {
-    if (!params.effects.outliers) return {};
+    if (!params.steps.outliers) return {};
     return remove_outliers(pair, prepared.independent_halves, outlier_params(noise), progress);
   });
   if (params.parts.variance_floor)
     pair.variance = floor_variance(pair.variance);  // now: an outlier's variance must not spread to its neighbours
-  note_outliers(outliers, params.effects, report);
+  note_outliers(outliers, params.steps, report);
   if (!neighbours.empty())
     note_neighbours(timed(report, progress, "neighbours in time", 2,
                           [&] { return join_neighbours(frame.motion, neighbours, params.temporal, pair, progress); }),
@@ -226,12 +227,12 @@ Result reconstruct(Frame& frame, const std::vector<TimedNeighbour>& neighbours, 
   Candidate solved = timed(report, progress, "polynomials", fit_steps(frame, params),
                            [&] { return solve_level(pair, 0, params, memory, counters, progress); });
   note_fits(counters, report);
-  const double left_alone = share_left_alone(pair, params);
-  report.decisions.push_back(decide_on_pixels(left_alone, params));
-  estimate_savings(frame, params.cleaning, left_alone, report.stages.back().seconds, report.decisions);
+  const double skipped = skipped_share(pair, params);
+  report.decisions.push_back(decide_on_pixels(skipped, params));
+  estimate_savings(frame, params.prefilter, skipped, report.stages.back().seconds, report.decisions);
 
-  const BoundLight bound = timed(report, progress, "noise bound", 1, [&] {
-    return reach.empty() ? BoundLight() : bind_to_noise(pair, reach, max_total_gain, solved);
+  const BoundEnergy bound = timed(report, progress, "noise bound", 1, [&] {
+    return reach.empty() ? BoundEnergy() : bind_to_noise(pair, reach, max_total_gain, solved);
   });
   report.bound_pixels = bound.pixels;
   result.error = timed(report, progress, "error map", 1, [&] { return make_error_map(pair, noise.variance, solved); });

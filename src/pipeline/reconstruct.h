@@ -5,7 +5,7 @@
 
 #include "core/frame.h"
 #include "core/progress.h"
-#include "estimate/error_map.h"
+#include "maps/error_map.h"
 #include "pipeline/params.h"
 #include "pipeline/report.h"
 #include "temporal/neighbour.h"

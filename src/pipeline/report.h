@@ -29,7 +29,7 @@ struct Report {
   std::size_t pixels_fallen_back_to_input = 0;  ///< Pixels that no finite fit covered.
   std::size_t bound_pixels = 0;                 ///< Pixels kept within reach of their noise (blend/noise_bound.h).
   std::size_t raised_pixels = 0;                ///< Pixels raised to the least input around them (blend/undershoot.h).
-  std::size_t mended_pixels = 0;                ///< Non-finite input pixels replaced before the fit, all passes.
+  std::size_t repaired_pixels = 0;              ///< Non-finite input pixels replaced before the fit, all passes.
   std::size_t negative_pixels = 0;              ///< Beauty pixels with a negative channel (kept as they are).
 
   std::size_t neighbours = 0;   ///< Frames before and after that joined.

@@ -13,40 +13,40 @@ namespace {
 constexpr double seconds_per_channel = 0.05;
 
 /// Seconds that one thread takes to clean one channel of one pixel.
-double cleaning_seconds(const Frame& frame, const PrefilterParams& cleaning) {
+double prefilter_seconds(const Frame& frame, const PrefilterParams& prefilter_params) {
   const Rect block = intersect({0, 0, 128, 32}, frame.beauty.mean.bounds());
   const Image part = crop(frame.beauty.mean, block);
   Progress silent;
   const auto start = std::chrono::steady_clock::now();
-  prefilter({part, part}, Image(part.width(), part.height(), 3, Real(1)), cleaning, silent);
+  prefilter({part, part}, Image(part.width(), part.height(), 3, Real(1)), prefilter_params, silent);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return seconds / (3.0 * static_cast<double>(part.pixels()));
 }
 
 }  // namespace
 
-Decision decide_on_pixels(double left_alone, const Params& params) {
-  const std::string effect = "quiet pixels left";
-  if (left_alone == 0)
-    return {effect, false, params.effects.decide ? "every pixel carries noise" : "all pixels are asked for"};
+Decision decide_on_pixels(double skipped, const Params& params) {
+  const std::string step = "noise-free pixels skipped";
+  if (skipped == 0)
+    return {step, false, params.steps.decide ? "every pixel carries noise" : "all pixels are asked for"};
   const char* why = params.enough > 0 ? "carries little noise or none" : "carries no noise";
-  return {effect, true, fmt::format("{:.1f} % of the frame {}", 100 * left_alone, why), Spared::Pixels};
+  return {step, true, fmt::format("{:.1f} % of the frame {}", 100 * skipped, why), Spared::Pixels};
 }
 
-void estimate_savings(const Frame& frame, const PrefilterParams& cleaning, double left_alone, double polynomials,
+void estimate_savings(const Frame& frame, const PrefilterParams& prefilter_params, double skipped, double polynomials,
                       std::vector<Decision>& decisions) {
-  const double rate = cleaning_seconds(frame, cleaning);
+  const double rate = prefilter_seconds(frame, prefilter_params);
   const auto pixels = static_cast<double>(frame.beauty.mean.pixels());
   for (Decision& d : decisions) switch (d.spared) {
       case Spared::Nothing:
         break;
       case Spared::Pixels:
-        if (left_alone < 1) d.saved_seconds = polynomials * left_alone / (1 - left_alone);
+        if (skipped < 1) d.saved_seconds = polynomials * skipped / (1 - skipped);
         break;
       case Spared::Columns:
         d.saved_seconds = polynomials * seconds_per_channel * d.channels;
         break;
-      case Spared::Cleaning:
+      case Spared::Prefilter:
         d.saved_seconds = rate * d.channels * pixels;
         break;
     }

@@ -25,7 +25,7 @@ bool noise_matters(const HalfPair& pair, std::size_t i, Real enough) {
 
 /// Pixels that carry noise: where the halves are equal and no variance is known there is nothing to do.
 std::vector<unsigned char> noisy_pixels(const HalfPair& pair, const Params& params) {
-  std::vector<unsigned char> noisy(pair.variance.pixels(), params.effects.decide ? 0 : 1);
+  std::vector<unsigned char> noisy(pair.variance.pixels(), params.steps.decide ? 0 : 1);
   for (int c = 0; c < pair.color[0].channels(); ++c) {
     const Real *a = pair.color[0].plane(c), *b = pair.color[1].plane(c), *v = c < 3 ? pair.variance.plane(c) : nullptr;
     for (std::size_t i = 0; i < noisy.size(); ++i)
@@ -133,7 +133,7 @@ void paste_candidate(const Candidate& part, const Tile& tile, Candidate& whole) 
 
 }  // namespace
 
-double share_left_alone(const HalfPair& pair, const Params& params) {
+double skipped_share(const HalfPair& pair, const Params& params) {
   const auto noisy = noisy_pixels(pair, params);
   const auto left = std::count(noisy.begin(), noisy.end(), 0);
   return static_cast<double>(left) / static_cast<double>(noisy.size());

@@ -2,8 +2,8 @@
 
 #include "blend/blend_windows.h"
 #include "blend/select.h"
+#include "core/half_pair.h"
 #include "core/progress.h"
-#include "features/half_pair.h"
 #include "pipeline/params.h"
 
 namespace polyrecon {
@@ -16,7 +16,7 @@ Candidate run_stage(const HalfPair& pair, const Candidate* before, const Params&
                     FitCounters& counters, Progress& progress);
 
 /// Share of the pixels that run_stage fits no window for: they carry no noise, or too little to matter; 0..1.
-double share_left_alone(const HalfPair& pair, const Params& params);
+double skipped_share(const HalfPair& pair, const Params& params);
 
 /// Pixels around a tile that run_stage looks at.
 int stage_halo(const Params& params);

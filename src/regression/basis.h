@@ -2,7 +2,7 @@
 
 #include <cassert>
 
-#include "features/half_pair.h"
+#include "core/half_pair.h"
 
 namespace polyrecon {
 

@@ -2,9 +2,9 @@
 
 #include <vector>
 
+#include "core/half_pair.h"
 #include "core/image.h"
 #include "core/progress.h"
-#include "features/half_pair.h"
 #include "temporal/neighbour.h"
 
 namespace polyrecon {

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "core/half_pair.h"
 #include "core/image.h"
-#include "features/half_pair.h"
 
 namespace polyrecon {
 

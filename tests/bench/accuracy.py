@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Measures what every setting and every part of the method brings on the samples, in error and in time. Runs
 `polyrecon sweep` on each sample, writes the tables of docs/results/accuracy.md, and writes the figures that
---time-budget and --target choose by into src/tradeoff/step_figures.cpp, which the next build compiles in. The
+--time-budget and --target choose by into src/sweep/step_figures.cpp, which the next build compiles in. The
 reports of the sweeps stay in out/accuracy/.
 
 Build the release preset first; let nothing else run meanwhile. Under ten minutes on two cores.
@@ -40,9 +40,9 @@ PARTS = (
     ("choice pixel by pixel (else by regions five times as wide)", "choice by wide regions"),
     ("orders averaged on a near tie (else rounding decides)", "order by least error alone"),
     ("finer centres where coverage is low", "coverage 0"),
-    ("firefly handling", "no outlier removal"),
+    ("firefly handling", "no firefly removal"),
     ("variance floor", "no variance floor"),
-    ("feature prefilter", "no feature cleaning"),
+    ("feature prefilter", "no feature prefilter"),
     ("noise bound", "no noise bound"),
     ("raising of undershoot", "no raising of undershoot"),
     ("totals restored", "totals not restored"),
@@ -173,7 +173,7 @@ def main():
     options.out.mkdir(parents=True, exist_ok=True)
     found = {sample: sweep(options, sample) for sample in SAMPLES}
     write_tables(ROOT / "docs" / "results" / "accuracy.md", found)
-    write_figures(ROOT / "src" / "tradeoff" / "step_figures.cpp", found)
+    write_figures(ROOT / "src" / "sweep" / "step_figures.cpp", found)
 
 
 if __name__ == "__main__":

@@ -42,7 +42,7 @@ BENCHMARK(fit_and_blend_frame)
     ->Unit(benchmark::kMillisecond);
 
 void prefilter_frame(benchmark::State& state) {
-  const PrefilterParams params = params_for(static_cast<Quality>(state.range(0))).cleaning;
+  const PrefilterParams params = params_for(static_cast<Quality>(state.range(0))).prefilter;
   const HalfPair pair = synthetic_pair(side, side);
   Progress silent;
   for ([[maybe_unused]] const auto pass : state)

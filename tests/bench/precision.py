@@ -27,12 +27,12 @@ def read(file, channel):
     return picked.get_pixels(oiio.FLOAT).astype(float)
 
 
-def run(program, file, folder, effects):
+def run(program, file, folder, steps):
     """The result and its error map, in files of their own: OpenImageIO remembers what it has read."""
     folder = pathlib.Path(tempfile.mkdtemp(dir=folder))
     clean, error = folder / "clean.exr", folder / "error.exr"
     subprocess.run(
-        [program, "denoise", "-i", file, "-o", clean, "--error-map", error, "--quiet", "--effects", effects], check=True
+        [program, "denoise", "-i", file, "-o", clean, "--error-map", error, "--quiet", "--steps", steps], check=True
     )
     return read(clean, "ViewLayer.Combined"), read(error, "mse")
 
@@ -42,7 +42,7 @@ def main():
     parser.add_argument("programs", nargs=2, metavar="POLYRECON", help="the float build and the double build")
     parser.add_argument("--samples", nargs="+", default=SAMPLES)
     parser.add_argument("--pixels", type=int, default=0, metavar="N", help="also print the N pixels that differ most")
-    parser.add_argument("--effects", default="auto", help="of denoise")
+    parser.add_argument("--steps", default="auto", help="of denoise")
     args = parser.parse_args()
     print(
         "| sample | largest | root mean square | over 1e-3 | over 1e-4 | sum of the error map |\n|---|---|---|---|---|---|"
@@ -54,7 +54,7 @@ def main():
             subprocess.run(
                 ["oiiotool", "-a", ROOT / f"samples/{sample}.exr", "-d", "float", "-o", folder / "in.exr"], check=True
             )
-            (a, ea), (b, eb) = (run(p, folder / "in.exr", folder, args.effects) for p in args.programs)
+            (a, ea), (b, eb) = (run(p, folder / "in.exr", folder, args.steps) for p in args.programs)
         difference = (np.abs(a - b) / np.maximum(np.abs(b), b.mean())).max(axis=2)
         over = [f"{100 * (difference > limit).mean():.2g} %" for limit in (1e-3, 1e-4)]
         print(

@@ -13,9 +13,9 @@
 #include <limits>
 #include <string>
 
-#include "estimate/variance.h"
 #include "features/prepare.h"
 #include "io/read_frame.h"
+#include "noise/variance.h"
 #include "pipeline/params.h"
 #include "regression/least_squares.h"
 #include "regression/order_selection.h"
@@ -209,7 +209,7 @@ void look_at_sample(const std::string& render, const std::string& reference_path
   const Frame reference = read_frame(reference_path).frame;
   Progress silent;
   const NoiseVariance noise = noise_variance(frame, silent);
-  const HalfPair pair = prepare(frame, look_at(frame), noise.variance, params.cleaning, false, silent).pair;
+  const HalfPair pair = prepare(frame, look_at(frame), noise.variance, params.prefilter, false, silent).pair;
   const std::string name = render.substr(render.rfind('/') + 1, render.rfind('.') - render.rfind('/') - 1);
   std::vector<LimitSums> sums = all_limits();
   NestedFactor factor;

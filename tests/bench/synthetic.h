@@ -2,8 +2,8 @@
 
 #include <vector>
 
+#include "core/half_pair.h"
 #include "core/image.h"
-#include "features/half_pair.h"
 #include "regression/basis.h"
 #include "regression/window.h"
 

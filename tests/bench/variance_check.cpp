@@ -9,8 +9,8 @@
 #include <numeric>
 #include <vector>
 
-#include "estimate/variance.h"
 #include "io/read_frame.h"
+#include "noise/variance.h"
 
 using polyrecon::Frame;
 using polyrecon::Image;

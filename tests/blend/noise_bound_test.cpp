@@ -73,7 +73,7 @@ TEST(BindToNoise, BringsTheMeanToTheEndOfTheReach) {
   Case c = make_case();
   Image reach(8, 6, 3, Real(1));
   reach.at(3, 2, 1) = Real(0.25);  // half of the distance, in green
-  const BoundLight lost = bind_to_noise(c.pair, reach, 10, c.result);
+  const BoundEnergy lost = bind_to_noise(c.pair, reach, 10, c.result);
   EXPECT_EQ(lost.pixels, 1u);
   const std::vector<double> expected{0, 0.25, 0, 0, 0.125, 0};
   ASSERT_EQ(lost.energy.size(), expected.size());
@@ -95,7 +95,7 @@ TEST(BindToNoise, WithoutNoiseTheInputStays) {
 
 TEST(BindToNoise, LosesNoMoreThanItMay) {
   Case c = make_case();
-  const BoundLight lost = bind_to_noise(c.pair, Image(8, 6, 3), 0.1, c.result);  // the distance is half of the light
+  const BoundEnergy lost = bind_to_noise(c.pair, Image(8, 6, 3), 0.1, c.result);  // the distance is half of the light
   EXPECT_NEAR(lost.energy[0], 0.1 * 48, 1e-4);
   EXPECT_NEAR((at(c.result.half[0], 1, 1, 0) + at(c.result.half[1], 1, 1, 0)) / 2, 1.4, 1e-6);
 }

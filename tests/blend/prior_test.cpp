@@ -34,7 +34,7 @@ struct Case {
 
   Candidate result() const { return {{own, own}, mse, mse, Image(size, size, 1)}; }
   double error_with(const Pass& prior) const {
-    const Candidate out = add_prior(pair, mend_prior(prior, pair, own), mse, result(), SelectParams{}, plenty);
+    const Candidate out = add_prior(pair, correct_prior(prior, pair, own), mse, result(), SelectParams{}, plenty);
     double sum = 0;
     const Image wanted = truth();
     for (std::size_t i = 0; i < wanted.pixels(); ++i) {
@@ -92,11 +92,11 @@ TEST(AddPrior, PixelsThatAreNoNumberAreOurs) {
   Image holes = truth();
   for (int y = 0; y < size; ++y)
     for (int x = 0; x < size / 2; ++x) holes.at(x, y, 1) = std::numeric_limits<Real>::quiet_NaN();
-  const MendedPrior prior = mend_prior(pass_of(holes), c.pair, c.own);
+  const CorrectedPrior prior = correct_prior(pass_of(holes), c.pair, c.own);
   EXPECT_NEAR(prior.value.at(3, 5, 1) - prior.sharpening.at(3, 5, 1), c.own.at(3, 5, 1), 1e-6);
   EXPECT_LT(c.error_with(pass_of(holes)), own_mse);
   const Image nothing(size, size, 3, std::numeric_limits<Real>::infinity());
-  EXPECT_TRUE(test::same_bits(mend_prior(pass_of(nothing), c.pair, c.own).value, c.own));
+  EXPECT_TRUE(test::same_bits(correct_prior(pass_of(nothing), c.pair, c.own).value, c.own));
 }
 
 TEST(AddPrior, HalvesAreAveraged) {

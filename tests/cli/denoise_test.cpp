@@ -35,7 +35,7 @@ TEST_F(Denoise, RefusesContradictionsBeforeAnyWork) {
       {"--target", "0.1", "--quality", "draft"},
       {"--time-budget", "2", "--stages", "1"},
       {"--time-budget", "0"},
-      {"--effects", "normal,magic"},
+      {"--steps", "normal,magic"},
       {"--export", "vray"},
       {"--max-samples", "4"},
       {"--sample-map", "s.exr"},
@@ -225,7 +225,7 @@ TEST_F(Denoise, TellsRolesThenTheTable) {
   ASSERT_NE(table, std::string::npos);
   EXPECT_LT(beauty, albedo);
   EXPECT_LT(albedo, table);
-  for (const char* row : {"pixels/s", "peak memory", "windows", "outliers", "fallbacks", "energy", "variance"})
+  for (const char* row : {"pixels/s", "peak memory", "windows", "fireflies", "fallbacks", "energy", "variance"})
     EXPECT_NE(o.out.find(row), std::string::npos) << row;
 }
 
@@ -256,9 +256,9 @@ TEST_F(Denoise, TheReportHasItsDocumentedKeys) {
                           "peak_memory_bytes",
                           "windows",
                           "fallbacks",
-                          "mended_pixels",
+                          "repaired_pixels",
                           "negative_pixels",
-                          "outliers",
+                          "fireflies",
                           "energy",
                           "estimated_relmse",
                           "notes"})

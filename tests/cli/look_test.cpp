@@ -153,7 +153,7 @@ TEST_F(Inspect, TellsTheRoleOfEachLayer) {
   ASSERT_EQ(o.code, 0) << o.err;
   const auto found = nlohmann::json::parse(o.out);
   for (const char* key :
-       {"files", "layers", "view_layer", "roles", "missing", "samples", "noise_level", "effects", "notes"})
+       {"files", "layers", "view_layer", "roles", "missing", "samples", "noise_level", "steps", "notes"})
     EXPECT_TRUE(found.contains(key)) << key;
   EXPECT_EQ(found["files"][0]["parts"][0]["channels"].size(), 16u);
   EXPECT_EQ(found["view_layer"], "ViewLayer");

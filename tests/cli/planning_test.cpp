@@ -23,17 +23,17 @@ class Planning : public ProgramTest {
   std::string out_;
 };
 
-TEST_F(Planning, WithoutARequestNothingIsPlanned) { EXPECT_TRUE(report_of({})["plan"].is_null()); }
+TEST_F(Planning, WithoutARequestNothingIsPlanned) { EXPECT_TRUE(report_of({})["settings_choice"].is_null()); }
 
 TEST_F(Planning, AGenerousBudgetTakesTheMostAccurateSettings) {
-  const json plan = report_of({"--time-budget", "1000"})["plan"];
+  const json plan = report_of({"--time-budget", "1000"})["settings_choice"];
   EXPECT_TRUE(plan["met"]);
   EXPECT_TRUE(plan["next"].is_null());
   EXPECT_GT(plan["seconds_taken"], 0);
 }
 
 TEST_F(Planning, ABudgetThatCannotBeKeptTakesTheFastestAndSaysSo) {
-  const json plan = report_of({"--time-budget", "0.000001"})["plan"];
+  const json plan = report_of({"--time-budget", "0.000001"})["settings_choice"];
   EXPECT_FALSE(plan["met"]);
   EXPECT_NE(out_.find("cannot be met"), std::string::npos) << out_;
   EXPECT_FALSE(plan["next"].is_null());
@@ -43,33 +43,33 @@ TEST_F(Planning, ABudgetThatCannotBeKeptTakesTheFastestAndSaysSo) {
 }
 
 TEST_F(Planning, AnErrorThatIsEasyToReachTakesTheFastest) {
-  const json easy = report_of({"--target", "10"})["plan"];
+  const json easy = report_of({"--target", "10"})["settings_choice"];
   EXPECT_TRUE(easy["met"]);
-  const json hard = report_of({"--target", "1e-9"})["plan"];
+  const json hard = report_of({"--target", "1e-9"})["settings_choice"];
   EXPECT_FALSE(hard["met"]);
   EXPECT_TRUE(hard["next"].is_null());
   EXPECT_GT(hard["chosen"]["seconds"], easy["chosen"]["seconds"]);
 }
 
 TEST_F(Planning, WithASampleMapATargetIsTheMapsAlone) {
-  EXPECT_TRUE(report_of({"--sample-map", "s.exr", "--target", "0.1"})["plan"].is_null());
+  EXPECT_TRUE(report_of({"--sample-map", "s.exr", "--target", "0.1"})["settings_choice"].is_null());
 }
 
 TEST_F(Planning, EffectsAreDoneAsAskedFor) {
-  const auto decision = [](const json& report, const std::string& effect) {
+  const auto decision = [](const json& report, const std::string& step) {
     for (const json& d : report["decisions"])
-      if (d["effect"] == effect) return d;
+      if (d["step"] == step) return d;
     return json();
   };
-  const json only = report_of({"--effects", "albedo,outliers"});
+  const json only = report_of({"--steps", "albedo,fireflies"});
   EXPECT_TRUE(decision(only, "feature albedo")["run"]);
   EXPECT_FALSE(decision(only, "feature depth")["run"]);
   EXPECT_EQ(decision(only, "feature depth")["reason"], "not asked for");
   EXPECT_NE(only["settings"].get<std::string>().find("--stages 1"), std::string::npos) << only["settings"];
-  const json all = report_of({"--effects", "all"});
+  const json all = report_of({"--steps", "all"});
   EXPECT_TRUE(decision(all, "feature depth")["run"]);
-  EXPECT_FALSE(decision(all, "quiet pixels left")["run"]);
-  EXPECT_EQ(decision(report_of({"--effects", "depth"}), "outlier removal")["reason"], "not asked for");
+  EXPECT_FALSE(decision(all, "noise-free pixels skipped")["run"]);
+  EXPECT_EQ(decision(report_of({"--steps", "depth"}), "firefly removal")["reason"], "not asked for");
 }
 
 }  // namespace

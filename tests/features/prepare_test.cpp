@@ -79,8 +79,8 @@ TEST(LookAt, CleansOnlyNoisyFeatures) {
   frame.features[1].pass.variance = Image(width, height, 3, Real(0.001));
   const Preparation out = look_at(frame);
   ASSERT_EQ(out.features.size(), 2u);
-  EXPECT_FALSE(out.features[0].clean);
-  EXPECT_TRUE(out.features[1].clean);
+  EXPECT_FALSE(out.features[0].prefilter);
+  EXPECT_TRUE(out.features[1].prefilter);
 }
 
 TEST(LookAt, ABeautyWithoutAFinitePixelFailsTheCheck) {
@@ -114,7 +114,7 @@ TEST(LookAt, MoreFeaturesThanTheModelHoldsAreDropped) {
   EXPECT_LE(channels, BasisLayout::max_features);
   EXPECT_EQ(out.features.size(), 5u);  // 5 x 3 = 15 of 16
   EXPECT_NE(std::find_if(out.decisions.begin(), out.decisions.end(),
-                         [](const Decision& d) { return !d.run && d.effect == "feature normal"; }),
+                         [](const Decision& d) { return !d.run && d.step == "feature normal"; }),
             out.decisions.end());
 }
 
@@ -186,7 +186,7 @@ TEST(Prepare, BadPixelsAreMendedAndCounted) {
   frame.features[0].pass.mean.at(2, 2, 0) = Real(-1e30);
   frame.beauty.mean.at(7, 7, 2) = Real(-0.5);
   const Prepared out = prepared(frame);
-  EXPECT_EQ(out.mended_pixels, 3u);
+  EXPECT_EQ(out.repaired_pixels, 3u);
   EXPECT_EQ(out.negative_pixels, 1u);
   for (std::size_t h = 0; h < 2; ++h) {
     EXPECT_TRUE(test::all_finite(out.pair.color[h]));

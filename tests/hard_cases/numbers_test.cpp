@@ -154,7 +154,7 @@ Frame with_features_times(Frame frame, double factor) {
 TEST(Case18, FeaturesOfAnyScaleGiveTheSameImage) {
   const Scene scene = make_scene(48, 40, 0.3, 12);
   Params params = quick();
-  params.effects.cleaning = false;
+  params.steps.prefilter = false;
   const Image plain = run(scene.frame, params).beauty;
   for (const double factor : {1e-6, 1e6, 1e-12})
     EXPECT_LT(test::max_difference(run(with_features_times(scene.frame, factor), params).beauty, plain),
@@ -321,7 +321,7 @@ TEST(Case21, ColoursPermute) {
 Params symmetric() {
   Params params = quick();
   params.stride = 1;
-  params.effects.cleaning = false;
+  params.steps.prefilter = false;
   return params;
 }
 

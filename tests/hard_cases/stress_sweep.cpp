@@ -146,7 +146,7 @@ std::vector<const Image*> images_of(const Result& result, bool with_alpha) {
 
 /// Sums over the frames that were swept.
 struct Totals {
-  std::size_t refused = 0, windows = 0, rank_deficient = 0, dropped = 0, fallen_back = 0, mended = 0, outliers = 0;
+  std::size_t refused = 0, windows = 0, rank_deficient = 0, dropped = 0, fallen_back = 0, repaired = 0, outliers = 0;
 };
 
 /// What is wrong with a frame's result; empty where all is well.
@@ -171,7 +171,7 @@ std::string fault_of(std::uint64_t seed, Totals& totals) {
   totals.rank_deficient += report.rank_deficient_windows;
   totals.dropped += report.dropped_windows;
   totals.fallen_back += report.pixels_fallen_back_to_input;
-  totals.mended += report.mended_pixels;
+  totals.repaired += report.repaired_pixels;
   totals.outliers += report.outliers;
   return {};
 }
@@ -193,8 +193,8 @@ int main(int argc, char** argv) {
   }
   std::printf(
       "%llu frames from seed %llu: %zu bad, %zu refused as without a finite pixel; %zu windows, %zu of lower rank, %zu "
-      "dropped, %zu pixels fallen back, %zu mended, %zu outliers\n",
+      "dropped, %zu pixels fallen back, %zu repaired, %zu outliers\n",
       static_cast<unsigned long long>(frames), static_cast<unsigned long long>(first), bad, totals.refused,
-      totals.windows, totals.rank_deficient, totals.dropped, totals.fallen_back, totals.mended, totals.outliers);
+      totals.windows, totals.rank_deficient, totals.dropped, totals.fallen_back, totals.repaired, totals.outliers);
   return bad == 0 ? 0 : 1;
 }

@@ -398,7 +398,7 @@ TEST(ReadFrame, NeedsMemoryWithinTheLimit) {
 TEST(PlanFrame, ChoosesAsReadFrameDoes) {
   const TemporaryFolder folder;
   const std::string path = write_exr(folder / "a.exr", {part_of(join({layer("", "RGB"), layer("albedo", "RGB")}))});
-  const ReadResult plan = plan_frame(path), read = read_frame(path);
+  const ReadResult plan = read_frame_header(path), read = read_frame(path);
   EXPECT_TRUE(plan.frame.beauty.mean.empty());
   ASSERT_EQ(plan.source.chosen.size(), read.source.chosen.size());
   for (std::size_t i = 0; i < plan.source.chosen.size(); ++i)

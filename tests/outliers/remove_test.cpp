@@ -12,7 +12,7 @@ namespace {
 constexpr int size = 40;
 
 /// A smooth image with a little noise in both halves, three colour channels and one AOV of half the brightness.
-HalfPair quiet_pair() {
+HalfPair noise_free_pair() {
   HalfPair pair = test::pair_of(
       test::image_of(size, size, 6, [](int x, int y, int c) { return (1 + 0.01 * x + 0.005 * y) * (c < 3 ? 1 : 0.5); }),
       0.02, 1);
@@ -43,7 +43,7 @@ void expect_balance(const HalfPair& before, const HalfPair& after, const std::ve
 }
 
 TEST(RemoveOutliers, LeaveNoiseAlone) {
-  HalfPair pair = quiet_pair();
+  HalfPair pair = noise_free_pair();
   const HalfPair before = pair;
   EXPECT_TRUE(removed(pair).empty());
   EXPECT_TRUE(test::same_bits(pair.color[0], before.color[0]));
@@ -52,7 +52,7 @@ TEST(RemoveOutliers, LeaveNoiseAlone) {
 TEST(RemoveOutliers, FindASingleSpikeAnywhere) {
   for (const auto& [x, y] : {std::pair{20, 20}, std::pair{0, 0}, std::pair{size - 1, 17}, std::pair{5, size - 1},
                              std::pair{size - 1, size - 1}}) {
-    HalfPair pair = quiet_pair();
+    HalfPair pair = noise_free_pair();
     put_spike(pair, 1, x, y);
     const HalfPair before = pair;
     const auto outliers = removed(pair);
@@ -68,7 +68,7 @@ TEST(RemoveOutliers, FindASingleSpikeAnywhere) {
 }
 
 TEST(RemoveOutliers, ASpikeThatBothHalvesSawStays) {
-  HalfPair pair = quiet_pair();
+  HalfPair pair = noise_free_pair();
   put_spike(pair, 0, 20, 20);
   put_spike(pair, 1, 20, 20);
   for (int c = 0; c < 3; ++c) pair.variance.at(20, 20, c) = Real(1);  // both agree: a small lamp, well sampled
@@ -76,14 +76,14 @@ TEST(RemoveOutliers, ASpikeThatBothHalvesSawStays) {
 }
 
 TEST(RemoveOutliers, AReliableSpikeStays) {
-  HalfPair pair = quiet_pair();
+  HalfPair pair = noise_free_pair();
   put_spike(pair, 0, 20, 20);
   for (int c = 0; c < 3; ++c) pair.variance.at(20, 20, c) = Real(4);  // 49 above its neighbours, 24 standard deviations
   EXPECT_TRUE(removed(pair).empty());
 }
 
 TEST(RemoveOutliers, AdjacentSpikesBothGo) {
-  HalfPair pair = quiet_pair();
+  HalfPair pair = noise_free_pair();
   put_spike(pair, 0, 20, 20);
   put_spike(pair, 0, 21, 20, 70);
   const HalfPair before = pair;
@@ -144,7 +144,7 @@ TEST(Case26, SpikesThatAreTheLightStay) {
 }
 
 TEST(RemoveOutliers, HalvesSplitFromOneImageDoNotWitnessForEachOther) {
-  HalfPair pair = quiet_pair();
+  HalfPair pair = noise_free_pair();
   put_spike(pair, 0, 20, 20, 50);
   put_spike(pair, 1, 20, 20, 55);
   const HalfPair before = pair;

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "core/frame.h"
-#include "features/half_pair.h"
+#include "core/half_pair.h"
 #include "support/images.h"
 #include "support/random.h"
 

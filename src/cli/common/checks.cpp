@@ -1,0 +1,65 @@
+#include "cli/common/checks.h"
+
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <utility>
+
+#include "core/error.h"
+#include "io/atomic_file.h"
+
+namespace polyrecon {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Whether two paths are one file, or would be once they are written.
+bool same_file(const std::string& a, const std::string& b) {
+  std::error_code error;
+  if (fs::equivalent(a, b, error) && !error) return true;
+  const fs::path first = fs::weakly_canonical(fs::absolute(a, error), error);
+  const fs::path second = fs::weakly_canonical(fs::absolute(b, error), error);
+  return !error && first == second;
+}
+
+}  // namespace
+
+void require_readable(const std::string& path) {
+  std::error_code error;
+  if (!fs::exists(path, error)) throw Error(ExitCode::Missing, path + ": no such file");
+  if (fs::is_directory(path, error)) throw Error(ExitCode::BadInput, path + ": is a folder, give a file");
+  if (!std::ifstream(path)) throw Error(ExitCode::BadInput, path + ": cannot be opened, check its permissions");
+}
+
+void require_different_files(const std::vector<std::string>& inputs, const std::vector<NamedPath>& outputs) {
+  for (std::size_t i = 0; i < outputs.size(); ++i) {
+    const NamedPath& output = outputs[i];
+    if (output.path.empty() && output.option == "-o") throw Error(ExitCode::Usage, "-o needs the name of a file");
+    if (output.path.empty()) continue;
+    for (const std::string& input : inputs)
+      if (!input.empty() && same_file(output.path, input))
+        throw Error(ExitCode::Usage, output.path + ": is the input too, give " + output.option + " another name");
+    for (std::size_t j = 0; j < i; ++j)
+      if (!outputs[j].path.empty() && same_file(output.path, outputs[j].path))
+        throw Error(ExitCode::Usage, output.path + ": named by both " + outputs[j].option + " and " + output.option);
+  }
+}
+
+void require_writable(const std::vector<std::string>& outputs) {
+  std::set<std::pair<fs::path, bool>> tried;
+  for (const std::string& output : outputs) {
+    std::error_code ignored;
+    // What a folder takes it takes for every name but one that is a folder itself.
+    if (!output.empty() && tried.emplace(fs::path(output).parent_path(), fs::is_directory(output, ignored)).second)
+      check_writable(output);
+  }
+}
+
+void require_outputs(const std::vector<std::string>& inputs, const std::vector<NamedPath>& outputs) {
+  require_different_files(inputs, outputs);
+  std::vector<std::string> paths;
+  for (const NamedPath& output : outputs) paths.push_back(output.path);
+  require_writable(paths);
+}
+
+}  // namespace polyrecon

@@ -1,0 +1,105 @@
+#include "cli/common/map_files.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "core/error.h"
+#include "io/exr/file.h"
+#include "io/write_result.h"
+
+namespace polyrecon {
+namespace {
+
+Image plane_of(const Image& image, int channel) {
+  Image out(image.width(), image.height(), 1);
+  std::copy(image.plane(channel), image.plane(channel) + image.pixels(), out.plane(0));
+  return out;
+}
+
+bool has_channel(const PartInfo& part, const std::string& name) {
+  return std::any_of(part.channels.begin(), part.channels.end(), [&](const ChannelInfo& c) { return c.name == name; });
+}
+
+/// The image on the whole display window, zero where it has no pixels.
+Image on_display(const Image& image, const MapWindows& windows) {
+  if (windows.display.area() > ReadLimits{}.max_pixels)
+    throw Error(ExitCode::BadInput, "the display window is too large to export a sample map for");
+  Image out(windows.display.width(), windows.display.height(), image.channels());
+  const Rect seen = intersect(windows.data, windows.display);
+  if (seen.empty()) return out;
+  const Rect from{seen.x0 - windows.data.x0, seen.y0 - windows.data.y0, seen.x1 - windows.data.x0,
+                  seen.y1 - windows.data.y0};
+  paste(image, from, out, seen.x0 - windows.display.x0, seen.y0 - windows.display.y0);
+  return out;
+}
+
+std::vector<MapChannel> channels_for(SampleMapFormat format, const SampleMap& map, const MapWindows& windows) {
+  switch (format) {
+    case SampleMapFormat::Appleseed:
+      return {{"R", on_display(map.importance, windows)}};
+    case SampleMapFormat::Luxcore:
+      return {{"Y", on_display(map.importance, windows)}};
+    case SampleMapFormat::Vray: {
+      Image mask = on_display(map.samples, windows);
+      for (std::size_t i = 0; i < mask.pixels(); ++i) mask.plane(0)[i] = mask.plane(0)[i] >= Real{0.5} ? 1 : 0;
+      return {{"R", mask}, {"G", mask}, {"B", mask}};
+    }
+    case SampleMapFormat::Polyrecon:
+      break;
+  }
+  return {{"samples.Y", map.samples}, {"importance.Y", map.importance}};
+}
+
+}  // namespace
+
+void write_error_map(const std::string& target, const ErrorMap& map, const Image& sample_count,
+                     const MapWindows& windows) {
+  std::vector<MapChannel> channels{{"mse.R", plane_of(map.mse, 0)},          {"mse.G", plane_of(map.mse, 1)},
+                                   {"mse.B", plane_of(map.mse, 2)},          {"relmse.Y", map.relative_mse},
+                                   {"relvariance.Y", map.relative_variance}, {"relnoise.Y", map.relative_noise}};
+  if (!sample_count.empty()) channels.push_back({"samples.Y", sample_count});
+  write_maps(target, channels, windows.data, windows.display);
+}
+
+ErrorMapFile read_error_map(const std::string& path) {
+  const FileInfo file = describe_file(path);
+  const PartInfo& part = file.parts.front();
+  for (const char* name : {"mse.R", "mse.G", "mse.B", "relmse.Y", "relvariance.Y"})
+    if (!has_channel(part, name))
+      throw Error(ExitCode::Missing, path + ": no channel " + name + ": give a file that denoise --error-map wrote");
+  ErrorMapFile result;
+  result.map.mse = read_channels(file, 0, {"mse.R", "mse.G", "mse.B"});
+  result.map.relative_mse = read_channels(file, 0, {"relmse.Y"});
+  result.map.relative_variance = read_channels(file, 0, {"relvariance.Y"});
+  if (has_channel(part, "relnoise.Y")) result.map.relative_noise = read_channels(file, 0, {"relnoise.Y"});
+  if (has_channel(part, "samples.Y")) result.sample_count = read_channels(file, 0, {"samples.Y"});
+  result.windows = {part.data_window, part.display_window};
+  return result;
+}
+
+void write_order_map(const std::string& target, const Image& order, const MapWindows& windows) {
+  write_maps(target, {{"order.Y", order}}, windows.data, windows.display);
+}
+
+void write_sample_map(const std::string& target, const SampleMap& map, const MapWindows& windows,
+                      const SampleMapOrigin& origin, SampleMapFormat format) {
+  MapAttributes attributes;
+  attributes.numbers = {{"min", map.min},
+                        {"max", map.max},
+                        {"total", map.total},
+                        {"budget", origin.budget},
+                        {"target", origin.target},
+                        {"frame", origin.frame},
+                        {"seed", origin.seed},
+                        {"errorBefore", map.error_before},
+                        {"errorAfter", map.error_after}};
+  const Rect& display = windows.display;
+  const Rect canvas{0, 0, display.width(), display.height()};
+  const bool ours = format == SampleMapFormat::Polyrecon;
+  write_maps(target, channels_for(format, map, windows), ours ? windows.data : canvas, ours ? display : canvas,
+             attributes);
+}
+
+}  // namespace polyrecon

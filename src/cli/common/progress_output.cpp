@@ -1,0 +1,172 @@
+#include "cli/common/progress_output.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cstdio>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "cli/common/signals.h"
+
+namespace polyrecon {
+namespace {
+
+/// Cancels on a signal, says nothing.
+class SignalProgress : public RunProgress {
+ public:
+  bool cancelled() const override { return caught_signal() != 0; }
+};
+
+/// Counts steps over all threads and shows them from time to time.
+class ShownProgress : public SignalProgress {
+ public:
+  void begin(std::string_view stage, std::size_t steps) override {
+    const std::lock_guard lock(mutex_);
+    stage_ = stage;
+    total_ = steps;
+    done_ = 0;
+    begun_ = shown_ = Clock::now();
+    show(Event::Begin);
+  }
+  void advance(std::size_t steps) override {
+    done_ += steps;
+    // A thread that finds another one printing goes on with its work.
+    const std::unique_lock lock(mutex_, std::try_to_lock);
+    if (!lock || Clock::now() - shown_ < std::chrono::milliseconds(100)) return;
+    shown_ = Clock::now();
+    show(Event::Progress);
+  }
+  void end() override {
+    const std::lock_guard lock(mutex_);
+    show(Event::End);
+  }
+
+ protected:
+  enum class Event { Begin, Progress, End };
+  virtual void show(Event event) = 0;
+
+  const std::string& stage() const { return stage_; }
+  /// Totals are estimates: never more than all.
+  std::size_t done() const { return std::min<std::size_t>(done_, total_); }
+  std::size_t total() const { return total_; }
+  double seconds() const { return std::chrono::duration<double>(Clock::now() - begun_).count(); }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  std::mutex mutex_;
+  std::string stage_;
+  std::atomic<std::size_t> done_{0};
+  std::size_t total_ = 0;
+  Clock::time_point begun_, shown_;
+};
+
+void put(const std::string& line) {
+  std::fputs((line + "\n").c_str(), stderr);
+  std::fflush(stderr);
+}
+
+class BarProgress final : public ShownProgress {
+ protected:
+  void show(Event event) override {
+    if (!terminal_ && event != Event::End) return;
+    constexpr std::size_t width = 30;
+    const bool finished = event == Event::End;
+    const double part = finished ? 1.0 : total() ? static_cast<double>(done()) / static_cast<double>(total()) : 0.0;
+    const auto filled = static_cast<std::size_t>(part * width);
+    const std::string line =
+        fmt::format("{:<24} [{:<30}] {:3.0f} %  {:6.1f} s", stage(), std::string(filled, '#'), 100 * part, seconds());
+    std::fputs(fmt::format("{}{}{}", terminal_ ? "\r" : "", line, finished ? "\n" : "").c_str(), stderr);
+    std::fflush(stderr);
+  }
+
+ public:
+  void frame(const std::string& label, std::size_t done, std::size_t total) override {
+    if (total > 1 && done < total) put(fmt::format("{} ({} of {})", label, done + 1, total));
+  }
+
+ private:
+  const bool terminal_ = ::isatty(STDERR_FILENO) != 0;
+};
+
+class JsonProgress final : public ShownProgress {
+ protected:
+  void show(Event event) override {
+    const char* name = event == Event::Begin ? "begin" : event == Event::End ? "end" : "progress";
+    const nlohmann::ordered_json line{{"event", name},
+                                      {"stage", stage()},
+                                      {"done", event == Event::End ? total() : done()},
+                                      {"total", total()},
+                                      {"seconds", seconds()}};
+    put(line.dump());
+  }
+
+ public:
+  void frame(const std::string& label, std::size_t done, std::size_t total) override {
+    if (total < 2) return;
+    put(nlohmann::ordered_json{{"event", "frame"}, {"frame", label}, {"done", done}, {"total", total}}.dump());
+  }
+};
+
+/// https://github.com/OpenJobDescription/openjd-specifications/wiki/How-Jobs-Are-Run: lines that the session reads from
+/// the task's output. The percentage is of the whole run and never falls.
+class OpenJdProgress final : public ShownProgress {
+ protected:
+  void show(Event event) override {
+    // The fits take nearly all of a frame's time; what comes before and after them is worth a few percent.
+    constexpr double fits_begin = 0.05, fits_end = 0.95;
+    if (stage() != "polynomials" || !total()) return;
+    const double part = event == Event::End ? 1.0 : static_cast<double>(done()) / static_cast<double>(total());
+    tell((static_cast<double>(frames_done_) + fits_begin + part * (fits_end - fits_begin)) /
+         static_cast<double>(frames_));
+  }
+
+ public:
+  void frame(const std::string& label, std::size_t done, std::size_t total) override {
+    frames_done_ = done;
+    frames_ = total;
+    if (done < total) put(fmt::format("openjd_status: {} ({} of {})", label, done + 1, total));
+    tell(static_cast<double>(done) / static_cast<double>(total));
+  }
+  void failed(const std::string& message) override { put("openjd_fail: " + message); }
+
+ private:
+  void tell(double part) {
+    if (100 * part < told_ + 0.1) return;
+    told_ = 100 * part;
+    put(fmt::format("openjd_progress: {:.1f}", told_));
+  }
+
+  std::size_t frames_done_ = 0, frames_ = 1;
+  double told_ = -1;
+};
+
+}  // namespace
+
+void RunProgress::frame(const std::string& /*label*/, std::size_t /*done*/, std::size_t /*total*/) {}
+
+void RunProgress::failed(const std::string& /*message*/) {}
+
+std::unique_ptr<RunProgress> make_progress(ProgressStyle style) {
+  poll_signals();
+  if (style == ProgressStyle::Auto) style = ::isatty(STDERR_FILENO) != 0 ? ProgressStyle::Bar : ProgressStyle::None;
+  switch (style) {
+    case ProgressStyle::Bar:
+      return std::make_unique<BarProgress>();
+    case ProgressStyle::Json:
+      return std::make_unique<JsonProgress>();
+    case ProgressStyle::OpenJd:
+      return std::make_unique<OpenJdProgress>();
+    case ProgressStyle::Auto:
+    case ProgressStyle::None:
+      break;
+  }
+  return std::make_unique<SignalProgress>();
+}
+
+}  // namespace polyrecon

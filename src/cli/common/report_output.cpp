@@ -1,0 +1,176 @@
+#include "cli/common/report_output.h"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include <array>
+#include <cmath>
+
+namespace polyrecon {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// JSON has no NaN: what is not finite is null.
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(); }
+
+Json rgb(const std::array<double, 3>& v) { return Json::array({number(v[0]), number(v[1]), number(v[2])}); }
+
+std::string rgb_text(const std::array<double, 3>& v) { return fmt::format("{:.5g} {:.5g} {:.5g}", v[0], v[1], v[2]); }
+
+double pixels_of(const Report& r) { return static_cast<double>(r.width) * static_cast<double>(r.height); }
+
+double reconstruction_seconds(const Report& r) {
+  double sum = 0;
+  for (const StageTime& stage : r.stages) sum += stage.seconds;
+  return sum;
+}
+
+double pixels_per_second(const Report& r) {
+  const double seconds = reconstruction_seconds(r);
+  return seconds > 0 ? pixels_of(r) / seconds : 0;
+}
+
+/// after / before - 1 of the sum over RGB.
+double energy_change(const Report& r) {
+  const double before = r.energy_before[0] + r.energy_before[1] + r.energy_before[2];
+  const double after = r.energy_after[0] + r.energy_after[1] + r.energy_after[2];
+  return before != 0 ? after / before - 1 : 0;
+}
+
+std::string line(const std::string& name, const std::string& value) {
+  return fmt::format("  {:<26} {}\n", name, value);
+}
+
+std::string windows_text(const Report& r) {
+  std::string orders;
+  for (std::size_t k = 0; k < r.windows_per_order.size(); ++k)
+    if (r.windows_per_order[k])
+      orders += fmt::format(", {} {}", k == 0 ? std::string("mean:") : fmt::format("order {}:", k - 1),
+                            r.windows_per_order[k]);
+  return fmt::format("{}{}", r.windows, orders);
+}
+
+Json windows_json(const Report& r) {
+  Json per_order{{"constant", r.windows_per_order[0]}};
+  for (std::size_t k = 1; k < r.windows_per_order.size(); ++k)
+    per_order[std::to_string(k - 1)] = r.windows_per_order[k];
+  return {{"count", r.windows}, {"per_order", per_order}, {"rank_deficient", r.rank_deficient_windows}};
+}
+
+}  // namespace
+
+std::size_t peak_memory() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::size_t>(usage.ru_maxrss) * 1024;  // Linux counts in kilobytes
+}
+
+std::string roles_text(const FrameSource& source) {
+  std::string text;
+  for (const RoleChoice& choice : source.chosen) {
+    const std::string layer = choice.layer.empty() ? "(no name)" : choice.layer;
+    if (choice.companion == Companion::Mean)
+      text += (text.empty() ? "" : "\n") + fmt::format("  {:<26} {} ({})", name_of(choice.role), layer, choice.why);
+    else
+      text += fmt::format("\n  {:<26} {}", fmt::format("  {}", name_of(choice.companion)), layer);
+  }
+  return text + "\n";
+}
+
+Json roles_json(const FrameSource& source) {
+  Json roles = Json::array();
+  for (const RoleChoice& choice : source.chosen)
+    roles.push_back({{"role", name_of(choice.role)},
+                     {"holds", name_of(choice.companion)},
+                     {"layer", choice.layer},
+                     {"why", choice.why}});
+  return roles;
+}
+
+std::string decision_text(const Decision& decision) {
+  std::string text = fmt::format("{}: {}", decision.run ? "yes" : "no", decision.reason);
+  if (decision.saved_seconds > 0) text += fmt::format(", saves about {:.2g} s", decision.saved_seconds);
+  return text;
+}
+
+Json decisions_json(const std::vector<Decision>& decisions) {
+  Json list = Json::array();
+  for (const Decision& d : decisions)
+    list.push_back({{"step", d.step}, {"run", d.run}, {"reason", d.reason}, {"saved_seconds", d.saved_seconds}});
+  return list;
+}
+
+std::string report_text(const RunReport& run) {
+  const Report& r = run.reconstruction;
+  std::string text = fmt::format("{} -> {}, {} x {}\n", run.input, run.output, r.width, r.height);
+  text += line("read", fmt::format("{:.2f} s", run.read_seconds));
+  for (const StageTime& stage : r.stages) text += line(stage.stage, fmt::format("{:.2f} s", stage.seconds));
+  text += line("write", fmt::format("{:.2f} s", run.write_seconds));
+  text +=
+      line("all", fmt::format("{:.2f} s, {:.0f} pixels/s in the reconstruction", run.seconds, pixels_per_second(r)));
+  text += line("peak memory", fmt::format("{:.0f} MB", static_cast<double>(run.peak_memory) / 1e6));
+  text += line("variance", r.variance_source);
+  for (const Decision& d : r.decisions) text += line(d.step, decision_text(d));
+  if (run.plan) text += line("settings chosen", plan_text(*run.plan, reconstruction_seconds(r)));
+  if (r.neighbours > 0)
+    text += line("neighbours in time",
+                 fmt::format("{} frames, {:.2f} of a frame's weight on average", r.neighbours, r.neighbour_weight));
+  text += line("windows", windows_text(r));
+  text += line("fallbacks", fmt::format("{} rank-deficient windows, {} windows left out, {} pixels left to the input, "
+                                        "{} pixels bound to their noise, {} raised",
+                                        r.rank_deficient_windows, r.dropped_windows, r.pixels_fallen_back_to_input,
+                                        r.bound_pixels, r.raised_pixels));
+  text += line("input pixels", fmt::format("{} repaired, {} negative", r.repaired_pixels, r.negative_pixels));
+  text += line("fireflies", fmt::format("{}, energy moved {}", r.outliers, rgb_text(r.outlier_energy)));
+  text += line("energy (mean RGB)", fmt::format("{} -> {} ({:+.3f} %)", rgb_text(r.energy_before),
+                                                rgb_text(r.energy_after), 100 * energy_change(r)));
+  text += line("restored gain", fmt::format("{:+.3f} {:+.3f} {:+.3f} %", 100 * r.restored_gain[0],
+                                            100 * r.restored_gain[1], 100 * r.restored_gain[2]));
+  text += line("estimated relMSE", fmt::format("{:.5g}", r.estimated_relative_mse));
+  for (const std::string& note : run.notes) text += line("note", note);
+  return text;
+}
+
+Json report_json(const RunReport& run, const FrameSource& source) {
+  const Report& r = run.reconstruction;
+  Json stages = Json::array();
+  for (const StageTime& stage : r.stages) stages.push_back({{"stage", stage.stage}, {"seconds", stage.seconds}});
+  return {{"polyrecon", run.version},
+          {"input", run.input},
+          {"output", run.output},
+          {"settings", run.settings},
+          {"width", r.width},
+          {"height", r.height},
+          {"roles", roles_json(source)},
+          {"settings_choice", run.plan ? plan_json(*run.plan, reconstruction_seconds(r)) : Json()},
+          {"variance_source", r.variance_source},
+          {"decisions", decisions_json(r.decisions)},
+          {"stages", stages},
+          {"seconds",
+           {{"read", run.read_seconds},
+            {"reconstruct", reconstruction_seconds(r)},
+            {"write", run.write_seconds},
+            {"total", run.seconds}}},
+          {"pixels_per_second", pixels_per_second(r)},
+          {"peak_memory_bytes", run.peak_memory},
+          {"neighbours", {{"frames", r.neighbours}, {"mean_weight", number(r.neighbour_weight)}}},
+          {"windows", windows_json(r)},
+          {"fallbacks",
+           {{"windows_left_out", r.dropped_windows},
+            {"pixels_left_to_input", r.pixels_fallen_back_to_input},
+            {"pixels_bound", r.bound_pixels},
+            {"pixels_raised", r.raised_pixels}}},
+          {"repaired_pixels", r.repaired_pixels},
+          {"negative_pixels", r.negative_pixels},
+          {"fireflies", {{"count", r.outliers}, {"energy", rgb(r.outlier_energy)}}},
+          {"energy",
+           {{"before", rgb(r.energy_before)},
+            {"after", rgb(r.energy_after)},
+            {"restored_gain", rgb(r.restored_gain)},
+            {"relative_change", number(energy_change(r))}}},
+          {"estimated_relmse", number(r.estimated_relative_mse)},
+          {"notes", run.notes}};
+}
+
+}  // namespace polyrecon

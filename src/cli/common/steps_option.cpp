@@ -1,0 +1,57 @@
+#include "cli/common/steps_option.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <sstream>
+#include <vector>
+
+#include "core/error.h"
+
+namespace polyrecon {
+namespace {
+
+constexpr std::array<const char*, 8> names{"normal",    "albedo",    "depth",  "visibility",
+                                           "prefilter", "fireflies", "levels", "stages"};
+
+std::vector<std::string> words_of(const std::string& list) {
+  std::vector<std::string> words;
+  std::istringstream stream(list);
+  for (std::string word; std::getline(stream, word, ',');) words.push_back(word);
+  return words;
+}
+
+}  // namespace
+
+CLI::Option* add_steps_option(CLI::App& app, std::string& text) {
+  app.add_option("--effects", text)->group("");  // the former name, hidden
+  return app
+      .add_option(
+          "--steps", text,
+          "auto: what the frame calls for; all; or only those of a list: " + fmt::format("{}", fmt::join(names, ",")))
+      ->type_name("auto|all|LIST");
+}
+
+void apply_steps(const std::string& text, Params& params) {
+  if (text.empty() || text == "auto") return;
+  params.steps.decide = false;
+  if (text == "all") return;
+  const std::vector<std::string> words = words_of(text);
+  for (const std::string& word : words)
+    if (std::find(names.begin(), names.end(), word) == names.end())
+      throw Error(ExitCode::Usage,
+                  fmt::format("--steps: no step '{}'; there are {} (or auto, all)", word, fmt::join(names, ", ")));
+  const auto listed = [&](const char* name) { return std::find(words.begin(), words.end(), name) != words.end(); };
+  Steps& e = params.steps;
+  e.normal = listed("normal");
+  e.albedo = listed("albedo");
+  e.depth = listed("depth");
+  e.visibility = listed("visibility");
+  e.prefilter = listed("prefilter");
+  e.outliers = listed("fireflies");
+  if (!listed("levels")) params.levels = 1;
+  if (!listed("stages")) params.stages = 1;
+}
+
+}  // namespace polyrecon

@@ -1,0 +1,71 @@
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cli/commands.h"
+#include "cli/common/checks.h"
+#include "cli/common/display_options.h"
+#include "cli/common/layers.h"
+#include "cli/common/progress_output.h"
+#include "cli/compare/comparison.h"
+#include "cli/compare/comparison_output.h"
+#include "cli/compare/comparison_page.h"
+#include "core/error.h"
+#include "io/atomic_file.h"
+#include "io/pictures/png_file.h"
+
+namespace polyrecon {
+namespace {
+
+struct CompareOptions {
+  std::vector<std::string> files;  ///< The last one is the reference.
+  std::string html, picture;
+  DisplayParams display;
+  bool json = false;
+};
+
+void run(const CompareOptions& o) {
+  if (o.files.size() < 2) throw Error(ExitCode::Usage, "compare needs an image and a reference");
+  for (const std::string& file : o.files) require_readable(file);
+  require_outputs(o.files, {{"--html", o.html}, {"--picture", o.picture}});
+  const std::string& reference_path = o.files.back();
+  const bool with_images = !o.html.empty() || !o.picture.empty();
+  const auto progress = make_progress(ProgressStyle::None);
+  const LayeredFile reference = open_layers(reference_path);
+  std::vector<Comparison> found;
+  for (std::size_t i = 0; i + 1 < o.files.size(); ++i)
+    for (Comparison& c : compare_files(open_layers(o.files[i]), reference, with_images, *progress))
+      found.push_back(std::move(c));
+  if (!o.html.empty()) write_bytes(o.html, comparison_page(reference_path, found, o.display));
+  if (!o.picture.empty()) write_png(o.picture, comparison_picture(found, o.display));
+  std::fputs((o.json ? comparison_json(reference_path, found).dump(2) + "\n" : comparison_text(found)).c_str(), stdout);
+}
+
+}  // namespace
+
+void setup_compare(CLI::App& app, Command& chosen) {
+  const auto o = std::make_shared<CompareOptions>();
+  CLI::App* sub = app.add_subcommand("compare", "Measures images against a converged reference");
+  sub->add_option("files", o->files, "One or more images, then the reference")
+      ->required()
+      ->type_name("IMAGE... REFERENCE");
+  sub->add_flag("--json", o->json, "Print JSON");
+  sub->add_option("--html", o->html, "Write figures and pictures as one HTML page")->type_name("FILE");
+  sub->add_option("--picture", o->picture, "Write a PNG: reference, images, where they differ")->type_name("FILE");
+  add_display_options(*sub, o->display);
+  sub->footer(
+      "relMSE is the mean over pixels and RGB of ((x - r)^2 - Var(r)) / (r^2 + 0.01), Var(r) from the reference's "
+      "layer\n"
+      "'<layer> Variance'; trimmed leaves out the 0.1 % worst pixels; energy is mean(x) / mean(r) - 1; FLIP is the "
+      "mean\n"
+      "of HDR-FLIP, what a viewer notices when the pictures alternate, 0 to 1; bad counts pixels that are not finite.\n"
+      "Examples:\n"
+      "  polyrecon compare clean.exr reference.exr\n"
+      "  polyrecon compare noisy.exr clean.exr other.exr reference.exr --json\n"
+      "  polyrecon compare noisy.exr clean.exr reference.exr --html compared.html --exposure 1");
+  sub->callback([o, &chosen] { chosen = [o] { run(*o); }; });
+}
+
+}  // namespace polyrecon

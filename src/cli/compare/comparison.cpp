@@ -1,0 +1,66 @@
+#include "cli/compare/comparison.h"
+
+#include <fmt/format.h>
+
+#include <numeric>
+#include <utility>
+
+#include "core/error.h"
+#include "metrics/flip.h"
+
+namespace polyrecon {
+namespace {
+
+bool is_color(const Layer& layer) {
+  return layer.channels.size() == 3 && layer.companion == Companion::Mean &&
+         (layer.role == Role::Beauty || layer.role == Role::Prior || layer.role == Role::Color);
+}
+
+/// The variance of the reference's own mean; empty where the file has none.
+Image variance_of(const LayeredFile& reference, const Layer& layer) {
+  const Layer* variance = find_layer(reference, layer.name + " Variance");
+  return variance && variance->channels.size() == layer.channels.size() ? read_layer(reference, *variance) : Image();
+}
+
+Comparison compare_layers(const LayeredFile& image, const Layer& layer, const LayeredFile& reference,
+                          const Layer& reference_layer, bool with_images, Progress& progress) {
+  Image x = read_layer(image, layer), r = read_layer(reference, reference_layer);
+  if (!x.same_shape(r))
+    throw Error(ExitCode::BadInput,
+                fmt::format("{}: layer '{}' is {} x {} pixels, the reference has {} x {}", image.info.path, layer.name,
+                            x.width(), x.height(), r.width(), r.height()));
+  Comparison found{
+      image.info.path, layer.name, score(x, r, variance_of(reference, reference_layer)), 0, {}, {}, {}, {}};
+  Image map = flip(x, r, progress);
+  found.flip = std::accumulate(map.plane(0), map.plane(0) + map.pixels(), 0.0) / static_cast<double>(map.pixels());
+  if (with_images) {
+    found.error = relative_error(x, r);
+    found.picture = std::move(x);
+    found.reference = std::move(r);
+    found.flip_map = std::move(map);
+  }
+  return found;
+}
+
+}  // namespace
+
+std::vector<Comparison> compare_files(const LayeredFile& image, const LayeredFile& reference, bool with_images,
+                                      Progress& progress) {
+  const Layer* main = color_layer(image);
+  const Layer* main_reference = color_layer(reference);
+  for (const auto& [layer, path] : {std::pair{main, &image.info.path}, std::pair{main_reference, &reference.info.path}})
+    if (!layer)
+      throw Error(ExitCode::Missing,
+                  *path + ": no R, G, B layer named Combined, Color, Beauty, RGB, Denoised or nothing");
+  std::vector<Comparison> found;
+  found.push_back(compare_layers(image, *main, reference, *main_reference, with_images, progress));
+  for (const Layer& layer : image.layers)
+    if (const Layer* same = find_layer(reference, layer.name);
+        &layer != main && same && is_color(layer) && is_color(*same))
+      found.push_back(compare_layers(image, layer, reference, *same, with_images, progress));
+  return found;
+}
+
+std::string shown_layer(const Comparison& comparison) { return comparison.layer.empty() ? "RGB" : comparison.layer; }
+
+}  // namespace polyrecon

@@ -1,0 +1,76 @@
+#include "cli/compare/comparison_output.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "io/pictures/false_color.h"
+
+namespace polyrecon {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json number(double v) { return std::isfinite(v) ? Json(v) : Json(); }
+
+std::string file_name(const std::string& path) { return std::filesystem::path(path).filename().string(); }
+
+}  // namespace
+
+std::string comparison_text(const std::vector<Comparison>& comparisons) {
+  std::string text;
+  for (const Comparison& c : comparisons)
+    text += fmt::format("{}: {}  relMSE {:.5f}  trimmed {:.5f}  energy {:+.5f}  FLIP {:.4f}  bad {}\n", c.image,
+                        shown_layer(c), c.score.relative_mse, c.score.trimmed, c.score.energy, c.flip, c.score.bad);
+  return text;
+}
+
+Json comparison_json(const std::string& reference, const std::vector<Comparison>& comparisons) {
+  Json results = Json::array();
+  for (const Comparison& c : comparisons)
+    results.push_back({{"image", c.image},
+                       {"layer", c.layer},
+                       {"relMSE", number(c.score.relative_mse)},
+                       {"trimmed", number(c.score.trimmed)},
+                       {"energy", number(c.score.energy)},
+                       {"FLIP", number(c.flip)},
+                       {"bad", c.score.bad}});
+  return {{"reference", reference}, {"results", results}};
+}
+
+std::vector<std::string> layers_of(const std::vector<Comparison>& comparisons) {
+  std::vector<std::string> layers;
+  for (const Comparison& c : comparisons)
+    if (std::find(layers.begin(), layers.end(), c.layer) == layers.end()) layers.push_back(c.layer);
+  return layers;
+}
+
+LogRange error_range(const std::vector<Comparison>& comparisons, const std::string& layer) {
+  LogRange range;
+  for (const Comparison& c : comparisons) {
+    const LogRange own = c.layer == layer ? log_range(c.error) : LogRange();
+    if (own.high > range.high) range = own;
+  }
+  return range;
+}
+
+Image comparison_picture(const std::vector<Comparison>& comparisons, const DisplayParams& display) {
+  std::vector<Image> rows;
+  for (const std::string& layer : layers_of(comparisons)) {
+    const LogRange range = error_range(comparisons, layer);
+    std::vector<Panel> panels;
+    for (const Comparison& c : comparisons) {
+      if (c.layer != layer) continue;
+      if (panels.empty()) panels.push_back({to_display(c.reference, display), "reference: " + shown_layer(c), {}});
+      panels.push_back({to_display(c.picture, display), file_name(c.image), {}});
+      panels.push_back({false_color(c.error, range),
+                        fmt::format("relMSE {:.4g}, FLIP {:.3g}", c.score.relative_mse, c.flip), range});
+    }
+    rows.push_back(compose(panels));
+  }
+  return stack(rows);
+}
+
+}  // namespace polyrecon

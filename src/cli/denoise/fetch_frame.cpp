@@ -1,0 +1,117 @@
+#include "cli/denoise/fetch_frame.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <system_error>
+#include <thread>
+#include <utility>
+
+#include "cli/denoise/finished.h"
+#include "core/error.h"
+#include "pipeline/reconstruct.h"
+
+namespace polyrecon {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+constexpr std::chrono::milliseconds first_pause{50}, longest_pause{2000};
+
+/// What changes as long as somebody writes to a file; all the same where there is none.
+std::pair<std::uintmax_t, fs::file_time_type> trace_of(const std::string& path) {
+  std::error_code ignored;
+  return {fs::file_size(path, ignored), fs::last_write_time(path, ignored)};
+}
+
+/// Whether the file itself may still become readable; a layer that it lacks will not come.
+bool may_come(const Error& error, const std::string& path) {
+  std::error_code ignored;
+  return error.code() == ExitCode::BadInput || (error.code() == ExitCode::Missing && !fs::exists(path, ignored));
+}
+
+/// Silent; asks the fetcher's owner whether to stop.
+class Cancellable final : public Progress {
+ public:
+  explicit Cancellable(const std::function<bool()>& cancelled) : cancelled_(cancelled) {}
+  bool cancelled() const override { return cancelled_(); }
+
+ private:
+  const std::function<bool()>& cancelled_;
+};
+
+}  // namespace
+
+template <typename Attempt>
+auto FrameFetcher::wait_for(const std::string& path, double seconds, const Attempt& attempt) {
+  auto trace = trace_of(path);
+  auto changed = Clock::now();
+  auto pause = first_pause;
+  for (;;) try {
+      return attempt();
+    } catch (const Error& error) {
+      const auto now = trace_of(path);
+      if (now != trace) changed = Clock::now();
+      trace = now;
+      const std::chrono::duration<double> unchanged = Clock::now() - changed;
+      if (unchanged.count() >= seconds || !may_come(error, path)) throw;
+      if (cancelled_()) throw Error(ExitCode::Interrupted, "interrupted");
+      std::this_thread::sleep_for(pause);
+      pause = std::min(2 * pause, longest_pause);
+    }
+}
+
+std::optional<LoadedFrame> FrameFetcher::fetch(const FrameFiles& files) {
+  return wait_for(files.input, options_.wait, [&] { return fetch_now(files); });
+}
+
+std::optional<LoadedFrame> FrameFetcher::fetch_now(const FrameFiles& files) {
+  if (options_.skip_existing && is_finished(files, options_for(files, options_))) return std::nullopt;
+  LoadedFrame loaded = load_frame(files.input, options_);
+  if (!files.neighbours.empty()) add_neighbours(files, loaded);
+  return loaded;
+}
+
+void FrameFetcher::add_neighbours(const FrameFiles& files, LoadedFrame& loaded) {
+  const auto start = Clock::now();
+  std::map<std::string, Prepared> kept;
+  for (const NeighbourFile& file : files.neighbours)
+    if (Prepared prepared = neighbour(file, loaded)) {
+      loaded.neighbours.push_back({file.offset, prepared});
+      kept[file.path] = std::move(prepared);
+    }
+  // The frame itself is a neighbour of the next one.
+  Cancellable progress(cancelled_);
+  const auto known = prepared_.find(files.input);
+  kept[files.input] = known != prepared_.end() ? known->second
+                                               : std::make_shared<const Neighbour>(prepare_neighbour(
+                                                     loaded.in.frame, files.place, params_of(options_), progress));
+  prepared_ = std::move(kept);
+  loaded.read_seconds += std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+FrameFetcher::Prepared FrameFetcher::neighbour(const NeighbourFile& file, LoadedFrame& loaded) {
+  const auto known = prepared_.find(file.path);
+  if (known != prepared_.end()) return known->second;
+  const double patience = file.is_worked_too ? options_.wait : 0;
+  Cancellable progress(cancelled_);
+  try {
+    return wait_for(file.path, patience, [&] {
+      const LoadedFrame frame = load_frame(file.path, options_);
+      return std::make_shared<const Neighbour>(
+          prepare_neighbour(frame.in.frame, file.number, params_of(options_), progress));
+    });
+  } catch (const Error& error) {
+    if (error.code() == ExitCode::Interrupted) throw;
+    std::error_code ignored;
+    if (fs::exists(file.path, ignored))
+      loaded.in.notes.push_back(fmt::format("works without its neighbour: {}", error.what()));
+    return nullptr;
+  }
+}
+
+}  // namespace polyrecon

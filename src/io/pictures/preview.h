@@ -1,0 +1,32 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/image.h"
+#include "io/pictures/color.h"
+
+namespace polyrecon {
+
+/// One picture of a preview.
+struct Panel {
+  Image rgb;            ///< 3 channels, display-encoded, 0..1.
+  std::string caption;  ///< One line; cut where it is wider than the panel.
+  LogRange range;       ///< Of a false-colour picture: draws a legend. {0, 0}: none.
+};
+
+/// The panels side by side on a dark ground, each with its caption (and legend) in a strip below; a single panel
+/// without caption and legend is the bare picture. Where no font is found the strips stay without text. Throws
+/// Error{OutOfMemory} where the picture would have more than 2^28 pixels.
+Image compose(const std::vector<Panel>& panels);
+
+/// The rows one below the other, from the left, on the same dark ground. Throws like compose.
+Image stack(const std::vector<Image>& rows);
+
+/// Whether this machine has a font to write captions with.
+bool has_font();
+
+/// The bytes of rgb (3 channels, 0..1) as 8-bit PNG.
+std::string encode_png(const Image& rgb);
+
+}  // namespace polyrecon

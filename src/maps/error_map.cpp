@@ -1,0 +1,80 @@
+#include "maps/error_map.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/gaussian.h"
+#include "core/parallel.h"
+#include "core/real.h"
+
+namespace polyrecon {
+namespace {
+
+constexpr double relative_floor = 0.01;  // of relMSE, radiance squared
+constexpr double smoothing_sigma = 2;    // pixels over which what single pixels tell is averaged
+
+/// One channel of the result, and what is known of its error there; variances over (yhat^2 + 0.01), averaged.
+struct ChannelErrors {
+  Image energy;    ///< yhat^2 + 0.01.
+  Image variance;  ///< (f_A - f_B)^2 / 4.
+  Image noise;     ///< Of the input's mean, unsmoothed.
+  Image bound;     ///< noise, averaged.
+};
+
+double noise_of_mean(const HalfPair& pair, const Image& variance, int x, int y, int c) {
+  const double measured = variance.at(x, y, c);
+  return measured >= 0 && std::isfinite(measured) ? measured : 0.5 * static_cast<double>(pair.variance.at(x, y, c));
+}
+
+ChannelErrors errors_of_channel(const HalfPair& pair, const Image& variance, const Candidate& result, int c) {
+  const auto image = [&] { return Image(pair.width(), pair.height(), 1); };
+  ChannelErrors out{image(), image(), image(), {}};
+  for_rows(pair.height(), [&](int y) {
+    for (int x = 0; x < pair.width(); ++x) {
+      const double a = result.half[0].at(x, y, c), b = result.half[1].at(x, y, c), f = 0.5 * (a + b);
+      const double energy = f * f + relative_floor;
+      out.energy.at(x, y, 0) = storable(energy);
+      out.variance.at(x, y, 0) = storable(0.25 * (a - b) * (a - b) / energy);
+      out.noise.at(x, y, 0) = storable(noise_of_mean(pair, variance, x, y, c) / energy);
+    }
+  });
+  out.variance = gaussian_blur(out.variance, smoothing_sigma);
+  out.bound = gaussian_blur(out.noise, smoothing_sigma);
+  return out;
+}
+
+double mean_of(const Image& image) {
+  const double sum = ordered_sum(static_cast<std::size_t>(image.height()), [&](std::size_t y) {
+    double row = 0;
+    for (int x = 0; x < image.width(); ++x) row += static_cast<double>(image.at(x, static_cast<int>(y), 0));
+    return row;
+  });
+  return sum / static_cast<double>(image.pixels());
+}
+
+}  // namespace
+
+ErrorMap make_error_map(const HalfPair& pair, const Image& variance, const Candidate& result) {
+  ErrorMap map;
+  map.mse = Image(pair.width(), pair.height(), 3);
+  map.relative_mse = Image(pair.width(), pair.height(), 1);
+  map.relative_variance = map.relative_noise = map.relative_mse;
+  for (int c = 0; c < 3; ++c) {
+    const ChannelErrors channel = errors_of_channel(pair, variance, result, c);
+    for_rows(pair.height(), [&](int y) {
+      for (int x = 0; x < pair.width(); ++x) {
+        const double energy = channel.energy.at(x, y, 0), random = channel.variance.at(x, y, 0);
+        const double squared_bias = static_cast<double>(result.squared_bias.at(x, y, c)) / energy;
+        const double error = std::min(squared_bias + random, static_cast<double>(channel.bound.at(x, y, 0)));
+        map.mse.at(x, y, c) = storable(error * energy);
+        map.relative_mse.at(x, y, 0) += static_cast<Real>(error / 3);
+        map.relative_variance.at(x, y, 0) += static_cast<Real>(std::min(random, error) / 3);
+        map.relative_noise.at(x, y, 0) += channel.noise.at(x, y, 0) / 3;
+      }
+    });
+  }
+  map.mean_relative_mse = mean_of(map.relative_mse);
+  return map;
+}
+
+}  // namespace polyrecon

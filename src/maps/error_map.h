@@ -1,0 +1,28 @@
+#pragma once
+
+#include "blend/select.h"
+#include "core/half_pair.h"
+#include "core/image.h"
+
+namespace polyrecon {
+
+/// The estimated error of a reconstruction.
+struct ErrorMap {
+  Image mse;                ///< 3 channels: E[(yhat - mu)^2] per channel, radiance squared.
+  Image relative_mse;       ///< 1 channel: mean over RGB of mse / (yhat^2 + 0.01).
+  Image relative_variance;  ///< 1 channel: the part of relative_mse that is variance; the rest is bias.
+  Image relative_noise;     ///< 1 channel: mean over RGB of the noise variance of the input's mean / (yhat^2 + 0.01);
+                            ///< empty where an error map from elsewhere does not tell.
+  double mean_relative_mse = 0;  ///< Of the whole image.
+};
+
+/// The error map of a result, all terms over (yhat^2 + 0.01):
+///     min(bias^2 + variance, noise)
+/// with bias^2 the windows' (5) as they blend into the result (BlendedFit); variance (f_A - f_B)^2 / 4, which knows
+/// that windows average each other's noise away; noise that of the input's mean: the input itself is among the
+/// candidates, so a pixel that claims more than it has seen a firefly's window. Variance and noise, which single pixels
+/// do not tell well, are averaged by a Gaussian of 2 pixels. variance: of the mean's noise as it was measured
+/// (HalfPair's has a floor); where it is negative or no number, HalfPair's stands in.
+ErrorMap make_error_map(const HalfPair& pair, const Image& variance, const Candidate& result);
+
+}  // namespace polyrecon

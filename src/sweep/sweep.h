@@ -1,0 +1,54 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/frame.h"
+#include "core/progress.h"
+#include "sweep/trial.h"
+
+namespace polyrecon {
+
+/// A noisy render that is swept.
+struct SweepInput {
+  std::string name;    ///< File name.
+  double samples = 0;  ///< Samples per pixel; 0: unknown.
+  Frame frame;
+};
+
+/// Another program's result on the first input.
+struct Peer {
+  std::string name;
+  double seconds = 0;  ///< As its user measured them.
+  Image beauty;        ///< 3 channels.
+  Score score;         ///< Filled by run_sweep.
+};
+
+/// A noisy render and what was made of it.
+struct SweptInput {
+  std::string name;
+  double samples = 0;
+  Score noisy;
+  Image beauty;               ///< The noisy one, 3 channels.
+  std::vector<Trial> trials;  ///< The first is Quality::Standard.
+};
+
+/// Everything a report on a sweep tells.
+struct Sweep {
+  std::vector<SweptInput> inputs;  ///< By the order given; the first has all settings, further ones the qualities.
+  std::vector<Peer> peers;
+  std::string reference_name;
+  Reference reference;
+  int threads = 0;
+};
+
+/// Tries every setting of the groups on the first input, the qualities on the others, and scores the peers. Progress
+/// counts settings. Throws as reconstruct and score do.
+Sweep run_sweep(const std::vector<SweepInput>& inputs, const std::vector<std::string>& groups,
+                const Reference& reference, std::vector<Peer> peers, Progress& progress);
+
+/// One line per trial, noisy input and peer: input, samples, group, setting, runs, seconds, relMSE, trimmed, energy,
+/// estimated relMSE, seconds of each stage. Names are quoted as RFC 4180 says.
+std::string csv_of(const Sweep& sweep);
+
+}  // namespace polyrecon

@@ -1,0 +1,59 @@
+#include "sweep/trial.h"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "pipeline/reconstruct.h"
+
+namespace polyrecon {
+namespace {
+
+constexpr double enough_seconds = 2;
+constexpr std::size_t most_runs = 3;
+
+/// Passes on nothing but the wish to stop: a sweep counts settings, not the stages inside.
+class OnlyCancels : public Progress {
+ public:
+  explicit OnlyCancels(const Progress& of) : of_(of) {}
+  bool cancelled() const override { return of_.cancelled(); }
+
+ private:
+  const Progress& of_;
+};
+
+struct Run {
+  double seconds;
+  Result result;
+};
+
+/// frame: a copy, since reconstruct takes its passes.
+Run run_once(Frame frame, const Params& params, Progress& progress) {
+  const auto start = std::chrono::steady_clock::now();
+  Result result = reconstruct(frame, params, progress);
+  return {std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), std::move(result)};
+}
+
+}  // namespace
+
+Trial run_trial(const Frame& frame, const Setting& setting, const Reference& reference, Progress& progress) {
+  const Frame input = frame_for(frame, setting);
+  OnlyCancels quiet(progress);
+  std::vector<Run> runs;
+  for (double spent = 0; spent < enough_seconds && runs.size() < most_runs; spent += runs.back().seconds)
+    runs.push_back(run_once(input, setting.params, quiet));
+  std::sort(runs.begin(), runs.end(), [](const Run& a, const Run& b) { return a.seconds < b.seconds; });
+  Run& median = runs[runs.size() / 2];
+  Trial trial;
+  trial.name = setting.name;
+  trial.group = setting.group;
+  trial.seconds = median.seconds;
+  trial.runs = static_cast<int>(runs.size());
+  trial.stages = median.result.report.stages;
+  trial.score = score(median.result.beauty, reference.mean, reference.variance);
+  trial.estimated_relative_mse = median.result.report.estimated_relative_mse;
+  trial.beauty = std::move(median.result.beauty);
+  return trial;
+}
+
+}  // namespace polyrecon

@@ -1,0 +1,107 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <ctime>
+
+#include "pipeline/reconstruct.h"
+#include "support/scene.h"
+
+namespace polyrecon {
+namespace {
+
+/// A simple scene: the upper half is sky without noise, the features are clean and say so, nothing stands out.
+test::Scene simple_scene(int width, int height) {
+  test::Scene scene = test::make_scene(width, height, 0.1, 7);
+  Pass& beauty = scene.frame.beauty;
+  for (int c = 0; c < 3; ++c)
+    for (int y = 0; y < height / 2; ++y)
+      for (int x = 0; x < width; ++x) {
+        const Real sky = static_cast<Real>(0.5 + 0.3 * y / height + 0.1 * c);
+        scene.truth.at(x, y, c) = sky;
+        for (Image* image : {&beauty.mean, &beauty.half_a, &beauty.half_b}) image->at(x, y, c) = sky;
+        beauty.variance.at(x, y, c) = 0;
+      }
+  for (Feature& feature : scene.frame.features) {
+    feature.pass.variance = Image(width, height, feature.pass.mean.channels());
+    for (int c = 0; c < feature.pass.mean.channels(); ++c)
+      for (int y = 0; y < height / 2; ++y)
+        for (int x = 0; x < width; ++x) feature.pass.mean.at(x, y, c) = 0;
+  }
+  return scene;
+}
+
+struct Timed {
+  double cpu_seconds = 0, relative_mse = 0;
+  Report report;
+};
+
+Timed run(const test::Scene& scene, bool decide) {
+  Params params = params_for(Quality::Standard);
+  params.steps.decide = decide;
+  Progress silent;
+  Frame frame = scene.frame;                // reconstruct takes its passes
+  const std::clock_t start = std::clock();  // of the whole process: what else the machine does hardly shows
+  const Result result = reconstruct(frame, params, silent);
+  return {static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC, test::relative_mse(result.beauty, scene.truth),
+          result.report};
+}
+
+const Decision& decision(const Report& report, const std::string& step) {
+  for (const Decision& d : report.decisions)
+    if (d.step == step) return d;
+  throw std::runtime_error("no decision on " + step);
+}
+
+TEST(Steps, ASimpleSceneTakesLessTimeThanAllEffects) {
+  const test::Scene scene = simple_scene(256, 192);
+  const Timed all = run(scene, false), decided = run(scene, true);
+  EXPECT_LE(decided.cpu_seconds, 0.85 * all.cpu_seconds);  // 0.72: windows on pixels without noise are cheap anyway
+  EXPECT_LE(2 * decided.report.windows, all.report.windows);
+  EXPECT_NEAR(decided.relative_mse, all.relative_mse, 0.01 * all.relative_mse);
+}
+
+TEST(Steps, EachDecisionHasAReasonAndWhatItSaves) {
+  const Timed decided = run(simple_scene(96, 64), true);
+  const Decision& sky = decision(decided.report, "noise-free pixels skipped");
+  EXPECT_TRUE(sky.run);
+  // 32 of 64 rows, less the two that the floor of the variance reaches into (noise/variance_floor.h).
+  EXPECT_EQ(sky.reason, "46.9 % of the frame carries no noise");
+  const auto& stages = decided.report.stages;
+  const auto fits =
+      std::find_if(stages.begin(), stages.end(), [](const StageTime& s) { return s.stage == "polynomials"; });
+  ASSERT_NE(fits, stages.end());
+  EXPECT_GT(sky.saved_seconds, 0.1 * fits->seconds);  // of the fits' time, not of another stage's
+  const Decision& prefilter = decision(decided.report, "feature albedo prefilter");
+  EXPECT_FALSE(prefilter.run);
+  EXPECT_EQ(prefilter.reason, "the pass is clean");
+  EXPECT_GT(prefilter.saved_seconds, 0);
+  EXPECT_LT(prefilter.saved_seconds, decided.cpu_seconds);
+  EXPECT_EQ(decision(decided.report, "feature albedo").saved_seconds, 0);  // it runs
+}
+
+TEST(Steps, AConstantFeatureIsTakenOnlyWhereItIsAskedFor) {
+  test::Scene scene = test::make_scene(48, 32, 0.1, 3);
+  scene.frame.features[0].pass.mean = Image(48, 32, 3, Real(0));
+  const Timed decided = run(scene, true), all = run(scene, false);
+  EXPECT_FALSE(decision(decided.report, "feature albedo").run);
+  EXPECT_GT(decision(decided.report, "feature albedo").saved_seconds, 0);
+  EXPECT_TRUE(decision(all.report, "feature albedo").run);
+  EXPECT_TRUE(std::isfinite(all.relative_mse));
+  EXPECT_NEAR(decided.relative_mse, all.relative_mse, 0.01 * all.relative_mse);
+}
+
+TEST(Steps, WhatIsNotAllowedDoesNotRun) {
+  const test::Scene scene = test::make_scene(48, 32, 0.1, 3);
+  Params params = params_for(Quality::Draft);
+  params.steps.outliers = params.steps.normal = params.steps.prefilter = false;
+  Progress silent;
+  Frame frame = scene.frame;
+  const Report report = reconstruct(frame, params, silent).report;
+  for (const char* step : {"firefly removal", "feature normal", "feature albedo prefilter"}) {
+    EXPECT_FALSE(decision(report, step).run) << step;
+    EXPECT_EQ(decision(report, step).reason, "not asked for") << step;
+  }
+}
+
+}  // namespace
+}  // namespace polyrecon
