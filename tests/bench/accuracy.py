@@ -53,7 +53,7 @@ PARTS = (
     ("visibility", "without visibility"),
     ("denoised layer of the file", "without prior"),
 )
-ALL_STEPS = "all effects"  # the setting of the sweep in which no step is left out
+ALL_STEPS = "all steps"  # the setting of the sweep in which no step is left out
 NUMBERS = ("levels 2", "levels 4", "stride ", "radius ", "order ", "coverage 6", "patch ", "four band", "one guided")
 PAYS = 1.003  # a part whose removal raises the error by less than 0.3 % does not pay for itself
 
