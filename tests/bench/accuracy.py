@@ -120,7 +120,7 @@ def ratios_table(found, entries, verdict):
         errors = [ratio(f, setting, "relMSE") for f in found.values()]
         error, seconds = mean(errors), mean([ratio(f, setting, "seconds") for f in found.values()])
         if error is None:
-            continue
+            raise SystemExit(f"no sweep has the setting '{setting}'")
         row = [label] + [cell(e) for e in errors] + [cell(error), cell(seconds, 2)]
         rows.append([*row, "" if error >= PAYS else "does not pay"] if verdict else row)
     return table(head + [""] * verdict, rows)

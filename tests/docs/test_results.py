@@ -65,6 +65,10 @@ class Results(unittest.TestCase):
             set(accuracy.SAMPLES), {line.split(" | ")[0].strip("| ") for line in tables["steps"].splitlines()[2:]}
         )
 
+    def test_a_setting_that_no_sweep_has_is_an_error(self):
+        with self.assertRaisesRegex(SystemExit, "no such part"):
+            accuracy.ratios_table(found(), [("label", "no such part")], True)
+
     def test_a_page_without_the_mark_is_an_error(self):
         with tempfile.TemporaryDirectory() as folder:
             page = pathlib.Path(folder, "page.md")
