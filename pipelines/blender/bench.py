@@ -232,7 +232,7 @@ def adaptive(scene, image, amount, *words):
     )
     journal = json.loads((passes / "journal.json").read_text())
     rendering = sum(part["seconds"] for part in journal["parts"])
-    return None, {"spp": sum(part["spp"] for part in journal["parts"]), "passes_seconds": rendering}
+    return None, {"spp": sum(part["samples"] for part in journal["parts"]), "passes_seconds": rendering}
 
 
 def measure(scene, method, budget, knob):

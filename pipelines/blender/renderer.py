@@ -33,7 +33,7 @@ class BlenderRenderer(Renderer):
         self.method = method
         self.visibility = visibility
         self.with_prior = with_prior
-        self.last_over_round = prior.OVER_ROUND if with_prior else 0.0
+        self.complete_last_over_decision = prior.OVER_ROUND if with_prior else 0.0
         self.session = BlenderSession(blender, timeout)
         self.overhead_seconds = OVERHEAD_SECONDS
         self.seconds_per_sample = 0.0

@@ -1,24 +1,39 @@
-"""How much is spent, and how much the next round may take."""
+"""How many samples the next round takes: from a budget and what is spent."""
 
 import dataclasses
 import math
 from typing import Optional
 
-GROWTH = 1.0  # a round takes as much as was spent before it, so the slices double
-LEAST_SAMPLES = 0.25  # per pixel: a smaller round does not pay its overhead
-EVEN_SHARE = 0.25  # of a budget of seconds, spent evenly before anything is judged: see even_share
-MOST_JUDGING = 0.05  # of a round's seconds, where seconds are the budget: fewer and larger rounds where judging is dear
-CONVERGENCE_RATE = 0.75  # the error falls with n^-this: src/maps/sample_map.h
+# A round takes this multiple of all cost-weighted samples before it. With 1, the samples double each round.
+GROWTH = 1.0
+
+MIN_SAMPLES = 0.25  # Per pixel: a smaller round does not pay for its overhead.
+
+# Share of a budget of seconds that is spent on uniform samples before the first decision. Almost no pixel of a good
+# sample map has fewer samples than that, so they are not wasted, and one early decision less saves its seconds
+# (docs/lab/2026-11-27-loop-seconds.md).
+UNIFORM_SHARE = 0.25
+
+# Most seconds of a decision over the seconds that are left for rounds. Where decisions are slow, rounds are fewer and
+# larger.
+MAX_DECISION_SHARE = 0.05
+
+# The error falls with n^-CONVERGENCE_RATE, n being the samples per pixel: convergence_rate of src/maps/sample_map.h.
+CONVERGENCE_RATE = 0.75
+
+# Seconds of the last merge, the last reconstruction and the report over the seconds of a decision, for each --quality.
+RESULT_OVER_DECISION = {"draft": 0.8, "standard": 1.9, "best": 4.4}
+
 SAMPLES_SPENT, SECONDS_SPENT = "the samples are spent", "the seconds are spent"
 
 
 @dataclasses.dataclass(frozen=True)
 class Budget:
-    """Exactly one is set."""
+    """Exactly one of the three is set."""
 
-    samples: Optional[float] = None  # per pixel on average, the first pass among them
-    seconds: Optional[float] = None  # of everything, from the start of the driver to the result
-    target: Optional[float] = None  # mean relative MSE of the result
+    samples: Optional[float] = None  # Per pixel, mean of the frame; the first pass counts.
+    seconds: Optional[float] = None  # From the start of the loop to the result
+    target: Optional[float] = None  # Mean relative MSE of the result
 
     def __str__(self):
         if self.samples:
@@ -26,78 +41,67 @@ class Budget:
         return f"{self.seconds:g} s" if self.seconds else f"relative MSE {self.target:g}"
 
 
-@dataclasses.dataclass
+@dataclasses.dataclass(frozen=True)
 class Spent:
-    """samples: per pixel. worth: the same in samples of average cost. seconds: of everything. seconds_per_sample: of the next
-    ones, of average cost. judging: seconds of the last decision, reconstructions and maps. reserve: seconds that the result
-    still needs. error: estimated mean relative MSE of the result."""
+    """What a frame took so far, and what its next steps are expected to take."""
 
-    samples: float
-    seconds: float
-    worth: float
-    seconds_per_sample: float
-    judging: float
-    reserve: float
-    error: float = math.nan
+    samples: float  # Per pixel, mean of the frame
+    cost_weighted_samples: float  # The same, counted in samples of average cost
+    seconds: float  # Of everything
+    seconds_per_sample: float  # Of the next samples, for one sample of average cost in every pixel
+    decision_seconds: float  # Of a decision: both reconstructions and the sample maps
+    result_seconds: float  # That the result still needs
+    error: float = math.nan  # Estimated mean relative MSE of the result
 
 
-def seconds_per_even_sample(parts):
-    """From a journal's parts without masks. Short ones are dearer than the next will be; the others count together, since a
-    renderer may take several of them in one go and put its seconds down to the first."""
-    even = [part for part in parts if not part["masked"]]
-    longest = max(part["spp"] for part in even)
-    long = [part for part in even if part["spp"] >= longest / 2]
-    return sum(part["seconds"] for part in long) / sum(part["spp"] for part in long)
-
-
-def even_share(budget, spent):
-    """Samples per pixel that are spent evenly after the first pass, where seconds are the budget. No pixel of a good map has
-    fewer than such a share, so they are not spent in vain, and the first judgement, which is dear where the seconds
-    count, then knows more than that of a few samples would. Where no judgement would pay after that, all that is left."""
-    after = max(spent.seconds, EVEN_SHARE * budget.seconds)
-    if nothing_left(budget, dataclasses.replace(spent, seconds=after)):
-        return rest(budget, spent)
+def uniform_share(budget, spent):
+    """Samples per pixel that follow the first pass uniformly, for a budget of seconds. The first decision then knows
+    more than the few samples of the first pass would tell. Where no decision pays after that, the samples take all
+    seconds that are left. Not above 0: none."""
+    after = max(spent.seconds, UNIFORM_SHARE * budget.seconds)
+    if reason_to_stop(budget, dataclasses.replace(spent, seconds=after)):
+        return samples_left(budget, spent)
     return (after - spent.seconds) / max(spent.seconds_per_sample, 1e-9)
 
 
-def nothing_left(budget, spent):
-    """Why no further round is judged, where that is known before; else ''. One of which the judging takes more than its share
-    of the seconds does not pay."""
-    if budget.samples and budget.samples - spent.samples < LEAST_SAMPLES:
+def reason_to_stop(budget, spent):
+    """Why no further decision is made, as far as that is known without one; '' where one is made. A decision that takes
+    more than MAX_DECISION_SHARE of the seconds that are left does not pay."""
+    if budget.samples and budget.samples - spent.samples < MIN_SAMPLES:
         return SAMPLES_SPENT
-    if budget.seconds and _seconds_left(budget, spent) < spent.judging / MOST_JUDGING:
+    if budget.seconds and _seconds_left(budget, spent) < spent.decision_seconds / MAX_DECISION_SHARE:
         return SECONDS_SPENT
     return ""
 
 
-def rest(budget, spent):
-    """Samples per pixel for the seconds that are left when nothing more is judged."""
+def samples_left(budget, spent):
+    """Samples per pixel for all seconds that are left; 0 where the budget is not in seconds."""
     return _seconds_left(budget, spent) / max(spent.seconds_per_sample, 1e-9) if budget.seconds else 0.0
 
 
-def next_slice(budget, spent, steps=1):
-    """Samples per pixel of the next round, and why there is none (or ''). The slices grow geometrically; the last one takes
-    what is left, and one that would leave no more than itself takes that too. steps: so many slices at once."""
-    step = GROWTH * spent.worth
+def samples_of_next_round(budget, spent, steps=1):
+    """(cost-weighted samples per pixel, reason): the next round takes `steps` times the step of a geometric growth. If
+    less than two rounds' budget remains, it takes all of it. 0 samples: the loop ends, for the reason."""
+    step = GROWTH * spent.cost_weighted_samples
     if budget.samples:
         left, reason = budget.samples - spent.samples, SAMPLES_SPENT
     elif budget.seconds:
-        left, reason = rest(budget, spent), SECONDS_SPENT
-        step = max(step, spent.judging / MOST_JUDGING / max(spent.seconds_per_sample, 1e-9))
+        left, reason = samples_left(budget, spent), SECONDS_SPENT
+        step = max(step, spent.decision_seconds / MAX_DECISION_SHARE / max(spent.seconds_per_sample, 1e-9))
     elif spent.error <= budget.target:
         return 0.0, f"the target is reached: {spent.error:.3g}"
     else:
-        left, reason = _needed(budget.target, spent), ""
-    if left < LEAST_SAMPLES:
+        left, reason = _samples_to_target(budget.target, spent), ""
+    if left < MIN_SAMPLES:
         return 0.0, reason
     step *= steps
     return (left if left <= 2 * step else step), ""
 
 
 def _seconds_left(budget, spent):
-    return budget.seconds - spent.seconds - spent.reserve
+    return budget.seconds - spent.seconds - spent.result_seconds
 
 
-def _needed(target, spent):
-    """More samples per pixel until error (n / (n + dn))^CONVERGENCE_RATE is the target."""
-    return max(LEAST_SAMPLES, spent.worth * ((spent.error / target) ** (1 / CONVERGENCE_RATE) - 1))
+def _samples_to_target(target, spent):
+    """More samples per pixel, dn, until error (n / (n + dn))^CONVERGENCE_RATE is the target."""
+    return max(MIN_SAMPLES, spent.cost_weighted_samples * ((spent.error / target) ** (1 / CONVERGENCE_RATE) - 1))

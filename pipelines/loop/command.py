@@ -17,7 +17,7 @@ def add_loop_arguments(parser, first_pass, first_pass_help):
     parser.add_argument("--first-pass", type=int, default=first_pass, metavar="N", help=first_pass_help)
     parser.add_argument("--max-rounds", type=int, default=8, metavar="N", help="most rounds of extra samples (8)")
     parser.add_argument(
-        "--quality", choices=adaptive.LAST_OVER_ROUND, default="standard", help="of the last reconstruction (standard)"
+        "--quality", choices=adaptive.QUALITIES, default="standard", help="of the last reconstruction (standard)"
     )
     parser.add_argument("--resume", action="store_true", help="go on with the passes of an earlier run")
 

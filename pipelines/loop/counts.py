@@ -1,28 +1,56 @@
-"""From a sample map to integer counts that a renderer can take in few, coherent passes."""
+"""From a sample map to whole counts that a renderer can take in few, coherent passes, and what a sample costs where."""
+
+import dataclasses
+from typing import Optional
 
 import numpy as np
 
-MOST = 1 << 12  # samples of one pixel in one pass
-COST_BLUR = 4.0  # pixels, standard deviation
-LEAST_OVER_MEAN = 0.25  # the lowest count: below it a pass costs more than its samples are worth
-WINDOW = 3.5  # pixels, standard deviation: how far a sample helps (SampleMapParams::radius / 2)
-COHERENCE = 6.0  # pixels, standard deviation of the blur: docs/lab/2026-11-27-loop-seconds.md
+MAX_COUNT = 1 << 12  # Samples of one pixel in one pass
+COST_BLUR = 4.0  # Standard deviation in pixels
+
+# The lowest count over the mean one: a pass with a lower count costs more than its samples gain
+# (docs/lab/2026-11-27-loop-seconds.md).
+MIN_COUNT_OVER_MEAN = 0.25
+
+# Standard deviation in pixels of how far a sample helps: half of the radius of `polyrecon samplemap`
+# (docs/lab/2026-11-26-where-samples-go.md).
+WINDOW = 3.5
+
+# Standard deviation in pixels of the blur of a sample map. 8 leaves the least error, but 6 still finds a small spot
+# (docs/lab/2026-11-27-loop-seconds.md).
+COHERENCE = 6.0
+
+MAX_COST_RATIO = 16  # Costs are kept within this factor of their mean.
+
+
+@dataclasses.dataclass(frozen=True)
+class Taken:
+    """What a half has taken so far, sums over its parts. Arrays (height, width)."""
+
+    counts: np.ndarray  # Samples of each pixel
+    seconds: Optional[np.ndarray]  # Render time of these samples in any unit; None: the renderer does not measure it.
+
+    def __add__(self, other):
+        measured = self.seconds is not None and other.seconds is not None
+        return Taken(self.counts + other.counts, self.seconds + other.seconds if measured else None)
 
 
 def quantise(wanted, cost):
-    """Counts that are 0 or powers of two, from about a quarter of their mean on, and cost together what `wanted` (samples, any
-    real numbers >= 0) does.
+    """Counts that are 0 or powers of two, the lowest one about a quarter of their mean. They cost together what
+    `wanted` (samples, any real numbers >= 0) does.
 
-    The map is smoothed first, so that neighbours mostly share a count: borders between counts cost samples. Rounding to a
-    power of two costs little: sum v / n is flat around its minimum (3 % more variance at most, a factor of sqrt 2 off).
-    cost: seconds of a sample, same shape, any unit."""
+    The map is blurred first, so that neighbours mostly share a count: samples at the border between two counts are
+    lost. Rounding to a power of two costs little, since sum v / n is flat around its minimum: a count that is off by a
+    factor of sqrt 2 has 3 % more variance at most.
+
+    cost: seconds of a sample in any unit, same shape. NaN in `wanted` counts as 0."""
     wanted = np.maximum(np.nan_to_num(wanted), 0)
     smooth = gaussian_blur(wanted, COHERENCE)
     budget = float((cost * wanted).sum())
     if budget <= 0:
         return np.zeros(wanted.shape, int)
-    least = max(0.0, np.floor(np.log2(max(1.0, LEAST_OVER_MEAN * wanted.mean()))))
-    low, high = 1e-3, 1e3  # of the factor that makes the costs equal; the cost grows with it
+    least = max(0.0, np.floor(np.log2(max(1.0, MIN_COUNT_OVER_MEAN * wanted.mean()))))
+    low, high = 1e-3, 1e3  # Bracket of the factor that makes the costs equal; the cost grows with the factor.
     for _ in range(40):
         factor = np.sqrt(low * high)
         if (cost * _powers(smooth * factor, least)).sum() > budget:
@@ -33,13 +61,13 @@ def quantise(wanted, cost):
 
 
 def _powers(values, least):
-    """Nearest power of two by ratio, 0 below 1 / sqrt 2 of the lowest one, 2^least."""
+    """Nearest power of two by ratio; 0 for values below the lowest power, 2^least, divided by sqrt 2."""
     exponents = np.rint(np.log2(np.maximum(values, 1e-9)))
-    return np.where(exponents < least, 0, 2.0 ** np.clip(exponents, 0, np.log2(MOST))).astype(int)
+    return np.where(exponents < least, 0, 2.0 ** np.clip(exponents, 0, np.log2(MAX_COUNT))).astype(int)
 
 
 def gaussian_blur(image, sigma):
-    """Separable, edges repeated."""
+    """Separable, with repeated edges."""
     radius = int(np.ceil(3 * sigma))
     kernel = np.exp(-0.5 * (np.arange(-radius, radius + 1) / sigma) ** 2)
     kernel /= kernel.sum()
@@ -51,18 +79,20 @@ def gaussian_blur(image, sigma):
 
 
 def weight_of_samples(variance, noise):
-    """What the noise of each pixel does to the result, in any unit: the geometric mean that sample maps go by
-    (maps/sample_map.h), of a result's relative variance and its input's relative noise."""
+    """What the noise of each pixel does to the result, in any unit: the weight of `polyrecon samplemap`, the geometric
+    mean of the result's relative variance and the input's relative noise."""
     spread = [gaussian_blur(np.maximum(np.nan_to_num(values.astype(float)), 0), WINDOW) for values in (variance, noise)]
     return np.sqrt(spread[0] * spread[1])
 
 
-def cost_of_samples(seconds, counts):
-    """Seconds that a sample of each pixel costs, relative to the frame's mean, from what was measured: noisy (a thread that
-    had to wait in a pixel counts there), so smoothed and kept within a factor of 16 of the mean, before and after.
-    seconds, counts: sums over passes; None or nothing measured: 1 everywhere."""
+def cost_of_samples(taken):
+    """Seconds that a sample of each pixel costs, relative to the frame's mean; 1 everywhere where nothing was measured.
+
+    A thread that had to wait in a pixel makes the measured seconds noisy. They are blurred, and kept within
+    MAX_COST_RATIO times their mean before the blur and after it."""
+    seconds, counts = taken.seconds, taken.counts
     if seconds is None or not np.isfinite(seconds).all() or seconds.sum() <= 0 or counts.sum() <= 0:
         return np.ones(counts.shape)
-    seconds = np.minimum(seconds, 16 * counts * seconds.sum() / counts.sum())
+    seconds = np.minimum(seconds, MAX_COST_RATIO * counts * seconds.sum() / counts.sum())
     cost = gaussian_blur(seconds, COST_BLUR) / np.maximum(gaussian_blur(counts, COST_BLUR), 1e-9)
-    return np.clip(cost / cost.mean(), 1 / 16, 16)
+    return np.clip(cost / cost.mean(), 1 / MAX_COST_RATIO, MAX_COST_RATIO)

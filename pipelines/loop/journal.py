@@ -1,80 +1,244 @@
-"""What a frame's loop has done, in a file that is whole at any moment: a killed loop goes on from it."""
+"""The state of one frame's loop, and journal.json, which keeps it on disk: a loop that was killed continues from
+there."""
 
+import dataclasses
 import json
-import os
-import pathlib
+import re
+import time
+import typing
+from typing import Any, Optional
 
 from ..common.errors import DriverError, ExitCode
+from ..common.files import write_text
 
-VERSION = 4
+VERSION = 5
+HALVES = ("a", "b")
+NUMBER_LIMIT = 2**63  # Numbers from here on are refused: no sample number, count or duration is that large.
+
+
+@dataclasses.dataclass(frozen=True)
+class Part:
+    """One pass over the whole frame, in a file of its own."""
+
+    file: str  # Name in the folder of passes
+    half: str  # "a" or "b"
+    round: int  # 0: the first pass and its uniform continuation
+    first_sample: int  # Number in the sequence of each pixel
+    samples: float  # Per pixel, mean of the frame
+    cost_weighted_samples: float  # The same, counted in samples of average cost
+    seconds: float
+    masked: bool  # The requested counts differ between pixels.
+
+
+@dataclasses.dataclass(frozen=True)
+class Round:
+    """What was known when the samples of round + 1 were decided."""
+
+    round: int
+    samples: float  # Per pixel, taken so far
+    seconds: float  # Spent so far
+    decision_seconds: float  # Seconds of this decision
+    error: Optional[float]  # Estimated mean relative MSE; None: no pixel has a finite error.
+    next_samples: float  # Cost-weighted samples per pixel that the decision grants; 0: the loop ends.
+
+
+@dataclasses.dataclass(frozen=True)
+class RoundPlan:
+    """A round that is being rendered. The counts of its pixels are in the files counts_a and counts_b of the round."""
+
+    round: int
+    first_samples: dict[str, int]  # Of each half: where its counts begin in the sequence
+    parts: int  # Number of parts that each half's counts are divided into
+    parts_before: int  # Parts of each half that the round has already
+    cost_weighted_samples: float  # Per pixel, both halves together
+
+
+@dataclasses.dataclass
+class State:
+    """Everything that a resumed run needs to know in addition to the files."""
+
+    identity: dict[str, Any]  # Scene, frame and settings that the passes show. Other passes cannot be added to them.
+    seconds: float = 0.0  # Spent so far, over all runs
+    first_pass_parts: int = len(HALVES)
+    next_sample: int = 0  # First number of the sequence that no part uses
+    parts: list[Part] = dataclasses.field(default_factory=list)  # Finished parts in the order of rendering
+    rounds: list[Round] = dataclasses.field(default_factory=list)
+    next_round: Optional[RoundPlan] = None
+
+    @property
+    def samples(self):
+        """Samples per pixel, mean of the frame."""
+        return sum(part.samples for part in self.parts)
+
+    @property
+    def error(self):
+        """Estimated mean relative MSE at the last decision; None: unknown."""
+        return self.rounds[-1].error if self.rounds else None
+
+    def files(self, half):
+        return [part.file for part in self.parts if part.half == half]
+
+    def part_count(self, round_number, half):
+        return sum(part.round == round_number and part.half == half for part in self.parts)
 
 
 class Journal:
-    """journal.json in a frame's folder of passes:
-      identity  what the passes are of: another scene, frame or setting may not go on with them
-      seconds   spent so far, over all runs
-      first_parts  how many the first pass is cut into
-      next      first number of the sequence that is free
-      parts     [{file, half, round, first, spp, seconds}] whole files, in the order they were rendered
-      rounds    [{round, spp, seconds, error, extra}] what was known after each round, and the samples per pixel that follow
-      plan      {round, first: {a, b}, parts, before, worth} the round being rendered; its counts are in files
-    A part is entered after its file has its name, so a part that is not here was never counted; its numbers of the sequence
-    are drawn again, for the same part."""
+    """A state, its file, and the clock of the loop.
 
-    def __init__(self, folder, identity):
-        self.path = pathlib.Path(folder) / "journal.json"
-        self.data = {"version": VERSION, "identity": identity, "seconds": 0.0, "first_parts": 0, "next": 0}
-        self.data |= {"parts": [], "rounds": [], "plan": None}
+    A part is entered after its file has its final name. A part that is not in the journal was never counted: a resumed
+    run renders it again, with the same numbers of the sequence."""
+
+    def __init__(self, path, state):
+        self.path, self.state = path, state
+        self._started = time.monotonic() - state.seconds
 
     @classmethod
-    def open(cls, folder, identity, resume):
-        """A new journal, or with `resume` the one that is there. Passes of an earlier run are never overwritten unasked."""
-        journal = cls(folder, identity)
-        if not journal.path.exists():
-            return journal
+    def open(cls, folder, new_state, resume):
+        """Starts a journal with `new_state`, or with `resume` continues the one that is there. Passes of an earlier run
+        are not overwritten without `resume`. Raises DriverError."""
+        path = folder.journal
+        if not path.exists():
+            return cls(path, new_state)
         if not resume:
             raise DriverError(
                 ExitCode.USAGE,
-                f"{journal.path}: passes of an earlier run: --resume goes on with them, or choose another --passes-dir",
+                f"{path}: passes of an earlier run: continue them with --resume, or choose another --passes-dir",
             )
         try:
-            data = json.loads(journal.path.read_text(encoding="utf-8"))
-            version, found = data["version"], data["identity"]
-        except (ValueError, KeyError, TypeError) as error:
-            raise DriverError(ExitCode.BAD_INPUT, f"{journal.path}: no journal: {error}") from error
-        if version != VERSION:
-            raise DriverError(ExitCode.BAD_INPUT, f"{journal.path}: of another version of this program")
-        for key in sorted(identity.keys() | found.keys()):
-            if found.get(key) != identity.get(key):
-                raise DriverError(
-                    ExitCode.USAGE, f"{journal.path}: cannot go on, {key} was {found.get(key)}, is {identity.get(key)}"
-                )
-        for part in data["parts"]:
-            if not (journal.path.parent / part["file"]).exists():
-                raise DriverError(ExitCode.MISSING, f"{journal.path.parent / part['file']}: the journal's part is gone")
-        journal.data = data
-        return journal
+            state = _decode_state(path)
+        except _InvalidJournalError as error:
+            raise DriverError(
+                ExitCode.BAD_INPUT, f"{path}: not a valid journal: {error}: start again with another --passes-dir"
+            ) from error
+        _compare_identities(path, state.identity, new_state.identity)
+        _find_files(folder, state)
+        return cls(path, state)
 
-    def __getitem__(self, key):
-        return self.data[key]
-
-    def __setitem__(self, key, value):
-        self.data[key] = value
+    def seconds(self):
+        """Seconds since the loop began, without the time between a kill and the next run."""
+        return time.monotonic() - self._started
 
     def save(self):
-        temporary = self.path.with_suffix(".new")
-        try:
-            with open(temporary, "w", encoding="utf-8") as file:
-                json.dump(self.data, file, indent=1)
-                file.flush()
-                os.fsync(file.fileno())
-            os.replace(temporary, self.path)
-        except OSError as error:
-            raise DriverError(ExitCode.OUTPUT, f"{self.path}: {error.strerror}") from error
+        self.state.seconds = self.seconds()
+        content = {"version": VERSION, **dataclasses.asdict(self.state)}
+        write_text(self.path, json.dumps(content, indent=1, allow_nan=False))
 
-    def files(self, half):
-        return [self.path.parent / part["file"] for part in self["parts"] if part["half"] == half]
 
-    def has(self, round_number, half, index=0):
-        done = [p for p in self["parts"] if p["round"] == round_number and p["half"] == half]
-        return len(done) > index
+class _InvalidJournalError(Exception):
+    """The text says which value is wrong and how."""
+
+
+def _decode_state(path):
+    try:
+        content = json.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise _InvalidJournalError(error.strerror) from error
+    except (ValueError, RecursionError) as error:
+        raise _InvalidJournalError(error) from error
+    if not isinstance(content, dict) or "version" not in content:
+        raise _InvalidJournalError("it has no version")
+    version = content.pop("version")
+    if version != VERSION:
+        raise DriverError(
+            ExitCode.BAD_INPUT,
+            f"{path}: written by another version of polyrecon (journal {version!r}, this one reads {VERSION}): "
+            "finish the frame with that version, or start again with another --passes-dir",
+        )
+    state = _decode(State, content, "")
+    _check_state(state)
+    return state
+
+
+def _decode(kind, value, place):
+    """`value` of a JSON file as the type `kind`: a dataclass, list, dict, Optional or plain type. Numbers are >= 0."""
+    if dataclasses.is_dataclass(kind):
+        return _decode_record(kind, value, place)
+    origin, arguments = typing.get_origin(kind), typing.get_args(kind)
+    if origin is typing.Union:  # Optional
+        return None if value is None else _decode(arguments[0], value, place)
+    if origin is list and isinstance(value, list):
+        return [_decode(arguments[0], item, f"{place}[{index}]") for index, item in enumerate(value)]
+    if origin is dict and isinstance(value, dict):
+        return {key: _decode(arguments[1], item, f"{place}[{key!r}]") for key, item in value.items()}
+    if kind in (int, float):
+        accepted = (int,) if kind is int else (int, float)
+        if type(value) not in accepted or not 0 <= value < NUMBER_LIMIT:  # NaN fails the comparison.
+            raise _InvalidJournalError(f"{place} is not {'a whole' if kind is int else 'a finite'} number >= 0")
+        return kind(value)
+    if kind is Any or type(value) is kind:
+        return value
+    raise _InvalidJournalError(f"{place} is not of the type {(origin or kind).__name__}")
+
+
+def _decode_record(kind, value, place):
+    where = place or "the file"
+    if not isinstance(value, dict):
+        raise _InvalidJournalError(f"{where} is not an object")
+    kinds = typing.get_type_hints(kind)
+    for name in kinds.keys() - value.keys():
+        raise _InvalidJournalError(f"{where} has no {name}")
+    for name in value.keys() - kinds.keys():
+        raise _InvalidJournalError(f"{where} has an unknown key {name!r}")
+    prefix = f"{place}." if place else ""
+    return kind(**{name: _decode(kinds[name], value[name], prefix + name) for name in kinds})
+
+
+def _check_state(state):
+    """What types alone cannot say. The loop divides by some of these numbers."""
+    if state.first_pass_parts < len(HALVES) or state.first_pass_parts % len(HALVES):
+        raise _InvalidJournalError("first_pass_parts is not a positive multiple of 2")
+    for index, part in enumerate(state.parts):
+        _check_part(part, f"parts[{index}]")
+        if part.first_sample > state.next_sample:
+            raise _InvalidJournalError(f"parts[{index}].first_sample is above next_sample")
+    drawn = [part for part in state.parts if part.samples > 0]  # A half may get no sample in a round.
+    for name, parts in (("file", state.parts), ("first_sample", drawn)):
+        if len({getattr(part, name) for part in parts}) < len(parts):
+            raise _InvalidJournalError(f"two parts have the same {name}")
+    if [entry.round for entry in state.rounds] != list(range(len(state.rounds))):
+        raise _InvalidJournalError("rounds are not numbered 0, 1, 2, ...")
+    if state.next_round:
+        _check_plan(state.next_round, len(state.rounds))
+
+
+def _check_part(part, place):
+    if part.half not in HALVES:
+        raise _InvalidJournalError(f"{place}.half is neither 'a' nor 'b'")
+    if not re.fullmatch(rf"part_{part.round}{part.half}[0-9]+\.exr", part.file):
+        raise _InvalidJournalError(f"{place}.file does not match its round and half")
+    if part.seconds <= 0:
+        raise _InvalidJournalError(f"{place}.seconds is not above 0")
+    if part.masked and part.cost_weighted_samples <= 0:
+        raise _InvalidJournalError(f"{place}.cost_weighted_samples is not above 0")
+    if part.round == 0 and (part.masked or min(part.samples, part.cost_weighted_samples) <= 0):
+        raise _InvalidJournalError(f"{place} is of the first pass and not uniform")
+
+
+def _check_plan(plan, rounds):
+    if plan.round > rounds + 1:  # One more than the decisions: a uniform last round is rendered without one.
+        raise _InvalidJournalError("next_round.round does not follow the last round")
+    if set(plan.first_samples) != set(HALVES):
+        raise _InvalidJournalError("next_round.first_samples does not name the halves 'a' and 'b'")
+    if plan.parts < 1 or plan.cost_weighted_samples <= 0:
+        raise _InvalidJournalError("next_round has no parts or no samples")
+
+
+def _compare_identities(path, found, wanted):
+    for key in sorted(wanted.keys() | found.keys()):
+        if found.get(key) != wanted.get(key):
+            raise DriverError(
+                ExitCode.USAGE,
+                f"{path}: cannot continue: {key!r} was {found.get(key)!r}, is {wanted.get(key)!r}: "
+                "choose another --passes-dir",
+            )
+
+
+def _find_files(folder, state):
+    needed = [folder.path / part.file for part in state.parts]
+    if state.next_round:
+        needed += [folder.in_round(state.next_round.round, f"counts_{half}") for half in HALVES]
+    for path in needed:
+        if not path.is_file():
+            raise DriverError(
+                ExitCode.MISSING, f"{path}: the journal names it, but it is gone: start again with another --passes-dir"
+            )

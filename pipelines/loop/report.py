@@ -1,4 +1,4 @@
-"""The page and the lines that tell what a loop did."""
+"""The report of a loop: a page, and a few lines for the terminal."""
 
 import base64
 import math
@@ -8,21 +8,23 @@ import tempfile
 
 import jinja2
 
-from ..common.errors import DriverError, ExitCode
+from ..common.files import write_text
+from .folder import PassFolder
 
 TEMPLATE = pathlib.Path(__file__).with_name("report.html.j2")
-CURVE = {"width": 640, "height": 240, "margin": 48}
+CURVE = {"width": 640, "height": 240, "margin": 48}  # Pixels
 
 
 def text(result, settings, page):
     """A few lines for the terminal."""
     lines = [
-        f"{settings.output}: {result.samples:.3g} samples per pixel, {result.seconds:.1f} s, estimated relMSE {result.error:.3g}"
+        f"{settings.output}: {result.samples:.3g} samples per pixel, {result.seconds:.1f} s, "
+        f"estimated relMSE {_error_text(result.error)}",
+        f"  budget {settings.budget}: {result.why_ended}",
     ]
-    lines += [f"  budget {settings.budget}: {result.why_ended}"]
     lines += [
-        f"  round {r['round']}: {r['spp']:.3g} spp, {r['seconds']:.1f} s, relMSE {r['error']:.3g}"
-        for r in result.journal["rounds"]
+        f"  round {entry.round}: {entry.samples:.3g} spp, {entry.seconds:.1f} s, relMSE {_error_text(entry.error)}"
+        for entry in result.state.rounds
     ]
     lines += [
         f"  {switch.effect} {switch.setting}: {switch.reason}" + (f" (saves {switch.saves})" if switch.saves else "")
@@ -33,40 +35,44 @@ def text(result, settings, page):
 
 
 def write(result, settings, polyrecon):
-    """Writes report.html into the folder of passes; returns its path. One page, pictures inside, nothing loaded."""
+    """Writes report.html into the folder of passes; returns its path. The page holds its pictures and loads nothing."""
     environment = jinja2.Environment(
         autoescape=True, trim_blocks=True, lstrip_blocks=True, undefined=jinja2.StrictUndefined
     )
+    environment.filters["error_text"] = _error_text
+    passes = PassFolder(settings.passes)
+    rounds = result.state.rounds
     with tempfile.TemporaryDirectory() as folder:
-        entries = result.journal["rounds"]
-        files = [_files_of(entry["round"], settings.passes) for entry in entries] + [
-            [result.merged, settings.output, result.error_map]
-        ]
+        files = [_files_of(entry.round, passes) for entry in rounds]
+        files.append([result.merged, settings.output, result.error_map])
         *pictures, final = _pictures(polyrecon, files, pathlib.Path(folder))
-    rounds = [{**entry, "picture": picture} for entry, picture in zip(entries, pictures)]
     page = environment.from_string(TEMPLATE.read_text(encoding="utf-8")).render(
-        result=result, settings=settings, rounds=rounds, final=final, curve=_curve(result), size=CURVE
+        result=result,
+        settings=settings,
+        rounds=list(zip(rounds, pictures)),
+        final=final,
+        curve=_curve(result),
+        size=CURVE,
     )
-    path = settings.passes / "report.html"
-    temporary = path.with_suffix(".new")
-    try:
-        temporary.write_text(page, encoding="utf-8")
-        os.replace(temporary, path)
-    except OSError as error:
-        raise DriverError(ExitCode.OUTPUT, f"{path}: {error.strerror}") from error
-    return path
+    write_text(passes.report, page)
+    return passes.report
+
+
+def _error_text(error):
+    return "unknown" if error is None or not math.isfinite(error) else f"{error:.3g}"
 
 
 def _files_of(number, passes):
-    """What a round knew, and the samples that followed."""
-    place, following = passes / f"round_{number}", passes / f"round_{number + 1}" / "samples.exr"
-    return [place / "noisy.exr", place / "clean.exr", place / "error.exr", *([following] if following.exists() else [])]
+    """What was known after a round, and the samples that followed."""
+    following = passes.in_round(number + 1, "samples")
+    files = [passes.in_round(number, name) for name in ("noisy", "clean", "error")]
+    return [*files, following] if following.exists() else files
 
 
-def _pictures(polyrecon, several, folder):
-    """A PNG in base64 of each list of files; as many at a time as there are processors."""
-    targets = [folder / f"{number}.png" for number in range(len(several))]
-    words = [[*files, "-o", target] for files, target in zip(several, targets)]
+def _pictures(polyrecon, file_lists, folder):
+    """A PNG in base64 for each list of files. As many programs run at once as there are processors."""
+    targets = [folder / f"{number}.png" for number in range(len(file_lists))]
+    words = [[*files, "-o", target] for files, target in zip(file_lists, targets)]
     for begin in range(0, len(words), step := os.cpu_count() or 1):
         polyrecon.run_side_by_side("preview", words[begin : begin + step])
     return [base64.b64encode(target.read_bytes()).decode() for target in targets]
@@ -74,21 +80,20 @@ def _pictures(polyrecon, several, folder):
 
 def _curve(result):
     """Points of the estimated error against seconds, both logarithmic, in pixels of the drawing: [{x, y, label}]."""
-
-    points = [(entry["seconds"], entry["error"]) for entry in result.journal["rounds"]] + [
-        (result.seconds, result.error)
-    ]
-    points = [(math.log(max(x, 1e-3)), math.log(y), x, y) for x, y in points if math.isfinite(y) and y > 0]
-
-    def scaled(value, values, length):
-        low, high = min(values), max(values)
-        return CURVE["margin"] + (value - low) / ((high - low) or 1) * (length - 2 * CURVE["margin"])
-
+    points = [(entry.seconds, entry.error) for entry in result.state.rounds] + [(result.seconds, result.error)]
+    points = [(x, y) for x, y in points if y is not None and math.isfinite(y) and y > 0]
+    across = _scaled([math.log(max(x, 1e-3)) for x, _ in points], CURVE["width"])
+    upwards = _scaled([math.log(y) for _, y in points], CURVE["height"])
     return [
-        {
-            "x": round(scaled(p[0], [q[0] for q in points], CURVE["width"]), 1),
-            "y": round(CURVE["height"] - scaled(p[1], [q[1] for q in points], CURVE["height"]), 1),
-            "label": f"{p[2]:.3g} s, {p[3]:.3g}",
-        }
-        for p in points
+        {"x": round(left, 1), "y": round(CURVE["height"] - up, 1), "label": f"{x:.3g} s, {y:.3g}"}
+        for (x, y), left, up in zip(points, across, upwards)
     ]
+
+
+def _scaled(values, length):
+    """Values as places between the margins of an axis."""
+    if not values:
+        return []
+    low, high = min(values), max(values)
+    scale = (length - 2 * CURVE["margin"]) / ((high - low) or 1)
+    return [CURVE["margin"] + (value - low) * scale for value in values]

@@ -46,7 +46,7 @@ class Adaptive(SceneTest):
         picture = exr.read(out)
         self.assertTrue(all(np.isfinite(picture[f"ViewLayer.Combined.{c}"]).all() for c in "RGB"))
         self.assertIn("budget 16 samples per pixel: ", done.stdout)
-        taken = [part["spp"] for part in journal_of(out.with_suffix(".passes"))["parts"]]
+        taken = [part["samples"] for part in journal_of(out.with_suffix(".passes"))["parts"]]
         self.assertLess(sum(taken[:-1]), 16)  # case 31: no pass begins when the budget is spent
         counts = exr.read(out.with_suffix(".passes") / "merged.exr")["ViewLayer.Sample Count.X"]
         self.assertLessEqual(counts.mean(), 16 * 1.15)
@@ -132,12 +132,12 @@ class Adaptive(SceneTest):
         after = journal_of(passes)
         parts = after["parts"]
         self.assertEqual(parts[: len(before["parts"])], before["parts"])
-        self.assertEqual(len({part["first"] for part in parts}), len(parts))
+        self.assertEqual(len({part["first_sample"] for part in parts}), len(parts))
         counts = exr.read(passes / "merged.exr")["ViewLayer.Sample Count.X"]
-        self.assertAlmostEqual(counts.mean(), sum(part["spp"] for part in parts), delta=1e-3 * counts.mean())
+        self.assertAlmostEqual(counts.mean(), sum(part["samples"] for part in parts), delta=1e-3 * counts.mean())
         # The seconds of both runs together; no round begins after them, whatever else the machine does.
         self.assertGreater(after["seconds"], before["seconds"])
-        self.assertTrue(all(entry["seconds"] < 8 for entry in after["rounds"] if entry["extra"]))
+        self.assertTrue(all(entry["seconds"] < 8 for entry in after["rounds"] if entry["next_samples"]))
 
     def test_wrong_use_is_told_before_any_work(self):
         scene = self.folder / "none.blend"

@@ -1,5 +1,5 @@
-"""A renderer without a scene: an image that is known, with noise that is known, so that the loop's own statistics can be
-tested. As a script it runs the loop: synthetic.py FOLDER BUDGET_SPP [--resume]."""
+"""A renderer without a scene, of an image and a noise that are known, so that the loop's statistics can be tested. As a
+script it runs the loop: synthetic.py FOLDER BUDGET_SPP [--resume]."""
 
 import pathlib
 import sys
@@ -16,9 +16,9 @@ from pipelines.loop.renderer import RENDER_SECONDS, SAMPLE_COUNT, Audit, Rendere
 
 
 class SyntheticRenderer(Renderer):
-    """Sample s of a pixel is mean x a gamma variate of mean 1 and variance `spread`, drawn by (seed, s, pixel): skewed, as
-    Monte Carlo samples are. The left half of the frame is noisy, the right half nearly clean; samples of the lower half
-    cost three times as much."""
+    """Sample s of a pixel is its mean times a gamma variate of mean 1 and variance `spread`, drawn by (seed, s, pixel).
+    The variates are skewed, as Monte Carlo samples are. The left half of the frame is noisy, the right half nearly
+    noise-free. Samples of the lower half cost three times as much."""
 
     name = "synthetic"
 

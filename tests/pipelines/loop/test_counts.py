@@ -2,7 +2,7 @@ import unittest
 
 import numpy as np
 
-from pipelines.loop.counts import MOST, cost_of_samples, gaussian_blur, quantise
+from pipelines.loop.counts import MAX_COUNT, Taken, cost_of_samples, gaussian_blur, quantise
 
 ONES = np.ones((32, 48))
 
@@ -33,29 +33,39 @@ class Counts(unittest.TestCase):
         one = 0 * ONES
         one[7, 9] = 640
         counts = quantise(one, ONES)
-        self.assertGreater(counts[7, 9], 1)  # the most, and near by
+        self.assertGreater(counts[7, 9], 1)  # The pixel has the largest count, shared by its neighbours.
         self.assertEqual(counts[7, 9], counts.max())
         self.assertLessEqual(counts.sum(), 640)
         self.assertEqual(counts[24:].sum(), 0)
         holed = 4 * ONES
         holed[3, 3] = np.nan
         self.assertTrue(np.isin(quantise(holed, ONES), (2, 4, 8)).all())
-        self.assertLessEqual(quantise(1e9 * ONES, ONES).max(), MOST)
+        self.assertLessEqual(quantise(1e9 * ONES, ONES).max(), MAX_COUNT)
+
+
+class Sums(unittest.TestCase):
+    def test_parts_add_up_and_unknown_seconds_stay_unknown(self):
+        known, unknown = Taken(2 * ONES, 3 * ONES), Taken(ONES, None)
+        both = known + known
+        self.assertEqual((both.counts.max(), both.seconds.max()), (4, 6))
+        for mixed in (known + unknown, unknown + known):
+            self.assertEqual(mixed.counts.max(), 3)
+            self.assertIsNone(mixed.seconds)
 
 
 class Costs(unittest.TestCase):
     def test_smoothed_relative_and_bounded(self):
         counts = 8 * ONES
         seconds = np.where(np.arange(48) < 24, 1.0, 3.0) * counts
-        cost = cost_of_samples(seconds, counts)
+        cost = cost_of_samples(Taken(counts, seconds))
         self.assertAlmostEqual(cost[16, 44] / cost[16, 4], 3, delta=0.05)
         self.assertAlmostEqual(cost.mean(), 1, delta=0.05)
         seconds[5, 5] = 1e12
-        self.assertLessEqual(cost_of_samples(seconds, counts).max(), 16)
+        self.assertLessEqual(cost_of_samples(Taken(counts, seconds)).max(), 16)
 
     def test_unknown_is_the_same_everywhere(self):
         for seconds in (None, 0 * ONES, np.nan * ONES):
-            self.assertTrue((cost_of_samples(seconds, ONES) == 1).all())
+            self.assertTrue((cost_of_samples(Taken(ONES, seconds)) == 1).all())
 
 
 if __name__ == "__main__":

@@ -41,13 +41,13 @@ class Adaptive(InFolder):
 
         journal = json.loads(pathlib.Path("ball.passes/journal.json").read_text())
         # No more than one row of the last pass over the budget: a pass is never empty.
-        self.assertLess(sum(part["spp"] for part in journal["parts"]), 48 + 1)
+        self.assertLess(sum(part["samples"] for part in journal["parts"]), 48 + 1)
         self.assertGreater(len(journal["rounds"]), 1)
         names = [part["file"] for part in journal["parts"]]
         self.assertEqual(len(names), len(set(names)))
         merged = exr.read("ball.passes/merged.exr")
         counts = merged["Sample Count.X"]
-        np.testing.assert_allclose(counts.mean(), sum(part["spp"] for part in journal["parts"]), rtol=1e-6)
+        np.testing.assert_allclose(counts.mean(), sum(part["samples"] for part in journal["parts"]), rtol=1e-6)
         for layer in ("Combined Variance.R", "Denoising Normal Variance.X", "Denoising Depth.Z", "Visibility A.X"):
             self.assertIn(layer, merged)
         # Samples went where the noise is: the penumbra on the wall.

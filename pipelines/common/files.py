@@ -1,0 +1,21 @@
+"""Text files that appear whole or not at all."""
+
+import os
+import pathlib
+
+from .errors import DriverError, ExitCode
+
+
+def write_text(path, text):
+    """Replaces the file by `text` in UTF-8. A crash leaves either the old file or the new one, and may leave a hidden
+    file .NAME.new next to it. One process at a time may write a file."""
+    path = pathlib.Path(path)
+    temporary = path.with_name(f".{path.name}.new")
+    try:
+        with open(temporary, "w", encoding="utf-8") as file:
+            file.write(text)
+            file.flush()
+            os.fsync(file.fileno())
+        os.replace(temporary, path)
+    except OSError as error:
+        raise DriverError(ExitCode.OUTPUT, f"{path}: {error.strerror}") from error

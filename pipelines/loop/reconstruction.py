@@ -1,0 +1,125 @@
+"""Runs the polyrecon program on the parts of a frame: the halves at each decision, and all samples at the end."""
+
+import itertools
+import os
+import time
+
+import numpy as np
+
+from ..common import exr
+from .budget import CONVERGENCE_RATE
+from .counts import cost_of_samples, quantise
+from .journal import HALVES
+
+DECISION_QUALITY = "draft"
+
+# Seconds of a decision over those of merging two parts, as long as no decision was made
+# (docs/lab/2026-11-27-loop-seconds.md).
+DECISION_OVER_MERGE = 8.5
+
+MIN_COUNT_LIMIT = 1024  # A sample map may always put this many samples into one pixel.
+
+UNCOMPRESSED = ("--compression", "none")  # Merged files are read again at once.
+
+
+class Reconstruction:
+    """beauty: the layer of the picture in the parts, '' for bare R, G and B."""
+
+    def __init__(self, polyrecon, renderer, folder, state, beauty):
+        self.polyrecon, self.renderer, self.folder, self.state = polyrecon, renderer, folder, state
+        self.prefix = f"{beauty}." if beauty else ""
+
+    def estimate_decision_seconds(self):
+        """Seconds that a decision will take, from a trial merge of the first part of each half."""
+        trial = self.folder.in_round(0, "first")
+        self.folder.create_round(0)
+        begin = time.monotonic()
+        parts = [self._files(half)[0] for half in HALVES]
+        self.polyrecon.run("merge", *parts, "-o", trial, *UNCOMPRESSED, "--quiet")
+        seconds = time.monotonic() - begin
+        trial.unlink()
+        return DECISION_OVER_MERGE * seconds
+
+    def reconstruct_halves(self, number):
+        """Writes merged_, clean_ and error_ files of both halves; returns the seconds that later decisions need for it.
+        Both halves run at once, each on half of the processors: a draft of one frame does not keep all of them busy."""
+        self.folder.create_round(number)
+        begin = time.monotonic()
+        merged = {half: self.folder.in_round(number, f"merged_{half}") for half in HALVES}
+        self.polyrecon.run_side_by_side(
+            "merge", [[*self._files(half), "-o", merged[half], *UNCOMPRESSED, "--quiet"] for half in HALVES]
+        )
+        begin_completing = time.monotonic()
+        for half in HALVES:
+            self.renderer.complete(merged[half])
+        begin += time.monotonic() - begin_completing  # It may render feature passes, which no later decision repeats.
+        threads = max(1, len(os.sched_getaffinity(0)) // len(HALVES))
+        options = ["--quality", DECISION_QUALITY, "--threads", threads, "--quiet"]
+        outputs = {
+            half: ["-o", self.folder.in_round(number, f"clean_{half}"), "--error-map", self._error_map(number, half)]
+            for half in HALVES
+        }
+        self.polyrecon.run_side_by_side("denoise", [["-i", merged[half], *outputs[half], *options] for half in HALVES])
+        return time.monotonic() - begin
+
+    def join_halves(self, number):
+        """Writes the means of what the halves show, for the report, and returns the mean of their relative MSE:
+        estimated for a reconstruction of both halves, which has twice the samples of one. NaN where no pixel's error is
+        finite."""
+        maps = [exr.read(self._error_map(number, half)) for half in HALVES]
+        error = sum(channels["relmse.Y"] for channels in maps) / 2 * 2**-CONVERGENCE_RATE
+        exr.write(self.folder.in_round(number, "error"), {"relmse.Y": error})
+        for kind, name in (("merged", "noisy"), ("clean", "clean")):
+            files = [self.folder.in_round(number, f"{kind}_{half}") for half in HALVES]
+            a, b = (self._picture(file) for file in files)
+            exr.write(self.folder.in_round(number, name), {channel: (a[channel] + b[channel]) / 2 for channel in a})
+            for file in files:
+                file.unlink()
+        return float(np.nanmean(error))
+
+    def error_maps(self, number):
+        return {half: exr.read(self._error_map(number, half)) for half in HALVES}
+
+    def sample_counts(self, number, samples, taken):
+        """Counts of each half's next samples, half of `samples` for each, from the other half's error map and costs.
+
+        taken: what each half has taken so far; the costs come from its seconds."""
+        other = dict(zip(HALVES, reversed(HALVES)))
+        costs = {half: cost_of_samples(taken[other[half]]) for half in HALVES}
+        files = {half: [self.folder.in_round(number, f"{kind}_{half}") for kind in ("cost", "map")] for half in HALVES}
+        for half, (cost_file, _) in files.items():
+            exr.write(cost_file, {"Y": costs[half]})
+        options = ["--budget", samples / 2, "--max-samples", max(MIN_COUNT_LIMIT, 4 * samples), "--quiet"]
+        self.polyrecon.run_side_by_side(
+            "samplemap",
+            [
+                ["--error-map", self._error_map(number, other[half]), *options, "--cost", cost_file, "-o", map_file]
+                for half, (cost_file, map_file) in files.items()
+            ],
+        )
+        counts = {half: quantise(exr.read(map_file)["samples.Y"], costs[half]) for half, (_, map_file) in files.items()}
+        for file in itertools.chain(*files.values()):
+            file.unlink()
+        return counts
+
+    def finish(self, output, quality):
+        """Merges all parts and reconstructs them into `output`; returns the estimated mean relative MSE."""
+        merged, error_map = self.folder.merged, self.folder.error_map
+        a, b = (self._files(half) for half in HALVES)
+        self.polyrecon.run("merge", *a, "--half-b", *b, "-o", merged, *UNCOMPRESSED, "--quiet")
+        self.renderer.complete(merged)
+        self.renderer.complete_last(merged)
+        self.polyrecon.run(
+            "denoise", "-i", merged, "-o", output, "--quality", quality, "--error-map", error_map, "--quiet"
+        )
+        return float(np.nanmean(exr.read(error_map, lambda name: name == "relmse.Y")["relmse.Y"]))
+
+    def _files(self, half):
+        return [self.folder.path / file for file in self.state.files(half)]
+
+    def _error_map(self, number, half):
+        return self.folder.in_round(number, f"error_{half}")
+
+    def _picture(self, path):
+        channels = exr.read(path, lambda name: name in {self.prefix + channel for channel in "RGB"})
+        return {channel: channels[self.prefix + channel] for channel in "RGB"}

@@ -1,0 +1,111 @@
+"""Renders the first pass and the rounds of a frame, part by part, and enters each part into the journal."""
+
+import dataclasses
+import itertools
+import time
+
+import numpy as np
+
+from ..common import exr
+from ..common.errors import DriverError, ExitCode
+from .counts import Taken
+from .journal import HALVES, Part
+from .renderer import RENDER_SECONDS, SAMPLE_COUNT
+
+
+class PartRendering:
+    """announce(stage, **figures) is called before each part. `taken` holds the sums over the finished parts of each
+    half."""
+
+    def __init__(self, renderer, folder, journal, announce):
+        self.renderer, self.folder, self.journal, self.announce = renderer, folder, journal, announce
+        self.state = journal.state
+        self.taken = {}
+        for part in self.state.parts:
+            self._add(part.half, read_taken(folder.path / part.file))
+
+    def render_first_pass(self, samples):
+        """The first half of the parts is half A, the second half B. Each half is then a block of the sequence, and
+        blocks are better spread over the pixel than every other sample would be."""
+        parts = self.state.first_pass_parts
+        each = samples // parts
+        for index in range(parts):
+            half, index_in_half = HALVES[index * 2 // parts], index % (parts // 2)
+            if self.state.part_count(0, half) <= index_in_half:
+                self.announce("first pass", done=index / parts)
+                self._render_part(0, half, index_in_half, index * each, samples=each)
+        self.state.next_sample = max(self.state.next_sample, samples)
+
+    def start_round(self, plan, counts):
+        """Makes the plan the state's next round; its counts go into files."""
+        self.folder.create_round(plan.round)
+        for half in HALVES:
+            exr.write(self.folder.in_round(plan.round, f"counts_{half}"), {"samples.Y": counts[half]})
+        exr.write(self.folder.in_round(plan.round, "samples"), {"samples.Y": counts["a"] + counts["b"]})
+        self.state.next_round = plan
+
+    def render_round(self, plan):
+        """Renders the parts of a round that are not in the journal yet."""
+        for half, index in itertools.product(HALVES, range(plan.parts)):
+            index_in_round = plan.parts_before + index
+            if self.state.part_count(plan.round, half) <= index_in_round:
+                self.announce(f"round {plan.round}, half {half.upper()}", round=plan.round)
+                counts = exr.read(self.folder.in_round(plan.round, f"counts_{half}"))["samples.Y"]
+                counts = counts.astype(int) // plan.parts
+                first_sample = plan.first_samples[half] + index * int(counts.max())
+                weighted = plan.cost_weighted_samples / len(HALVES)
+                self._render_part(
+                    plan.round, half, index_in_round, first_sample, counts=counts, cost_weighted_samples=weighted
+                )
+        self.state.next_round = None
+        self.journal.save()
+
+    def _render_part(self, round_number, half, index, first_sample, samples=0, counts=None, cost_weighted_samples=0.0):
+        """Renders `samples` of every pixel or, where given, `counts`. `cost_weighted_samples` are those of a masked
+        part."""
+        target = self.folder.part(round_number, half, index)
+        begin = time.monotonic()
+        if counts is None:
+            self.renderer.uniform(first_sample, samples, target)
+        else:
+            samples = self.renderer.extra(first_sample, counts, target)
+        seconds = time.monotonic() - begin
+        taken = read_taken(target)
+        self._add(half, taken)
+        mean = float(taken.counts.mean())
+        masked = counts is not None and bool(counts.min() < counts.max())
+        self.state.parts.append(
+            Part(
+                file=target.name,
+                half=half,
+                round=round_number,
+                first_sample=first_sample,
+                samples=mean,
+                cost_weighted_samples=cost_weighted_samples if masked else mean,
+                seconds=seconds,
+                masked=masked,
+            )
+        )
+        self.state.next_sample = max(self.state.next_sample, first_sample + int(samples))
+        self.journal.save()
+
+    def _add(self, half, taken):
+        taken = dataclasses.replace(taken, counts=taken.counts.astype(float))
+        before = self.taken.get(half)
+        if before and before.counts.shape != taken.counts.shape:
+            raise DriverError(ExitCode.RENDERER, f"{self.folder.path}: the parts of half {half.upper()} differ in size")
+        self.taken[half] = before + taken if before else taken
+
+
+def read_taken(part):
+    """What the file of a part says about its samples."""
+    channels = exr.read(part, lambda name: name.endswith((SAMPLE_COUNT, RENDER_SECONDS)))
+    counts, seconds = (
+        next((values for name, values in channels.items() if name.endswith(wanted)), None)
+        for wanted in (SAMPLE_COUNT, RENDER_SECONDS)
+    )
+    if counts is None:
+        raise DriverError(ExitCode.RENDERER, f"{part}: the renderer wrote no {SAMPLE_COUNT}")
+    if not np.isfinite(counts).all() or counts.min() < 0:
+        raise DriverError(ExitCode.RENDERER, f"{part}: {SAMPLE_COUNT} holds values that are no counts")
+    return Taken(counts, seconds)
