@@ -6,28 +6,30 @@ from .budget import CONVERGENCE_RATE, RESULT_OVER_DECISION, Spent
 from .counts import weight_of_samples
 from .journal import HALVES, RoundPlan
 
-# Number of parts that a half of a uniform round is divided into: their difference tells the variance. More parts take
-# longer, since a sample of a long pass is cheaper than one of a short pass (docs/lab/2026-11-27-loop-seconds.md).
+# Number of parts that a half of a uniform round is divided into: the variance is measured by their difference. More
+# parts take longer, since a sample of a long pass is cheaper than one of a short pass
+# (docs/lab/2026-11-27-loop-seconds.md).
 UNIFORM_PARTS = 2
 MIN_DIVIDED = 8  # Samples of a half that are divided at all
 
 # Steps of the budget that a uniform round takes at once: the next sample map will not pay any sooner.
 UNIFORM_STEPS = 3
 
-# Seconds of a sample in a masked pass over those of a sample in a uniform pass, until the frame's own passes tell
+# Seconds of a sample in a masked pass over those of a sample in a uniform pass, until the frame has masked passes
 # (docs/lab/2026-11-27-loop-seconds.md).
 MASKED_OVER_UNIFORM = 1.3
 
 
 def first_pass_parts(samples, budget):
-    """Number of parts of the first pass, both halves together. Where seconds are the budget, uniform parts follow that
-    tell the variance, so one part for each half suffices; short parts are dear."""
+    """Number of parts of the first pass, both halves together. With a budget of seconds, more uniform parts follow,
+    which suffice to measure the variance. One part for each half saves the overhead of short parts then."""
     if budget.seconds:
         return len(HALVES)
     return samples // 2 if samples > 8 and samples % 4 == 0 else samples
 
 
 def what_is_spent(state, seconds, decision_seconds, quality, complete_last_over_decision):
+    """quality: of the last reconstruction. complete_last_over_decision: see Renderer."""
     return Spent(
         samples=state.samples,
         cost_weighted_samples=sum(part.cost_weighted_samples for part in state.parts),
@@ -74,8 +76,8 @@ def uniform_counts(shape, parts, samples):
 
 
 def _uniform_parts(parts, samples):
-    """Number of parts for so many uniform samples of a half. Where the half has enough parts that are as long, these
-    tell the variance already."""
+    """Number of parts for so many uniform samples of a half. Where the half has enough parts that are as long, the
+    variance is known from these already."""
     as_long = sum(part.half == "a" and not part.masked and part.samples >= samples for part in parts)
     return UNIFORM_PARTS if samples >= MIN_DIVIDED and as_long < UNIFORM_PARTS else 1
 

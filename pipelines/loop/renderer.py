@@ -9,8 +9,8 @@ Terms:
             channels, after the prefix of the view layer if there is one (`ViewLayer.Sample Count.X`):
               Sample Count.X    How many samples each pixel is the mean of. Where it is 0, the pixel's other values are
                                 ignored.
-              Render Seconds.X  Optional: the time that these samples took, in any unit. It tells the loop what a
-                                sample of each pixel costs.
+              Render Seconds.X  Optional: the time that these samples took, in any unit. The loop derives from it
+                                what a sample of each pixel costs.
 """
 
 import abc

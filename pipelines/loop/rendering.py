@@ -93,7 +93,9 @@ class PartRendering:
         taken = dataclasses.replace(taken, counts=taken.counts.astype(float))
         before = self.taken.get(half)
         if before and before.counts.shape != taken.counts.shape:
-            raise DriverError(ExitCode.RENDERER, f"{self.folder.path}: the parts of half {half.upper()} differ in size")
+            raise DriverError(
+                ExitCode.RENDERER, f"{self.folder.path}: parts differ in size: start again with another --passes-dir"
+            )
         self.taken[half] = before + taken if before else taken
 
 
