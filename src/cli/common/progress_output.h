@@ -27,7 +27,7 @@ class RunProgress : public Progress {
 };
 
 /// Progress on standard error, at most ten times a second; cancelled() is true once a signal arrived
-/// (cli/signals.h).
+/// (cli/common/signals.h).
 std::unique_ptr<RunProgress> make_progress(ProgressStyle style);
 
 }  // namespace polyrecon

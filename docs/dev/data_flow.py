@@ -1,0 +1,132 @@
+#!/usr/bin/env python3
+"""Prints docs/dev/data_flow.svg, the figure of docs/dev/architecture.md."""
+
+WIDTH, BOX_WIDTH, BOX_HEIGHT = 960, 200, 62
+LEFT, TOP, COLUMN, ROW = 110, 64, 280, 132  # of the first box; distances of boxes
+
+# Phase, its steps as (function, folder), and the type of what it hands on.
+PHASES = [
+    ("read", [("read_frame", "src/io")], "Frame"),
+    (
+        "prepare",
+        [
+            ("noise_variance", "src/noise"),
+            ("look_at, prepare", "src/features"),
+            ("remove_outliers", "src/outliers"),
+        ],
+        "HalfPair",
+    ),
+    (
+        "prepare",
+        [("floor_variance", "src/noise"), ("join_neighbours", "src/temporal")],
+        "HalfPair",
+    ),
+    (
+        "fit",
+        [
+            ("fit windows, blend", "src/regression, src/blend"),
+            ("select", "src/blend"),
+            ("add_coarse", "src/blend"),
+        ],
+        "Candidate",
+    ),
+    (
+        "finish",
+        [("bind_to_noise", "src/blend"), ("make_error_map", "src/maps"), ("add_prior", "src/blend")],
+        "Candidate",
+    ),
+    (
+        "finish",
+        [("average", "src/pipeline"), ("raise_undershoot", "src/blend"), ("restore_energy", "src/outliers")],
+        "Result",
+    ),
+    ("write", [("make_sample_map", "src/maps"), ("write_result, write_maps", "src/io")], None),
+]
+
+STYLE = """
+  .card { fill: #ffffff; stroke: #d0d7de; }
+  .box { fill: #eef4fb; stroke: #57789c; }
+  .line { fill: none; stroke: #57606a; stroke-width: 1.5; }
+  .frame { fill: none; stroke: #57606a; stroke-dasharray: 6 4; }
+  .head { fill: #57606a; }
+  text { font-family: sans-serif; font-size: 15px; fill: #1f2328; }
+  .folder { font-size: 12px; fill: #57606a; }
+  .type { font-style: italic; }
+  .phase { font-weight: bold; }
+  @media (prefers-color-scheme: dark) {
+    .card { fill: #0d1117; stroke: #3d444d; }
+    .box { fill: #1b2a3b; stroke: #7aa2cf; }
+    .line, .frame { stroke: #9198a1; }
+    .head { fill: #9198a1; }
+    text { fill: #e6edf3; }
+    .folder { fill: #a8b1bb; }
+  }
+"""
+
+
+def box(x, y, step):
+    function, folder = step
+    middle = x + BOX_WIDTH / 2
+    return [
+        f'<rect class="box" x="{x}" y="{y}" width="{BOX_WIDTH}" height="{BOX_HEIGHT}" rx="6"/>',
+        f'<text x="{middle}" y="{y + 27}" text-anchor="middle">{function}</text>',
+        f'<text class="folder" x="{middle}" y="{y + 47}" text-anchor="middle">{folder}</text>',
+    ]
+
+
+def arrow(path):
+    return [f'<path class="line" d="{path}" marker-end="url(#head)"/>']
+
+
+def row(number, phase, steps, handed_on, is_first_of_phase):
+    y = TOP + number * ROW
+    middle = y + BOX_HEIGHT / 2
+    lines = [f'<text class="phase" x="16" y="{middle + 5}">{phase}</text>'] if is_first_of_phase else []
+    for k, step in enumerate(steps):
+        x = LEFT + k * COLUMN
+        lines += box(x, y, step)
+        if k + 1 < len(steps):
+            lines += arrow(f"M {x + BOX_WIDTH} {middle} H {x + COLUMN - 7}")
+    if handed_on:
+        x = LEFT + (len(steps) - 1) * COLUMN + BOX_WIDTH / 2
+        turn = y + BOX_HEIGHT + 40
+        end = LEFT + BOX_WIDTH / 2
+        lines += arrow(f"M {x} {y + BOX_HEIGHT} V {turn} H {end} V {y + ROW - 7}")
+        lines.append(f'<text class="type" x="{end + 12}" y="{turn - 7}">{handed_on}</text>')
+    return lines
+
+
+def repeat():
+    """A frame around the fits, which are made again for each level and stage."""
+    number = next(k for k, (phase, *_) in enumerate(PHASES) if phase == "fit")
+    y = TOP + number * ROW
+    left, right = LEFT - 16, LEFT + 2 * COLUMN + BOX_WIDTH + 16
+    return [
+        f'<rect class="frame" x="{left}" y="{y - 14}" width="{right - left}" height="{BOX_HEIGHT + 28}" rx="8"/>',
+        f'<text class="folder" x="{right}" y="{y - 22}" text-anchor="end">repeated for each level and stage: '
+        "run_stage, src/pipeline</text>",
+    ]
+
+
+def draw():
+    height = TOP + len(PHASES) * ROW - 36
+    lines = [
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {height}" width="{WIDTH}" height="{height}" '
+        'role="img" aria-labelledby="title">',
+        '<title id="title">How data flows through polyrecon denoise, from the file to the result</title>',
+        f"<style>{STYLE}</style>",
+        '<defs><marker id="head" markerWidth="9" markerHeight="9" refX="2" refY="4.5" orient="auto" '
+        'markerUnits="userSpaceOnUse"><path class="head" d="M 0 0 L 9 4.5 L 0 9 z"/></marker></defs>',
+        f'<rect class="card" x="0.5" y="0.5" width="{WIDTH - 1}" height="{height - 1}" rx="8"/>',
+        f'<text class="type" x="{LEFT}" y="36">EXR file</text>',
+        *arrow(f"M {LEFT + 66} 31 H {LEFT + BOX_WIDTH / 2} V {TOP - 7}"),
+    ]
+    previous = None
+    for number, (phase, steps, handed_on) in enumerate(PHASES):
+        lines += row(number, phase, steps, handed_on, phase != previous)
+        previous = phase
+    return "\n".join([*lines, *repeat(), "</svg>"])
+
+
+if __name__ == "__main__":
+    print(draw())
