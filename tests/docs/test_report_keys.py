@@ -10,7 +10,12 @@ import sys
 import tempfile
 import unittest
 
+import numpy as np
+
+from pipelines.common.errors import DriverError, ExitCode
 from pipelines.farm.job import Job
+from pipelines.loop.budget import Budget
+from tests.pipelines.loop.synthetic import SyntheticRenderer, loop
 
 from . import tree
 
@@ -47,7 +52,7 @@ def is_of_type(value, name):
         return isinstance(value, list) and all(is_of_type(inner, match[1]) for inner in value)
     if isinstance(value, bool):
         return name == "boolean"
-    kinds = {"string": str, "integer": int, "number": (int, float), "object": dict, "null": type(None)}
+    kinds = {"string": str, "integer": int, "number": (int, float), "list": list, "object": dict, "null": type(None)}
     return isinstance(value, kinds[name])
 
 
@@ -56,6 +61,16 @@ def documented(heading):
     text = re.split(rf"^## {re.escape(heading)}$", tree.read(PAGE), flags=re.M)[1]
     rows = tree.table(re.split(r"^## ", text, flags=re.M)[0], "key")
     return {row[0].strip("`"): row[1] for row in rows}
+
+
+class StoppingRenderer(SyntheticRenderer):
+    """Renders the first pass and fails in the first round."""
+
+    def uniform(self, first, samples, target):
+        SyntheticRenderer.extra(self, first, np.full(self.mean.shape, samples), target)
+
+    def extra(self, first, counts, target):
+        raise DriverError(ExitCode.RENDERER, "no more light")
 
 
 class Keys(unittest.TestCase):
@@ -104,6 +119,14 @@ class Keys(unittest.TestCase):
         words = ["-i", self.folder / "shot.#.exr", "-o", self.folder / "clean.#.exr", "--quality", "draft"]
         lines = run("denoise", *words, "--frames", "1-2", "--progress", "json").stderr.splitlines()
         self.check("Progress lines", *map(json.loads, lines))
+
+    def test_journal_of_the_loop(self):
+        """Of a loop whose renderer fails in the first round, and of one that runs to its end."""
+        with self.assertRaises(DriverError):
+            loop(self.folder / "stopped", Budget(samples=24), renderer=StoppingRenderer())
+        loop(self.folder / "finished", Budget(samples=24))
+        journals = [self.folder / name / "passes" / "journal.json" for name in ("stopped", "finished")]
+        self.check("Journal of the adaptive loop", *(json.loads(path.read_text()) for path in journals))
 
     def test_report_of_a_farm(self):
         """Two of three frames are there, so that the report has a reason and a failed attempt to tell."""
