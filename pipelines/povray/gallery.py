@@ -1,4 +1,4 @@
-"""The picture of docs/povray.md: scenes one below the other, one sample a pixel and the passes of each side by side."""
+"""The picture of docs/guide/povray.md: scenes one below the other, one sample a pixel and the passes of each side by side."""
 
 import numpy as np
 import OpenImageIO as oiio

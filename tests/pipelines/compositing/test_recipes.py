@@ -1,4 +1,4 @@
-"""The recipes of pipelines/compositing/README.md, run as they stand there, and what they leave."""
+"""The recipes of docs/guide/scripting.md and compositing.md, run as they stand there, and what they leave."""
 
 import os
 import pathlib
@@ -16,6 +16,7 @@ from pipelines.common.exr import read
 PROGRAM = os.environ["POLYRECON"]
 SAMPLES = pathlib.Path(os.environ["POLYRECON_SAMPLES"])
 COMPOSITING = SAMPLES.parent / "pipelines" / "compositing"
+GUIDE = SAMPLES.parent / "docs" / "guide"
 
 
 def layer(found, name=""):
@@ -26,8 +27,14 @@ def same_bits(a, b):
     return a.shape == b.shape and np.array_equal(np.ascontiguousarray(a).view("u4"), np.ascontiguousarray(b).view("u4"))
 
 
-def run(words, folder):
-    done = subprocess.run([str(word) for word in words], cwd=folder, capture_output=True, text=True)
+def blocks(page, language):
+    """The page's code blocks of a language."""
+    return re.findall(rf"^```{language}\n(.*?)^```", (GUIDE / page).read_text(), re.M | re.S)
+
+
+def run(words, folder, environment=None):
+    words = [str(word) for word in words]
+    done = subprocess.run(words, cwd=folder, env=environment, capture_output=True, text=True)
     if done.returncode != 0:
         raise AssertionError(f"{words}: exit code {done.returncode}\n{done.stdout}\n{done.stderr}")
     return done.stdout
@@ -42,13 +49,16 @@ class Recipes(unittest.TestCase):
         shutil.copy(SAMPLES / "lighthouse_16.exr", cls.folder / "parts.exr")
         parts = sorted(SAMPLES.glob("study_small_[0-3].exr"))
         run([PROGRAM, "merge", *parts, "-o", "groups.exr", "--quiet"], cls.folder)
-        blocks = re.findall(r"^```sh\n(.*?)^```", (COMPOSITING / "README.md").read_text(), re.M | re.S)
-        (cls.folder / "recipes.sh").write_text("set -euo pipefail\n" + "".join(blocks))
+        recipes = blocks("scripting.md", "sh") + blocks("compositing.md", "sh")
+        (cls.folder / "recipes.sh").write_text("set -euo pipefail\n" + "".join(recipes))
         # The programs by the names that the recipes use; oiiotool is Debian's, whatever else the PATH holds.
         (cls.folder / "bin").mkdir()
         for name, target in (("polyrecon", PROGRAM), ("oiiotool", "/usr/bin/oiiotool")):
             (cls.folder / "bin" / name).symlink_to(target)
-        environment = dict(os.environ, PATH=f"{cls.folder}/bin:{os.environ['PATH']}", COMPOSITING=str(COMPOSITING))
+        path = f"{cls.folder}/bin:{os.environ['PATH']}"
+        environment = dict(os.environ, PATH=path, COMPOSITING=str(COMPOSITING))
+        (script,) = blocks("scripting.md", "python")
+        cls.told = run([sys.executable, "-c", script], cls.folder, environment)
         done = subprocess.run(
             ["bash", "recipes.sh"],
             cwd=cls.folder,
@@ -67,6 +77,9 @@ class Recipes(unittest.TestCase):
         lines = (self.folder / "progress.jsonl").read_text().splitlines()
         self.assertTrue(lines and all(line.startswith('{"event":') for line in lines), lines[:3])
         self.assertIn("estimated relMSE", (self.folder / "report.txt").read_text())
+
+    def test_a_script_in_python_reads_the_report(self):
+        self.assertRegex(self.told, r"^estimated relMSE: 0\.0\d+\n")
 
     def test_the_review_picture_is_the_beauty_in_srgb(self):
         clean = np.clip(layer(self.read("clean.exr"), "ViewLayer.Combined"), 0, 1)
