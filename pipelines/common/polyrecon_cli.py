@@ -14,9 +14,9 @@ def find_polyrecon(given=None):
     """--polyrecon PATH, else $POLYRECON, else on the PATH, else the build of this checkout."""
     named = given or os.environ.get("POLYRECON")
     if named:
-        if not os.access(named, os.X_OK):
+        if not (found := shutil.which(named)):  # a path, or a name on the PATH
             raise DriverError(ExitCode.MISSING, f"{named}: no such program (--polyrecon, $POLYRECON)")
-        return pathlib.Path(named).absolute()
+        return pathlib.Path(found).absolute()
     if found := shutil.which("polyrecon"):
         return pathlib.Path(found)
     root = pathlib.Path(__file__).resolve().parents[2]

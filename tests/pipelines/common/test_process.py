@@ -6,6 +6,7 @@ import tempfile
 import time
 import unittest
 from pathlib import Path
+from unittest import mock
 
 from pipelines.common import process
 from pipelines.common.errors import DriverError, ExitCode, run_main
@@ -43,6 +44,13 @@ class Processes(unittest.TestCase):
 class Polyrecons(unittest.TestCase):
     def test_it_is_found_and_runs(self):
         self.assertIn("denoise", Polyrecon().run("--help"))
+
+    def test_a_name_is_looked_for_on_the_path(self):
+        program = find_polyrecon()
+        with mock.patch.dict(os.environ, PATH=f"{program.parent}:{os.environ['PATH']}"):
+            self.assertEqual(find_polyrecon(program.name), program)
+        with self.assertRaisesRegex(DriverError, "no-such-polyrecon: no such program"):
+            find_polyrecon("no-such-polyrecon")
 
     def test_a_wrong_place_is_named(self):
         with self.assertRaisesRegex(DriverError, "/no/such: no such program") as caught:
