@@ -8,7 +8,8 @@ import numpy as np
 from ..common import exr
 from ..common.errors import DriverError, ExitCode
 from ..loop.renderer import RENDER_SECONDS, SAMPLE_COUNT, Audit, Renderer, Switch
-from . import masks, prior, regions
+from . import masks, prior
+from .pass_list import masked_passes, rectangular_passes
 from .session import BlenderSession
 
 PART_LAYERS = {
@@ -97,7 +98,7 @@ class BlenderRenderer(Renderer):
             self._write(target, self._render(first=first, samples=samples)[0], counts)
             return samples
         sums, taken = {}, np.zeros(counts.shape)
-        pieces = masks.plan(counts) if self.masked else regions.plan(counts, self._overhead_samples())
+        pieces = masked_passes(counts) if self.masked else rectangular_passes(counts, self._overhead_samples())
         for piece, channels in self._render_ahead(first, pieces):
             x0, y0, x1, y1 = piece.box
             for name, values in channels.items():

@@ -19,7 +19,8 @@ from ..common import exr
 from ..common.arguments import positive
 from ..common.errors import run_main
 from ..loop.renderer import SAMPLE_COUNT
-from . import passes, regions
+from . import passes
+from .crops import cover
 from .scene import Scene
 from .subpixels import Estimate, estimate, join
 
@@ -73,7 +74,7 @@ def render_beauty(scene, grid, say=lambda text: None):
     if grid <= FIRST_GRID:
         return beauty, samples
     say(f"  {'yes' if noisy.any() else 'no '} more subpixels: {noisy.mean():.0%} of the frame is noisy")
-    for crop, n in regions.cover(noisy * grid, scene.parse_seconds / per_sample):
+    for crop, n in cover(noisy * grid, scene.parse_seconds / per_sample):
         more = estimate(scene.render(n, crop=crop), n)
         rows, columns = slice(crop.y0, crop.y1), slice(crop.x0, crop.x1)
         joined = join(beauty.crop(rows, columns), FIRST_GRID**2, more, n * n)

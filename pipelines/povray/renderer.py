@@ -15,7 +15,8 @@ import numpy as np
 from ..common import exr
 from ..common.errors import DriverError, ExitCode
 from ..loop.renderer import SAMPLE_COUNT, Audit, Renderer, Switch
-from . import passes, regions
+from . import passes
+from .crops import cover
 from .render_passes import FIRST_GRID, channels
 from .scene import AT_ONCE, Scene, Shot
 from .subpixels import blocks
@@ -70,7 +71,7 @@ class PovrayRenderer(Renderer):
         mean = np.zeros((*counts.shape, 3))
         taken = np.zeros(counts.shape, np.float32)
         per_sample = self.seconds_per_sample or 1e-5  # unknown after a resume: of a simple scene
-        crops = regions.cover(np.ceil(np.sqrt(counts)), self.scene.parse_seconds / AT_ONCE / per_sample)
+        crops = cover(np.ceil(np.sqrt(counts)), self.scene.parse_seconds / AT_ONCE / per_sample)
         shots = self._shots([crop for crop, _ in crops], counts, self._used_grids(target))
         for shot, image in zip(shots, self.scene.render_all(shots)):
             rows, columns = slice(shot.crop.y0, shot.crop.y1), slice(shot.crop.x0, shot.crop.x1)

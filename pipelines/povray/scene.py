@@ -20,6 +20,7 @@ import OpenImageIO as oiio
 
 from ..common import process
 from ..common.errors import DriverError, ExitCode
+from .crops import Crop
 
 # POV-Ray's own configuration (/etc/povray/3.7/povray.conf) lets it write there.
 WORK_PARENT = pathlib.Path("/tmp")
@@ -30,24 +31,6 @@ FORCED = ("+FE", "-UA", "-A", "-D", "-P", "-C", "Fatal_Console=on", "Render_Cons
 
 AT_ONCE = 4  # POV-Rays side by side,
 SMALL = 1 << 22  # unless their images have more subpixels than this (memory)
-
-
-@dataclasses.dataclass(frozen=True)
-class Crop:
-    """Pixels x0 <= x < x1, y0 <= y < y1 of the frame, row 0 at the top."""
-
-    x0: int
-    y0: int
-    x1: int
-    y1: int
-
-    @property
-    def width(self):
-        return self.x1 - self.x0
-
-    @property
-    def height(self):
-        return self.y1 - self.y0
 
 
 @dataclasses.dataclass(frozen=True)

@@ -6,8 +6,10 @@ import unittest
 import numpy as np
 
 from pipelines.blender import masks
+from pipelines.blender.pass_list import masked_passes
 from pipelines.blender.renderer import BlenderRenderer
 from pipelines.common import exr
+from pipelines.common.rectangles import bounding_box
 from pipelines.loop.renderer import RENDER_SECONDS, SAMPLE_COUNT
 from tests.pipelines.blender.support import SceneTest
 
@@ -86,7 +88,7 @@ class Masks(SceneTest):
         counts = np.ones(renderer.shape, int)
         counts[: counts.shape[0] // 2] = 1 << 20  # hours
         for delay in (0, 0.001, 0.01, 0.1):
-            pieces = renderer._render_ahead(0, masks.plan(counts))
+            pieces = renderer._render_ahead(0, masked_passes(counts))
             next(pieces)
             time.sleep(delay)
             with self.assertRaises(KeyboardInterrupt):
@@ -99,32 +101,8 @@ class Masks(SceneTest):
         inside[1, 2] = True
         mask = masks.subpixel_mask(inside, 0.25, 1)
         self.assertEqual(mask.shape, (20, 24))
-        self.assertEqual(masks.bounding_box(mask), (11, 7, 17, 13))  # 4 subpixels and one more on each side
+        self.assertEqual(bounding_box(mask), (11, 7, 17, 13))  # 4 subpixels and one more on each side
         self.assertEqual(masks.subpixel_mask(inside, 0, 0).sum(), 16)
-
-    def test_passes_lie_one_in_another_and_go_on_in_the_sequence(self):
-        counts = np.array([[0, 4, 4], [0, 0, 1]])
-        passes = [(p.skip, p.samples, p.box, p.inside.tolist()) for p in masks.plan(counts)]
-        self.assertEqual(
-            passes, [(0, 1, (1, 0, 3, 2), [[True, True], [False, True]]), (1, 3, (1, 0, 3, 1), [[True, True]])]
-        )
-        self.assertEqual(masks.plan(np.zeros((2, 2))), [])
-
-    def test_passes_are_cut_where_what_lies_between_costs_more_than_another_pass(self):
-        counts = np.zeros((360, 640), int)
-        counts[10:20, 10:30] = counts[340:350, 600:630] = 64
-        self.assertEqual([p.box for p in masks.plan(counts)], [(10, 10, 30, 20), (600, 340, 630, 350)])
-        near = np.zeros((360, 640), int)
-        near[10:20, 10:30] = near[10:20, 100:120] = 64  # 45,000 samples in between, less than a pass
-        self.assertEqual([p.box for p in masks.plan(near)], [(10, 10, 120, 20)])
-        random = np.random.default_rng(8)
-        counts = np.kron(random.choice([0, 0, 1, 4, 128], size=(18, 32)), np.ones((20, 20), int))
-        taken = np.zeros_like(counts)
-        for piece in masks.plan(counts):
-            x0, y0, x1, y1 = piece.box
-            self.assertTrue((taken[y0:y1, x0:x1][piece.inside] == piece.skip).all())
-            taken[y0:y1, x0:x1] += piece.samples * piece.inside
-        np.testing.assert_array_equal(taken, counts)
 
 
 if __name__ == "__main__":

@@ -2,7 +2,6 @@ import unittest
 
 import numpy as np
 
-from pipelines.povray.regions import cover
 from pipelines.povray.subpixels import estimate, join
 
 
@@ -44,47 +43,6 @@ class Subpixels(unittest.TestCase):
     def test_one_subpixel_has_no_variance(self):
         found = estimate(np.ones((3, 5, 3)), 1)
         self.assertEqual((found.mean.shape, found.variance.max()), ((3, 5, 3), 0))
-
-
-class Cover(unittest.TestCase):
-    def covered(self, grid, overhead):
-        crops = cover(grid, overhead)
-        times = np.zeros(grid.shape, int)
-        given = np.zeros(grid.shape, int)
-        for crop, n in crops:
-            times[crop.y0 : crop.y1, crop.x0 : crop.x1] += 1
-            given[crop.y0 : crop.y1, crop.x0 : crop.x1] = n
-        self.assertLessEqual(times.max(initial=0), 1)
-        self.assertTrue((given >= grid).all())
-        return crops, given
-
-    def test_nothing_everything_one_pixel(self):
-        grid = np.zeros((9, 16), int)
-        self.assertEqual(cover(grid, 10), [])
-        grid[3, 5] = 4
-        crops, given = self.covered(grid, 10)
-        self.assertEqual((len(crops), given.sum()), (1, 4))
-        crops, _ = self.covered(np.full((9, 16), 2), 10)
-        self.assertEqual([(c.width, c.height, n) for c, n in crops], [(16, 9, 2)])
-
-    def test_cuts_where_it_pays(self):
-        grid = np.zeros((40, 60), int)
-        grid[:5, :5] = 4
-        grid[30:, 50:] = 2
-        grid[32, 52] = 8
-        crops, given = self.covered(grid, 20)
-        self.assertLess((given**2).sum(), 25 * 16 + 100 * 4 + 12 * 64)
-        self.assertGreater(len(crops), 2)
-        self.assertEqual(len(self.covered(grid, 1e9)[0]), 1)
-
-    def test_random_maps_are_covered(self):
-        random = np.random.default_rng(3)
-        for _ in range(30):
-            grid = random.integers(0, 4, size=random.integers(1, 30, 2)) * (random.random() < 0.9)
-            grid = grid * (random.random(grid.shape) < random.random())
-            crops, given = self.covered(grid, 5)
-            whole = grid.size * int(grid.max()) ** 2 + 5
-            self.assertLessEqual((given**2).sum() + 5 * len(crops), whole)
 
 
 if __name__ == "__main__":

@@ -2,11 +2,11 @@ import unittest
 
 import numpy as np
 
-from pipelines.blender import regions
+from pipelines.blender.pass_list import masked_passes, rectangular_passes
 
 
 def taken(counts, overhead):
-    passes = regions.plan(counts, overhead)
+    passes = rectangular_passes(counts, overhead)
     samples = np.zeros(counts.shape, int)
     covered = np.zeros(counts.shape, int)
     for piece in passes:
@@ -16,7 +16,7 @@ def taken(counts, overhead):
     return passes, samples, covered
 
 
-class Rectangles(unittest.TestCase):
+class RectangularPasses(unittest.TestCase):
     def test_an_even_map_is_one_rectangle(self):
         passes, samples, _ = taken(np.full((60, 80), 4), 100)
         self.assertEqual(len(passes), 1)
@@ -42,12 +42,38 @@ class Rectangles(unittest.TestCase):
 
     def test_nothing_and_one_pixel(self):
         counts = np.zeros((40, 40))
-        self.assertEqual(regions.plan(counts, 100), [])
+        self.assertEqual(rectangular_passes(counts, 100), [])
         counts[5, 30] = 4096
-        passes, samples, _ = taken(counts, 10)
+        _, samples, _ = taken(counts, 10)
         self.assertGreater(samples[5, 30], 0)
         self.assertLess((samples > 0).sum(), 400)
         self.assertLess(samples.sum(), 3 * 4096)
+
+
+class MaskedPasses(unittest.TestCase):
+    def test_passes_lie_one_in_another_and_go_on_in_the_sequence(self):
+        counts = np.array([[0, 4, 4], [0, 0, 1]])
+        passes = [(p.skip, p.samples, p.box, p.inside.tolist()) for p in masked_passes(counts)]
+        self.assertEqual(
+            passes, [(0, 1, (1, 0, 3, 2), [[True, True], [False, True]]), (1, 3, (1, 0, 3, 1), [[True, True]])]
+        )
+        self.assertEqual(masked_passes(np.zeros((2, 2))), [])
+
+    def test_passes_are_cut_where_what_lies_between_costs_more_than_another_pass(self):
+        counts = np.zeros((360, 640), int)
+        counts[10:20, 10:30] = counts[340:350, 600:630] = 64
+        self.assertEqual([p.box for p in masked_passes(counts)], [(10, 10, 30, 20), (600, 340, 630, 350)])
+        near = np.zeros((360, 640), int)
+        near[10:20, 10:30] = near[10:20, 100:120] = 64  # 45,000 samples in between, less than a pass
+        self.assertEqual([p.box for p in masked_passes(near)], [(10, 10, 120, 20)])
+        random = np.random.default_rng(8)
+        counts = np.kron(random.choice([0, 0, 1, 4, 128], size=(18, 32)), np.ones((20, 20), int))
+        taken = np.zeros_like(counts)
+        for piece in masked_passes(counts):
+            x0, y0, x1, y1 = piece.box
+            self.assertTrue((taken[y0:y1, x0:x1][piece.inside] == piece.skip).all())
+            taken[y0:y1, x0:x1] += piece.samples * piece.inside
+        np.testing.assert_array_equal(taken, counts)
 
 
 if __name__ == "__main__":

@@ -1,0 +1,46 @@
+"""The passes that render counts of samples: masked ones where the camera has a mask, else rectangles with one count each."""
+
+import dataclasses
+
+import numpy as np
+
+from ..common import rectangles
+
+# The fixed costs of a masked pass, and of each pixel of its box, in samples of a pixel outside the mask (docs/adaptive.md).
+PASS, PIXEL = 100_000, 2.5
+
+
+@dataclasses.dataclass
+class Pass:
+    skip: int  # samples of the sequence before this pass's
+    samples: int
+    box: tuple  # x0, y0, x1, y1 in pixels from the top left, end excluded
+    inside: np.ndarray  # bool, of the box's shape: pixels whose samples count
+
+
+def masked_passes(counts):
+    """Passes for counts[y, x], each over the boxes that hold its pixels.
+
+    The passes lie one in another: all pixels with samples take those of the lowest count; the pixels of higher counts go on
+    in the sequence up to the next count, and so on. A border between two counts thus has one rim, on one side, of the
+    samples that the two differ by. With a pass for each count it would have two rims, of all samples."""
+    passes, done = [], 0
+    for count in np.unique(counts[counts > 0]).astype(int):
+        inside, samples = counts >= count, int(count) - done
+        for box in rectangles.cover(inside, lambda _, samples=samples: samples + PIXEL, PASS):
+            x0, y0, x1, y1 = box
+            passes.append(Pass(done, samples, box, inside[y0:y1, x0:x1]))
+        done = int(count)
+    return passes
+
+
+def rectangular_passes(counts, overhead):
+    """Passes for counts[y, x] without masks: rectangles that take the mean of their counts, rounded to a power of two, in
+    every pixel. overhead: the fixed cost of a pass, in samples of a pixel."""
+    passes = []
+    for x0, y0, x1, y1 in rectangles.level(counts, overhead):
+        mean = counts[y0:y1, x0:x1].mean()
+        if mean >= 0.5:
+            samples = int(2 ** max(0, round(np.log2(mean))))
+            passes.append(Pass(0, samples, (x0, y0, x1, y1), np.ones((y1 - y0, x1 - x0), bool)))
+    return passes
