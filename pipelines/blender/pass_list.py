@@ -6,7 +6,8 @@ import numpy as np
 
 from ..common import rectangles
 
-# The fixed costs of a masked pass, and of each pixel of its box, in samples of a pixel outside the mask (docs/adaptive.md).
+# The fixed costs of a masked pass, and of each pixel of its box, in samples of a pixel outside the mask
+# (docs/lab/2026-11-27-loop-seconds.md).
 PASS, PIXEL = 100_000, 2.5
 
 
