@@ -1,4 +1,4 @@
-"""The bench: how it tunes its methods to the seconds, what it keeps, and one small run for real."""
+"""The bench of the adaptive loop: tuning of its methods, the files that it keeps, and one small run."""
 
 import contextlib
 import io
@@ -7,7 +7,7 @@ import pathlib
 import tempfile
 import unittest
 
-from pipelines.blender import bench, bench_report
+from tests.bench.blender import bench, report
 
 
 def rows(knob, seconds_of, fixed, target, tries=bench.TRIES):
@@ -29,7 +29,9 @@ class Tuning(unittest.TestCase):
     def test_threshold_meets_the_seconds_whatever_the_slope(self):
         for slope in (0.8, 1.5, 2.4):
             with self.subTest(slope):
-                found = rows(bench.next_threshold, lambda t: 4.0 * (t / 0.02) ** -slope, fixed=2.5, target=15.0)
+                found = rows(
+                    bench.next_threshold, lambda t, slope=slope: 4.0 * (t / 0.02) ** -slope, fixed=2.5, target=15.0
+                )
                 self.assertAlmostEqual(found[-1]["seconds"], 15.0, delta=15.0 * bench.TOLERANCE)
 
 
@@ -63,9 +65,8 @@ class Run(unittest.TestCase):
             before = {path: path.stat().st_mtime_ns for path in work.rglob("*.exr")}
             self.assertIn("| meadow | 0.5 s |", self.call(*words)[1])
             self.assertEqual({path: path.stat().st_mtime_ns for path in work.rglob("*.exr")}, before)
-            before.pop(
-                work / "meadow" / "trial.exr", None
-            )  # of a run that is not the nearest; the next one's takes its place
+            # The picture of a run that is not the nearest; the next run overwrites it.
+            before.pop(work / "meadow" / "trial.exr", None)
             self.call(*words, "--draws=2")
             self.assertEqual({path: path.stat().st_mtime_ns for path in before}, before)
             first, second = (
@@ -119,7 +120,7 @@ class Report(unittest.TestCase):
             {"scene": "fan", "budget": 9.0, "method": m, "seconds": 9.1, "relMSE": e, "trimmed": t}
             for m, e, t in figures
         ]
-        table = bench_report.table(made)
+        table = report.table(made)
         cells = "| 0.02000 / 0.01000 (9.1 s) | 0.01000 / 0.00800 (9.1 s) | 0.00400 / 0.00400 (9.1 s) |"
         self.assertIn(f"| fan | 9 s {cells} 0.50 / 0.80 | 0.20 / 0.40 |", table)
         self.assertIn("| (b) / (a) | (e) / (a) |", table)
@@ -129,7 +130,7 @@ class Report(unittest.TestCase):
             {"scene": "fan", "budget": 9.0, "method": "oidn", "seconds": s, "relMSE": e, "trimmed": e / 2}
             for s, e in ((8.0, 0.01), (9.0, 0.04))
         ]
-        self.assertIn("| fan | 9 s | 0.02000 / 0.01000 (8.5 s) |", bench_report.table(made))
+        self.assertIn("| fan | 9 s | 0.02000 / 0.01000 (8.5 s) |", report.table(made))
 
 
 if __name__ == "__main__":

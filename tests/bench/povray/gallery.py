@@ -1,18 +1,18 @@
-"""The picture of docs/guide/povray.md: scenes one below the other, one sample a pixel and the passes of each side by side."""
+"""Makes the picture of docs/guide/povray.md: a row for each scene, with one sample per pixel and the feature passes."""
 
 import numpy as np
 import OpenImageIO as oiio
 
-from ..common.errors import DriverError, ExitCode
-from . import passes
-from .scene import Scene
+from pipelines.common.errors import DriverError, ExitCode
+from pipelines.povray import passes
+from pipelines.povray.scene import Scene
 
-WIDTH, HEIGHT, GAP = 160, 120, 4  # of one picture, and between rows
+WIDTH, HEIGHT, GAP = 160, 120, 4  # pixels of one picture, and between rows
 COLUMNS = ("Combined", "Denoising Albedo", "Visibility", "Denoising Normal", "Denoising Depth")
 
 
 def write(target, scenes):
-    """scenes: paths. A pass that a scene does without stays white."""
+    """Writes the picture of these scene files. The place of a pass that a scene does not have stays white."""
     rows = [_row(path) for path in scenes]
     between = np.ones((GAP, *rows[0].shape[1:]))
     pixels = np.concatenate([part for row in rows for part in (row, between)][:-1]).astype(np.float32)

@@ -1,14 +1,9 @@
 #!/usr/bin/env python3
-"""Makes the table of POV-Ray in docs/results/adaptive.md: for each scene a reference of 1024 subpixels a pixel,
-render_passes.py and `polyrecon denoise`, adaptive.py; relMSE and processor seconds of each. A reference that is there
-in --work is not made again. With --picture its picture instead."""
+"""Makes the table of POV-Ray in docs/results/adaptive.md.
 
-if not __package__:  # run as a script from a checkout
-    import pathlib
-    import sys
-
-    sys.path[0] = str(pathlib.Path(__file__).resolve().parents[2])
-    __package__ = "pipelines.povray"
+For each scene: a reference of 1024 subpixels a pixel, `render_passes.py` and `polyrecon denoise`, and `adaptive.py`,
+with the relMSE and the processor seconds of each. References that are in --work already are used again. With --picture
+it makes the picture of docs/guide/povray.md instead."""
 
 import argparse
 import pathlib
@@ -19,17 +14,20 @@ import sys
 
 import numpy as np
 
-from ..common import exr
-from ..common.errors import run_main
-from ..common.polyrecon_cli import Polyrecon
-from . import gallery
-from .scene import Crop, Scene
-from .subpixels import estimate
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3]))
+from pipelines.common import exr
+from pipelines.common.errors import run_main
+from pipelines.common.polyrecon_cli import Polyrecon
+from pipelines.povray.crops import Crop
+from pipelines.povray.scene import Scene
+from pipelines.povray.subpixels import estimate
+from tests.bench.povray import gallery
 
-HERE = pathlib.Path(__file__).resolve().parent
+ROOT = pathlib.Path(__file__).resolve().parents[3]
+DRIVERS = ROOT / "pipelines" / "povray"
 EXAMPLES = pathlib.Path("/usr/share/doc/povray/examples")  # Debian: povray-examples
 SCENES = {
-    "still_life": (HERE.parents[1] / "samples/scenes/still_life.pov", 160, 90),
+    "still_life": (ROOT / "samples/scenes/still_life.pov", 160, 90),
     "arealit2": (EXAMPLES / "lights/arealit2.pov", 128, 96),
     "woodbox": (EXAMPLES / "advanced/woodbox.pov", 128, 96),
     "pawns": (EXAMPLES / "advanced/pawns.pov", 128, 96),
@@ -39,9 +37,9 @@ GALLERY = [SCENES["still_life"][0]] + [
     EXAMPLES / "advanced" / name for name in ("woodbox.pov", "chess2.pov", "wineglass.pov", "glasschess/glasschess.pov")
 ]
 REFERENCE_GRID = 32
-UNIFORM_GRIDS = (4, 8)  # after the first pass of 2 x 2: 20 and 68 samples where there is noise
+UNIFORM_GRIDS = (4, 8)  # with the first pass of 2 x 2 this makes 20 and 68 samples where there is noise
 ADAPTIVE_SAMPLES = 68
-BAND = 24  # rows of the reference that are rendered at once
+BAND = 24  # rows of the reference in one render
 
 
 def main(words=None):
@@ -51,9 +49,11 @@ def main(words=None):
 def _main(words):
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("scenes", nargs="*", metavar="SCENE", help=f"{', '.join(SCENES)} (all)")
-    parser.add_argument("--work", type=pathlib.Path, default=HERE.parents[1] / "out" / "povray")
-    parser.add_argument("--only-references", action="store_true", help="leave it at the references")
-    parser.add_argument("--picture", type=pathlib.Path, metavar="FILE.jpg", help="write scenes and their passes here")
+    parser.add_argument("--work", type=pathlib.Path, default=ROOT / "out" / "povray")
+    parser.add_argument("--only-references", action="store_true", help="make nothing but the references")
+    parser.add_argument(
+        "--picture", type=pathlib.Path, metavar="FILE.jpg", help="write the picture of scenes and their passes here"
+    )
     options = parser.parse_args(words)
     if unknown := set(options.scenes) - set(SCENES):
         parser.error(f"no such scene: {', '.join(sorted(unknown))}")
@@ -70,7 +70,7 @@ def _main(words):
 
 
 def measure(work, name):
-    """Lines of the table: what, samples per pixel, relMSE of the mean and of the reconstruction, processor seconds."""
+    """Yields the lines of the table: driver, samples per pixel, relMSE of mean and result, processor seconds."""
     path, width, height = SCENES[name]
     size = ["--", f"+W{width}", f"+H{height}"]
     for grid in UNIFORM_GRIDS:
@@ -90,17 +90,17 @@ def measure(work, name):
     Polyrecon().run("preview", *pictures, "-o", work / f"{name}.png")
 
 
-def row(what, work, name, merged, clean, seconds):
+def row(label, work, name, merged, clean, seconds):
     samples = exr.read(merged)["Sample Count.X"].mean()
     spent = " + ".join(f"{s:.0f}" for s in seconds)
     return (
-        f"  {what:28} {samples:5.1f} spp  mean {relative_mse(work, name, merged):.2e}"
+        f"  {label:28} {samples:5.1f} spp  mean {relative_mse(work, name, merged):.2e}"
         f"  clean {relative_mse(work, name, clean):.2e}  {spent} processor seconds"
     )
 
 
 def relative_mse(work, name, path):
-    """As `polyrecon compare` has it, the reference's own variance taken off."""
+    """relMSE as in `polyrecon compare`, less the variance of the reference."""
     found, reference_channels = exr.read(path), exr.read(work / f"{name}_ref.exr")
     errors = []
     for c in "RGB":
@@ -110,9 +110,9 @@ def relative_mse(work, name, path):
 
 
 def run(driver, *words):
-    """Runs a driver; returns its processor seconds, with those of all that it started."""
+    """Runs a driver; returns its processor seconds, including those of its child processes."""
     begun = processor_seconds()
-    subprocess.run([sys.executable, "-B", HERE / driver, *map(str, words)], check=True)
+    subprocess.run([sys.executable, "-B", DRIVERS / driver, *map(str, words)], check=True)
     return processor_seconds() - begun
 
 
@@ -122,7 +122,7 @@ def processor_seconds():
 
 
 def reference(work, name):
-    """NAME_ref.exr: Combined, and the variance of its mean; also the errors that smaller grids have."""
+    """Makes NAME_ref.exr if it is missing: the picture and the variance of its mean."""
     target = work / f"{name}_ref.exr"
     if target.exists():
         return target

@@ -1,10 +1,10 @@
-"""Renders a .blend by Cycles for the bench; run by a Python that has the module bpy.
+"""Renders a .blend file with Cycles for the bench. Needs a Python that has the module bpy.
 
-  bench_render.py SCENE.blend OUT.exr --spp 64 [--parts 8] [--seed 7] [--threshold 0.02] [--denoise] [--timing FILE]
+  render.py SCENE.blend OUT.exr --spp 64 [--parts 8] [--seed 7] [--threshold 0.02] [--denoise] [--timing FILE]
 
-With --parts OUT.exr becomes OUT_0.exr, OUT_1.exr, ...: consecutive pieces of one sample sequence. With --threshold Cycles
-samples adaptively, with --denoise it runs Open Image Denoise. FILE then holds as JSON
-the seconds that rendering took, by the wall's clock and the processor's."""
+With --parts the files are OUT_0.exr, OUT_1.exr, ...: consecutive pieces of one sample sequence. With --threshold Cycles
+samples adaptively; with --denoise it runs Open Image Denoise. The file of --timing holds the seconds of rendering as
+JSON: {"wall": S, "cpu": S}."""
 
 import argparse
 import json
@@ -15,7 +15,7 @@ import bpy
 
 
 def arguments():
-    parser = argparse.ArgumentParser(prog="bench_render.py")
+    parser = argparse.ArgumentParser(prog="render.py")
     parser.add_argument("scene")
     parser.add_argument("out")
     parser.add_argument("--spp", type=int, required=True)
@@ -24,10 +24,8 @@ def arguments():
     parser.add_argument("--threshold", type=float)
     parser.add_argument("--denoise", action="store_true")
     parser.add_argument("--features", action="store_true", help="store the denoising features")
-    parser.add_argument("--size", help="WIDTHxHEIGHT instead of the file's own")
-    parser.add_argument(
-        "--save-blend", help="write the scene, set to Cycles, the size and the seed, here as a .blend file too"
-    )
+    parser.add_argument("--size", help="WIDTHxHEIGHT in place of the file's")
+    parser.add_argument("--save-blend", help="also write the scene as a .blend file, with Cycles, size and seed set")
     parser.add_argument("--timing")
     return parser.parse_args()
 
@@ -43,11 +41,11 @@ def choose_output(render):
 
 
 def choose_sampling(cycles, threshold, denoise):
-    """Cycles' own tools, at their most accurate."""
+    """Adaptive sampling and denoiser of Cycles, at their most accurate."""
     cycles.use_adaptive_sampling = threshold is not None
     if threshold is not None:
         cycles.adaptive_threshold = threshold
-        cycles.adaptive_min_samples = 0  # chosen by Cycles
+        cycles.adaptive_min_samples = 0  # Cycles chooses
     cycles.use_denoising = denoise
     if denoise:
         cycles.denoiser = "OPENIMAGEDENOISE"

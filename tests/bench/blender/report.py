@@ -1,17 +1,25 @@
-"""The bench's table and plot."""
+"""Table and plot of the bench's results."""
 
 import math
 import os
 import platform
 
-LETTER = {"uniform": "(a) uniform, polyrecon", "adaptive": "(b) adaptive loop", "cycles": "(c) Cycles adaptive, OIDN"}
-LETTER |= {
+LABEL = {
+    "uniform": "(a) uniform, polyrecon",
+    "adaptive": "(b) adaptive loop",
+    "cycles": "(c) Cycles adaptive, OIDN",
     "oidn": "(d) uniform, OIDN",
     "prior": "(e) loop with OIDN as prior",
-    "uniform_prior": "(f) uniform with that",
+    "uniform_prior": "(f) uniform with OIDN as prior",
 }
-COLOUR = {"uniform": "#4477aa", "adaptive": "#cc3311", "cycles": "#228833", "oidn": "#aa8800"}
-COLOUR |= {"prior": "#aa3377", "uniform_prior": "#66ccee"}
+COLOUR = {
+    "uniform": "#4477aa",
+    "adaptive": "#cc3311",
+    "cycles": "#228833",
+    "oidn": "#aa8800",
+    "prior": "#aa3377",
+    "uniform_prior": "#66ccee",
+}
 RATIOS = (
     ("adaptive", "uniform"),
     ("adaptive", "cycles"),
@@ -23,7 +31,7 @@ BEGIN, END = "<!-- bench: begin -->", "<!-- bench: end -->"
 
 
 def averaged(rows):
-    """One row for each scene, budget and method: the geometric mean of the errors of its draws, the mean of their seconds."""
+    """One row for each scene, budget and method: geometric mean of the draws' errors, mean of their seconds."""
     cells = {}
     for row in rows:
         cells.setdefault((row["scene"], row["budget"], row["method"]), []).append(row)
@@ -36,20 +44,21 @@ def averaged(rows):
 
 
 def _mean(errors):
-    """Geometric; where a reference's variance, subtracted, has left nothing (tiny frames), arithmetic."""
+    """Geometric. Arithmetic if the error is not above 0, after the reference's variance is subtracted (tiny frames)."""
     if len(errors) > 1 and min(errors) > 0:
         return math.exp(sum(map(math.log, errors)) / len(errors))
     return sum(errors) / len(errors)
 
 
 def table(rows):
-    """Markdown: a line for each scene and budget; of each method relMSE, the same without the 0.1 % worst pixels (single
-    pixels where the reference itself has not converged can decide the first), and seconds; and the ratios that are goals,
-    of both figures."""
+    """A Markdown table with a line for each scene and budget.
+
+    A method's cell has the relMSE, the trimmed one without the 0.1 % worst pixels (single pixels where the reference
+    itself has not converged can decide the first), and the seconds. The last columns are ratios of both figures."""
     rows = averaged(rows)
-    methods = [method for method in LETTER if any(row["method"] == method for row in rows)]
+    methods = [method for method in LABEL if any(row["method"] == method for row in rows)]
     ratios = [pair for pair in RATIOS if set(pair) <= set(methods)]
-    named = [LETTER[method] for method in methods] + [f"{LETTER[a][:3]} / {LETTER[b][:3]}" for a, b in ratios]
+    named = [LABEL[method] for method in methods] + [f"{LABEL[a][:3]} / {LABEL[b][:3]}" for a, b in ratios]
     lines = ["| scene | budget | " + " | ".join(named) + " |", "|---|---|" + "---|" * len(named)]
     for scene, budget in dict.fromkeys((row["scene"], row["budget"]) for row in rows):
         found = {row["method"]: row for row in rows if (row["scene"], row["budget"]) == (scene, budget)}
@@ -70,7 +79,7 @@ def _cell(row):
 
 
 def write(document, rows, options):
-    """Puts the table between the marks of a document, and the plot beside it."""
+    """Puts the table between the marks of a page, and the plot next to the page."""
     text = document.read_text()
     head, _, rest = text.partition(BEGIN)
     _, mark, tail = rest.partition(END)
@@ -89,7 +98,7 @@ def write(document, rows, options):
 
 
 def plot(rows, path, clock):
-    """relMSE without the worst pixels against seconds, a panel for each scene."""
+    """Draws trimmed relMSE against seconds, one panel for each scene."""
     import matplotlib
 
     rows = averaged(rows)
@@ -102,7 +111,7 @@ def plot(rows, path, clock):
     scenes = [scene for scene in scenes if len(budgets[scene]) > 1] or scenes  # a single budget makes no curve
     figure, axes = plt.subplots(1, len(scenes), figsize=(2.6 * len(scenes), 2.8), squeeze=False, layout="constrained")
     for axis, scene in zip(axes[0], scenes):
-        for method, label in LETTER.items():
+        for method, label in LABEL.items():
             points = sorted((r["seconds"], r["trimmed"]) for r in rows if (r["scene"], r["method"]) == (scene, method))
             if points:
                 axis.loglog(*zip(*points), "o-", color=COLOUR[method], label=label, markersize=3, linewidth=1.2)
@@ -110,8 +119,6 @@ def plot(rows, path, clock):
         axis.set_xlabel(f"{clock}, all included")
         axis.grid(True, which="both", linewidth=0.3)
     axes[0][0].set_ylabel("relMSE, trimmed")
-    figure.legend(
-        *axes[0][0].get_legend_handles_labels(), loc="upper center", bbox_to_anchor=(0.5, 0), ncol=len(LETTER)
-    )
+    figure.legend(*axes[0][0].get_legend_handles_labels(), loc="upper center", bbox_to_anchor=(0.5, 0), ncol=len(LABEL))
     figure.savefig(path, metadata={"Date": None}, bbox_inches="tight")
     plt.close(figure)

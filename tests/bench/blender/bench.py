@@ -1,25 +1,27 @@
 #!/usr/bin/env python3
-"""Measures the adaptive loop against its rivals: the same scenes, the same seconds, one machine.
+"""Compares the adaptive loop with other methods on the same scenes, in the same seconds, on one machine.
 
-(a) uniform   the same number of samples in every pixel, then `polyrecon denoise`
-(b) adaptive  adaptive.py
-(c) cycles    Cycles' adaptive sampling, its noise threshold tuned to the seconds, then Open Image Denoise
-(d) oidn      uniform samples, then Open Image Denoise (albedo, normal, accurate prefilter, as in (c))
-(e) prior     (b) --with-prior: Open Image Denoise's picture of each half goes into the reconstruction
-(f) uniform_prior  (a) with that
+(a) uniform        the same number of samples in every pixel, then `polyrecon denoise`
+(b) adaptive       pipelines/blender/adaptive.py
+(c) cycles         Cycles' adaptive sampling, then Open Image Denoise; the noise threshold is tuned to the seconds
+(d) oidn           uniform samples, then Open Image Denoise (albedo, normal, accurate prefilter, as in (c))
+(e) prior          (b) --with-prior: Open Image Denoise's picture of each half is an input of the reconstruction
+(f) uniform_prior  (a) with such a prior
 
-Seconds are those of the whole command: start-up, rendering, merging, reconstruction. (b) and (e) get the budget, the others are
-tuned until they take as long as (b) took. On a machine that is busy with other work --clock cpu counts the processor
-seconds of all processes instead; all are then tuned to the budget, (b) by its samples. References are rendered once, with other seeds, and kept; so are all
-results: run it again to go on, or with another budget to add to the table. With --draws every cell is made with so many
-seeds of Cycles: its error is then their geometric mean.
+The seconds are those of the whole command: start-up, rendering, merging, reconstruction. (b) and (e) get them as their
+budget; the others are tuned until they take as long as (b) took. On a machine that is busy with other work, --clock cpu
+counts the processor seconds of all processes instead; then all methods are tuned to the budget, (b) by its samples.
 
-  bench.py                                           all of it; hours the first time, nearly all for the references
+References are rendered once, with other seeds, and kept. So are all results: run the bench again to continue it, or
+with another budget to add rows to the table. With --draws every cell is made with so many seeds of Cycles, and its
+error is their geometric mean.
+
+  bench.py                                           everything; hours the first time, nearly all for the references
   bench.py glass fan --seconds 10,30 --size 320x180
-  bench.py --methods adaptive,uniform --draws 3      how much is the luck of one seed
-  bench.py shot.blend --size 320x180                 a file of one's own, whatever engine it is set to, by Cycles
-  bench.py --references                              only these
-  bench.py --stop-after 90                           a slice; the next call goes on
+  bench.py --methods adaptive,uniform --draws 3      how much depends on the seed
+  bench.py shot.blend --size 320x180                 any file, rendered by Cycles whatever engine it is set to
+  bench.py --references                              only the references
+  bench.py --stop-after 90                           some of the runs; the next call continues
 """
 
 import argparse
@@ -31,75 +33,81 @@ import shutil
 import sys
 import time
 
-if not __package__:  # run as a script from a checkout
-    sys.path[0] = str(pathlib.Path(__file__).resolve().parents[2])
-    __package__ = "pipelines.blender"
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3]))
+from pipelines.common import process
+from pipelines.common.errors import DriverError, ExitCode, run_main
+from pipelines.common.polyrecon_cli import Polyrecon
+from tests.bench.blender import report
 
-from ..common import process
-from ..common.errors import DriverError, ExitCode, run_main
-from ..common.polyrecon_cli import Polyrecon
-from . import bench_report
-
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-HERE = pathlib.Path(__file__).resolve().parent
+ROOT = pathlib.Path(__file__).resolve().parents[3]
+DRIVERS = ROOT / "pipelines" / "blender"
+RENDER = pathlib.Path(__file__).resolve().with_name("render.py")
 SCENES = ("gallery", "glass", "meadow", "fan")
-METHODS = ("uniform", "adaptive", "cycles", "oidn", "prior", "uniform_prior")
-LOOPS = ("adaptive", "prior")  # given a budget; the others are tuned to it
-PARTS = 8  # subsets of (a)
-REFERENCE_STEP, FIRST_REFERENCE_SEED = 64, 1001  # samples of one render; each has a seed of its own
-DRAW_SEEDS = 10000  # from one draw's seed to the next one's; the loop takes a new seed every 256 samples
-MOST_SAMPLES = 1 << 12  # of one pixel by (c): what Blender sets unasked
-TOLERANCE, TRIES = 0.08, 4  # how near the seconds have to come, and how often to try
+LOOPS = ("adaptive", "prior")  # these get a budget; the others are tuned to it
+PARTS = 8  # subsets of samples that (a) renders
+# A reference is the mean of renders with so many samples, each with its own seed.
+REFERENCE_STEP, FIRST_REFERENCE_SEED = 64, 1001
+DRAW_SEEDS = 10000  # distance of two draws' seeds; the loop takes a new seed every 256 samples
+MAX_SAMPLES = 1 << 12  # samples of one pixel in (c): Blender's default
+TOLERANCE, TRIES = 0.08, 4  # a run is tuned when its seconds are as near as this, or after so many tries
 
 
 def arguments(words):
     parser = argparse.ArgumentParser(
         prog="bench.py", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("scenes", nargs="*", metavar="SCENE", help=f"of: {', '.join(SCENES)} (all), or a .blend file")
+    parser.add_argument("scenes", nargs="*", metavar="SCENE", help=f"{', '.join(SCENES)} (all), or a .blend file")
     parser.add_argument("--size", default="320x180")
-    parser.add_argument("--seconds", default="15,45", help="budgets (%(default)s)")
-    parser.add_argument("--clock", choices=("wall", "cpu"), default="wall", help="what the seconds are (wall)")
-    parser.add_argument("--methods", default=",".join(METHODS), help="(%(default)s)")
+    parser.add_argument("--seconds", default="15,45", help="budgets, with commas between (%(default)s)")
     parser.add_argument(
-        "--reference-spp", type=int, default=1024, help="a multiple of %d (%%(default)s)" % REFERENCE_STEP
+        "--clock", choices=("wall", "cpu"), default="wall", help="wall clock or processor seconds (wall)"
     )
-    parser.add_argument("--draws", type=int, default=1, help="seeds for each cell (%(default)s: the file's own)")
+    parser.add_argument("--methods", default=",".join(METHODS), help="(%(default)s)")
+    parser.add_argument("--reference-spp", type=int, default=1024, help=f"a multiple of {REFERENCE_STEP} (%(default)s)")
+    parser.add_argument(
+        "--draws", type=int, default=1, help="seeds for each cell (%(default)s; the first is the file's)"
+    )
     parser.add_argument("--references", action="store_true", help="render the references and nothing else")
-    parser.add_argument("--stop-after", type=float, default=math.inf, metavar="SECONDS", help="begin no run after this")
-    parser.add_argument("--work", type=pathlib.Path, default=ROOT / "out" / "bench", help="folder for all files")
-    parser.add_argument("--docs", type=pathlib.Path, help="write table and plot here (docs/results/adaptive.md)")
-    parser.add_argument("--python", default=sys.executable, help="a Python with bpy 5 (this one)")
+    parser.add_argument("--stop-after", type=float, default=math.inf, metavar="SECONDS", help="start no run after this")
+    parser.add_argument(
+        "--work", type=pathlib.Path, default=ROOT / "out" / "bench", help="folder of all files (%(default)s)"
+    )
+    parser.add_argument(
+        "--docs",
+        type=pathlib.Path,
+        help="write the table into this page and the plot next to it (docs/results/adaptive.md)",
+    )
+    parser.add_argument("--python", default=sys.executable, help="a Python that has the module bpy 5 (this one)")
     parser.add_argument("--polyrecon", help="the program")
     options = parser.parse_args(words)
     options.scenes = options.scenes or list(SCENES)
     options.methods = options.methods.split(",")
-    first = "adaptive" if options.clock == "wall" else "uniform"  # the others are tuned by what these taught
+    first = "adaptive" if options.clock == "wall" else "uniform"  # the others are tuned by its results
     options.methods.sort(key=lambda method: method != first)
-    ours = [scene for scene in options.scenes if not scene.endswith(".blend")]
-    for given, known in ((ours, SCENES), (options.methods, METHODS)):
+    files = [scene for scene in options.scenes if scene.endswith(".blend")]
+    scenes = [scene for scene in options.scenes if scene not in files]
+    for given, known in ((scenes, SCENES), (options.methods, METHODS)):
         if unknown := sorted(set(given) - set(known)):
             parser.error(f"{', '.join(unknown)}: not one of {', '.join(known)}")
     names = [pathlib.Path(scene).stem for scene in options.scenes]
-    if len(set(names)) < len(names) or {pathlib.Path(s).stem for s in options.scenes if s.endswith(".blend")} & set(
-        SCENES
-    ):
-        parser.error("a .blend file is known by its name, which another scene has: copy it to one of its own")
+    if len(set(names)) < len(names) or {pathlib.Path(file).stem for file in files} & set(SCENES):
+        parser.error("two scenes have the same name: copy the .blend file to another name")
     if options.reference_spp < 2 * REFERENCE_STEP or options.reference_spp % REFERENCE_STEP:
+        least = 2 * REFERENCE_STEP
         parser.error(
-            f"--reference-spp {options.reference_spp}: a multiple of {REFERENCE_STEP}, {2 * REFERENCE_STEP} at least"
+            f"--reference-spp {options.reference_spp}: must be a multiple of {REFERENCE_STEP}, {least} at least"
         )
     if options.draws < 1:
-        parser.error(f"--draws {options.draws}: 1 at least")
+        parser.error(f"--draws {options.draws}: must be at least 1")
     try:
         options.seconds = sorted(float(word) for word in options.seconds.split(","))
     except ValueError:
-        parser.error(f"--seconds {options.seconds}: numbers with commas between them")
+        parser.error(f"--seconds {options.seconds}: write numbers with commas between them")
     return options
 
 
-class Stopped(Exception):
-    """--stop-after: what is still to do waits for the next call."""
+class DeadlinePassedError(Exception):
+    """The seconds of --stop-after have passed; the next call does the remaining runs."""
 
 
 class Deadline:
@@ -107,14 +115,14 @@ class Deadline:
         self.end, self.begun = time.monotonic() + seconds, False
 
     def check(self):
-        """Before each run. The first one of a call is always made, so that every call gets on."""
+        """Is called before each run. A call always makes its first run, so that repeated calls finish."""
         if self.begun and time.monotonic() > self.end:
-            raise Stopped
+            raise DeadlinePassedError
         self.begun = True
 
 
 class Scene:
-    """The files of one scene, rendered with the seed of one draw (1: the file's own)."""
+    """The files of one scene, rendered with the seed of one draw. Draw 1 has the seed of the scene file."""
 
     def __init__(self, scene, options, polyrecon, draw=1):
         self.source = pathlib.Path(scene).resolve() if scene.endswith(".blend") else None
@@ -127,16 +135,16 @@ class Scene:
         self.reference = self.folder / f"ref_{options.reference_spp}.exr"
 
     def build(self):
-        """Of several draws of a scene the first one comes first."""
+        """Makes the .blend file. The first draw must be built before the others of the same scene."""
         if self.blend.exists():
             return
         print(f"{self.name}: building the scene", flush=True)
         first, made = self.folder / "first.exr", self.folder / "making.blend"
         words = [first, "--spp=1", f"--size={self.options.size}", "--save-blend", made]
         if self.draw > 1:
-            words = [HERE / "bench_render.py", self.first_blend, *words, f"--seed={self.draw * DRAW_SEEDS}"]
+            words = [RENDER, self.first_blend, *words, f"--seed={self.draw * DRAW_SEEDS}"]
         elif self.source:
-            words = [HERE / "bench_render.py", self.source, *words]
+            words = [RENDER, self.source, *words]
         else:
             words = [ROOT / "samples" / "scenes" / "render.py", self.name, *words]
         run([self.options.python, *words])
@@ -147,7 +155,7 @@ class Scene:
         return f"{method}_{budget:g}" + (f"_draw_{self.draw}" if self.draw > 1 else "") + ".exr"
 
     def render_reference(self, deadline):
-        """Renders with seeds of their own, each kept as soon as it is there; their mean, and the variance of the mean."""
+        """Merges renders with different seeds: their mean, and the variance of the mean. Finished renders are kept."""
         if self.reference.exists():
             return
         files = []
@@ -164,30 +172,30 @@ class Scene:
         making.replace(self.reference)
 
     def render(self, target, **settings):
-        """bench_render.py; returns the seconds that rendering itself took, {"wall", "cpu"}."""
+        """Runs render.py; returns the seconds that rendering itself took, {"wall", "cpu"}."""
         timing = self.folder / "timing.json"
         words = []
         for name, value in settings.items():
             words += ["--" + name] if value is True else [f"--{name}", str(value)]
-        run([self.options.python, HERE / "bench_render.py", self.blend, target, "--timing", timing, *words])
+        run([self.options.python, RENDER, self.blend, target, "--timing", timing, *words])
         return json.loads(timing.read_text())
 
     def score(self, image):
-        """relMSE and what else `polyrecon compare` tells of an image."""
-        told = json.loads(self.polyrecon.run("compare", image, self.reference, "--json"))["results"][0]
-        return {key: told[key] for key in ("relMSE", "trimmed", "energy", "bad")}
+        """The figures of an image by `polyrecon compare`: relMSE and others."""
+        result = json.loads(self.polyrecon.run("compare", image, self.reference, "--json"))["results"][0]
+        return {key: result[key] for key in ("relMSE", "trimmed", "energy", "bad")}
 
 
 def run(words):
     code, output, errors = process.run(words)
     if code != 0:
-        said = [line for line in (errors or output).splitlines() if line.strip()]
-        raise DriverError(ExitCode.RENDERER, f"{pathlib.Path(words[1]).name}: {said[-1] if said else f'code {code}'}")
+        lines = [line for line in (errors or output).splitlines() if line.strip()] or [f"ended with code {code}"]
+        raise DriverError(ExitCode.RENDERER, f"{pathlib.Path(words[1]).name}: {lines[-1]}")
     return output
 
 
-# Each method renders and reconstructs scene -> image, given its knob; returns the seconds that its knob governs, which
-# the tuning needs, and whatever else it can tell.
+# Each method makes the image of a scene for a value of its knob. It returns the seconds that depend on the knob, for
+# the tuning (None: all seconds), and further figures for the row of results.
 
 
 def uniform(scene, image, samples):
@@ -206,13 +214,22 @@ def oidn(scene, image, samples):
 
 
 def cycles(scene, image, threshold):
-    return scene.render(image, spp=MOST_SAMPLES, threshold=threshold, denoise=True), {"threshold": threshold}
+    return scene.render(image, spp=MAX_SAMPLES, threshold=threshold, denoise=True), {"threshold": threshold}
 
 
 def uniform_prior(scene, image, samples):
     merged = scene.folder / "merged_prior.exr"
     words = ["-o", merged, "--spp", str(samples), "--parts", str(PARTS), "--bpy", "--with-prior", "--quiet"]
-    run([scene.options.python, HERE / "render_passes.py", scene.blend, *words, "--polyrecon", scene.polyrecon.program])
+    run(
+        [
+            scene.options.python,
+            DRIVERS / "render_passes.py",
+            scene.blend,
+            *words,
+            "--polyrecon",
+            scene.polyrecon.program,
+        ]
+    )
     scene.polyrecon.run("denoise", "-i", merged, "-o", image, "--quiet")
     return None, {"spp": samples}
 
@@ -222,24 +239,32 @@ def prior(scene, image, amount):
 
 
 def adaptive(scene, image, amount, *words):
-    """amount: seconds, or samples per pixel by --clock cpu."""
+    """amount: seconds, or samples per pixel with --clock cpu."""
     passes = scene.folder / "passes"
     shutil.rmtree(passes, ignore_errors=True)
     budget = "--budget-seconds" if scene.options.clock == "wall" else "--budget-spp"
-    run(
-        [scene.options.python, HERE / "adaptive.py", scene.blend, "-o", image, budget, f"{amount:g}", "--bpy"]
-        + ["--passes-dir", passes, "--polyrecon", scene.polyrecon.program, *words]
-    )
+    words = [budget, f"{amount:g}", "--passes-dir", passes, "--polyrecon", scene.polyrecon.program, *words]
+    run([scene.options.python, DRIVERS / "adaptive.py", scene.blend, "-o", image, "--bpy", *words])
     journal = json.loads((passes / "journal.json").read_text())
     rendering = sum(part["seconds"] for part in journal["parts"])
     return None, {"spp": sum(part["samples"] for part in journal["parts"]), "passes_seconds": rendering}
 
 
+METHODS = {
+    "uniform": uniform,
+    "adaptive": adaptive,
+    "cycles": cycles,
+    "oidn": oidn,
+    "prior": prior,
+    "uniform_prior": uniform_prior,
+}
+
+
 def measure(scene, method, budget, knob):
-    """One run and its seconds, then its score."""
+    """Makes one run; returns its row of results."""
     trial = scene.folder / "trial.exr"
     wall, cpu = time.perf_counter(), children_seconds()
-    governed, details = globals()[method](scene, trial, knob)
+    governed, details = METHODS[method](scene, trial, knob)
     spent = {"wall": time.perf_counter() - wall, "cpu": children_seconds() - cpu}
     seconds = spent[scene.options.clock]
     rendering = governed[scene.options.clock] if governed else seconds
@@ -260,13 +285,13 @@ def measure(scene, method, budget, knob):
 
 
 def children_seconds():
-    """Processor seconds of all children and their children that have ended."""
+    """Processor seconds of all child processes that have ended, and of their children."""
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
     return used.ru_utime + used.ru_stime
 
 
 def next_samples(tries, target):
-    """Seconds are linear in samples, beside what is fixed."""
+    """Seconds grow linearly with samples, from a fixed part on."""
     if not tries:
         return 2 * PARTS
     last = tries[-1]
@@ -279,8 +304,10 @@ def next_samples(tries, target):
 
 
 def next_threshold(tries, target):
-    """Rendering takes ~ threshold^-slope seconds, 2 where the noise falls with the root of the samples; the slope is that of
-    the last two tries. Tries begin at a coarse one, as those are cheap, and go down in steps that a flat start cannot stretch."""
+    """Rendering takes ~ threshold^-slope seconds; slope = 2 where the noise falls with the root of the samples.
+
+    The slope is that of the last two tries, within limits, since it is low as long as the threshold is coarse. The
+    first threshold is coarse because such renders are short."""
     if not tries:
         return 0.1
     last, slope = tries[-1], 2.0
@@ -291,16 +318,16 @@ def next_threshold(tries, target):
     return last["knob"] * (last["rendering"] / wanted) ** (1 / slope)
 
 
-NEXT_KNOB = {method: next_samples for method in METHODS} | {"cycles": next_threshold}
+NEXT_KNOB = dict.fromkeys(METHODS, next_samples) | {"cycles": next_threshold}
 
 
 class Results:
-    """Every run that was made, in a file that is whole at any moment."""
+    """The rows of all runs, in a file that is complete at any moment."""
 
     def __init__(self, path):
         self.path = path
         kept = json.loads(path.read_text()) if path.exists() else []
-        self.rows = [{"draw": 1} | row for row in kept]  # files of before draws were told apart have none
+        self.rows = [{"draw": 1} | row for row in kept]  # older files have no such key
 
     def add(self, row):
         self.rows.append(row)
@@ -309,27 +336,27 @@ class Results:
         making.replace(self.path)
 
     def of_all(self, scene, method):
-        """Runs of all budgets and draws, which teach how dear a sample is."""
+        """Runs of all budgets and draws. They show what a sample costs."""
         return [row for row in self.rows if (row["scene"], row["method"]) == (scene.name, method)]
 
     def of(self, scene, method, budget):
         return [row for row in self.of_all(scene, method) if (row["draw"], row["budget"]) == (scene.draw, budget)]
 
     def best(self, scene, method, budget):
-        """The run that came nearest to the seconds; None where there is none."""
+        """The run that came nearest to the seconds; None without runs."""
         target = seconds_of(self, scene, budget)
         return min(self.of(scene, method, budget), key=lambda row: abs(row["seconds"] - target), default=None)
 
 
 def next_run(results, scene, method, budget):
-    """The knob of the next run of a cell, None when it is done."""
+    """The knob of the next run of a cell; None if the cell is done."""
     runs = results.of(scene, method, budget)
     if method in LOOPS and scene.options.clock == "wall":
         return None if runs else budget
     target = seconds_of(results, scene, budget)
     if runs and (len(runs) >= TRIES or any(abs(row["seconds"] / target - 1) < TOLERANCE for row in runs)):
         return None
-    # The first try at a budget starts from what the other budgets and draws taught.
+    # The first try at a budget starts from the runs of other budgets and draws.
     known = runs or results.of_all(scene, method)
     if method in LOOPS:
         known = with_rate_of_uniform(known, results.of_all(scene, "uniform"), target)
@@ -338,7 +365,7 @@ def next_run(results, scene, method, budget):
 
 
 def with_rate_of_uniform(runs, uniform_runs, target):
-    """A sample of (b) costs about what it costs (a); before any run of (b), half of the seconds are its samples."""
+    """A sample costs (b) about as much as (a). Before any run of (b), half of its seconds are assumed to be samples."""
     if not uniform_runs:
         return runs
     rate = uniform_runs[-1]["rendering"] / uniform_runs[-1]["knob"]
@@ -347,7 +374,7 @@ def with_rate_of_uniform(runs, uniform_runs, target):
 
 
 def seconds_of(results, scene, budget):
-    """The seconds to compare at: by the clock on the wall, what (b) took."""
+    """The seconds at which the methods are compared: by the wall clock, those that (b) took."""
     runs = results.of(scene, "adaptive", budget) if scene.options.clock == "wall" else []
     return runs[0]["seconds"] if runs else budget
 
@@ -359,17 +386,17 @@ def bench(words):
         draws = range(1, options.draws + 1)
         scenes = [Scene(name, options, polyrecon, draw) for name in options.scenes for draw in draws]
         rows = work(options, scenes, Deadline(options.stop_after))
-    except Stopped:
-        print("stopped; the next call goes on")
+    except DeadlinePassedError:
+        print("stopped; the next call continues")
         return
     if rows:
-        print(bench_report.table(rows))
+        print(report.table(rows))
         if options.docs:
-            bench_report.write(options.docs, rows, options)
+            report.write(options.docs, rows, options)
 
 
 def work(options, scenes, deadline):
-    """Does what is still to do; returns the rows of the table."""
+    """Makes the runs that are missing; returns the rows of the table."""
     for scene in scenes:
         scene.build()
         scene.render_reference(deadline)
@@ -388,7 +415,7 @@ def work(options, scenes, deadline):
 
 
 def keep_nearest(results, scene, row):
-    """Adds a run; its picture stays where no other run of the cell came nearer to the seconds."""
+    """Adds a run. Its picture is kept if no other run of the cell came nearer to the seconds."""
     results.add(row)
     if results.best(scene, row["method"], row["budget"]) is row:
         (scene.folder / "trial.exr").replace(scene.folder / row["image"])
