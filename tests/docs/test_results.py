@@ -6,13 +6,17 @@ import re
 import shutil
 import sys
 import tempfile
+import types
 import unittest
+from unittest import mock
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 RESULTS = ROOT / "docs" / "results"
 sys.path.append(str(ROOT / "tests" / "bench"))
 
 import accuracy  # noqa: E402
+
+from tests.bench.blender import report  # noqa: E402
 
 MARK = re.compile(r"<!-- (\w+): made by (\S+) -->\n\n(.*?)\n\n<!-- end of (\w+) -->", re.DOTALL)
 
@@ -42,7 +46,8 @@ class Results(unittest.TestCase):
                 self.assertTrue((ROOT / script).is_file(), f"{page}: {script}")
                 names.append((page.name, begin))
         written = [("accuracy.md", name) for name in ("budget", "parts", "numbers", "steps")]
-        self.assertEqual(sorted([*written, ("reliability.md", "reliability")]), sorted(names))
+        written += [("adaptive.md", "bench"), ("reliability.md", "reliability")]
+        self.assertEqual(sorted(written), sorted(names))
 
     def test_accuracy_writes_its_four_tables_and_nothing_else(self):
         with tempfile.TemporaryDirectory() as folder:
@@ -64,6 +69,22 @@ class Results(unittest.TestCase):
         self.assertEqual(
             set(accuracy.SAMPLES), {line.split(" | ")[0].strip("| ") for line in tables["steps"].splitlines()[2:]}
         )
+
+    def test_the_bench_writes_its_table_and_nothing_else(self):
+        rows = [
+            {"scene": "glass", "budget": 30, "method": method, "relMSE": error, "trimmed": error / 2, "seconds": 31}
+            for method, error in (("uniform", 0.004), ("adaptive", 0.003))
+        ]
+        options = types.SimpleNamespace(size="8x8", reference_spp=16, draws=1, clock="wall")
+        with tempfile.TemporaryDirectory() as folder, mock.patch.object(report, "plot") as plot:
+            page = pathlib.Path(shutil.copy(RESULTS / "adaptive.md", folder))
+            before = page.read_text(encoding="utf-8")
+            report.write(page, rows, options)
+            after = page.read_text(encoding="utf-8")
+            plot.assert_called_once_with(rows, page.with_suffix(".svg"), "seconds")
+        self.assertEqual(MARK.sub("", before), MARK.sub("", after))
+        [(_, _, table, _)] = MARK.findall(after)
+        self.assertEqual("0.75 / 0.75", row(table, "glass")[-1])
 
     def test_a_setting_that_no_sweep_has_is_an_error(self):
         with self.assertRaisesRegex(SystemExit, "no such part"):

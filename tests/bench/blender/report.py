@@ -27,7 +27,7 @@ RATIOS = (
     ("prior", "uniform_prior"),
     ("prior", "cycles"),
 )
-BEGIN, END = "<!-- bench: begin -->", "<!-- bench: end -->"
+BEGIN, END = "<!-- bench: made by tests/bench/blender/bench.py -->", "<!-- end of bench -->"
 
 
 def averaged(rows):
@@ -94,7 +94,7 @@ def write(document, rows, options):
     picture = document.with_suffix(".svg")
     plot(rows, picture, clock)
     body = f"{made}; relMSE / trimmed ({clock}):\n\n{table(rows)}\n\n![Error against seconds]({picture.name})"
-    document.write_text(f"{head}{BEGIN}\n{body}\n{END}{tail}")
+    document.write_text(f"{head}{BEGIN}\n\n{body}\n\n{END}{tail}")
 
 
 def plot(rows, path, clock):
