@@ -1,10 +1,10 @@
-"""Types of command line arguments."""
+"""Types of command line arguments, for argparse."""
 
 import argparse
 
 
-def positive(word):
-    value = float(word)
+def positive(text):
+    value = float(text)
     if not 0 < value < float("inf"):
-        raise argparse.ArgumentTypeError(f"{word}: not above 0")
+        raise argparse.ArgumentTypeError(f"{text}: must be a number above 0")
     return value

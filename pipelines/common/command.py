@@ -1,4 +1,4 @@
-"""Command line options that all drivers of a renderer have, and the frames that they name."""
+"""The command line options of every driver of a renderer, and the loop over the frames that they name."""
 
 import pathlib
 
@@ -9,24 +9,31 @@ from .progress import STYLES, Progress
 
 
 def add_frame_arguments(parser):
-    """What to write, for which frames, and how to tell of it."""
+    """Adds the options for output, frames and progress."""
     parser.add_argument(
-        "-o", "--output", required=True, metavar="OUT.exr", help="picture to write; #### or %%04d is the frame"
+        "-o", "--output", required=True, metavar="OUT.exr", help="EXR file to write; #### or %%04d stands for the frame"
     )
     frames = parser.add_mutually_exclusive_group()
-    frames.add_argument("--frame", type=int, help="frame to render, in place of the scene's own")
+    frames.add_argument("--frame", type=int, help="frame to render (default: the scene's current frame)")
     frames.add_argument("--frames", help="frames to render: 1-10,20-40x2")
-    parser.add_argument("--polyrecon", metavar="PATH", help="polyrecon to run ($POLYRECON, else `polyrecon`)")
+    parser.add_argument("--polyrecon", metavar="PATH", help="the program (default: $POLYRECON, else `polyrecon`)")
     parser.add_argument(
-        "--passes-dir", type=pathlib.Path, metavar="DIR", help="for all that is made on the way (OUT.passes)"
+        "--passes-dir",
+        type=pathlib.Path,
+        metavar="DIR",
+        help="folder for passes and other intermediate files (default: OUT.passes)",
     )
-    parser.add_argument("--progress", choices=STYLES, default="auto", help="json: one object a line on standard error")
+    parser.add_argument(
+        "--progress", choices=STYLES, default="auto", help="json: one JSON object a line on standard error"
+    )
     parser.add_argument("-q", "--quiet", action="store_true", help="print nothing but errors")
 
 
 def each_frame(options, renderer, work):
-    """Calls work(frame, output, passes, polyrecon, progress) for every frame asked for: its picture and the folder of its
-    passes. Closes the renderer."""
+    """Calls work(frame, output, passes, polyrecon, progress) for every frame of the options, then closes the renderer.
+
+    output is the path of the frame's picture and passes the folder of its passes. frame is None for the scene's current
+    frame."""
     try:
         frames = parse_ranges(options.frames) if options.frames else [options.frame]
         polyrecon = Polyrecon(options.polyrecon)
@@ -42,7 +49,7 @@ def each_frame(options, renderer, work):
 
 
 def _output_of(options, frame):
-    """The picture of one frame. The name of a single frame needs no place for its number."""
+    """The path of one frame's picture. A single frame needs no place for its number."""
     if frame is not None and is_pattern(options.output):
         return pathlib.Path(frame_path(options.output, frame))
     if options.frames:

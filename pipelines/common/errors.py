@@ -1,4 +1,4 @@
-"""One kind of error for all drivers; its code is the exit code (README: Exit codes)."""
+"""The error type of all drivers. Its code is the exit code (docs/reference/exit_codes.md)."""
 
 import enum
 import signal
@@ -20,7 +20,7 @@ class ExitCode(enum.IntEnum):
 
 
 class DriverError(Exception):
-    """Something that the user can mend. The text is one line: what, where, what to do."""
+    """A problem that the user can solve. The text is one line: what happened, to what, and what to do."""
 
     def __init__(self, code, text):
         super().__init__(text)
@@ -28,7 +28,7 @@ class DriverError(Exception):
 
 
 class Terminated(BaseException):
-    """SIGTERM arrived: like KeyboardInterrupt, it unwinds through every `finally`."""
+    """The process received SIGTERM. Like KeyboardInterrupt, it unwinds the stack through every `finally`."""
 
 
 def _terminate(*_):
@@ -36,8 +36,8 @@ def _terminate(*_):
 
 
 def run_main(program, main, words=None):
-    """Runs main(words) and returns the exit code; every failure is one line on standard error that begins with the
-    program's name. What argparse says of wrong use (2) passes through."""
+    """Runs main(words) and returns the exit code. Every failure is one line on standard error that begins with the
+    program's name. argparse itself reports wrong use, with exit code 2."""
     signal.signal(signal.SIGTERM, _terminate)
     try:
         main(words)

@@ -1,4 +1,4 @@
-"""EXR files as numpy arrays, by OpenImageIO."""
+"""Reads and writes EXR files as numpy arrays, with OpenImageIO."""
 
 import os
 import pathlib
@@ -11,8 +11,10 @@ from .errors import DriverError, ExitCode
 
 
 def read(path, wanted=None):
-    """All channels of all parts of a file: {full name: float32 array (height, width)}, in file order. `wanted(name)`
-    says which ones; the first part that has a name wins."""
+    """The channels of all parts of a file: {full name: float32 array (height, width)}, in file order.
+
+    If `wanted` is given, only the channels with wanted(name) are read. Of parts that have a name in common, the first
+    one counts."""
     file = oiio.ImageInput.open(os.fspath(path))
     if not file:
         raise DriverError(ExitCode.BAD_INPUT, f"{path}: {oiio.geterror()}")
@@ -35,7 +37,7 @@ def read(path, wanted=None):
 
 
 def metadata(path):
-    """Attributes of the first part: {name: value}."""
+    """The attributes of the first part: {name: value}."""
     file = oiio.ImageInput.open(os.fspath(path))
     if not file:
         raise DriverError(ExitCode.BAD_INPUT, f"{path}: {oiio.geterror()}")
@@ -45,7 +47,7 @@ def metadata(path):
 
 
 def write(path, channels, attributes=None, compression="zip:2"):
-    """Writes one part of 32-bit floats: {name: array (height, width)}. The file appears whole or not at all."""
+    """Writes one part of 32-bit floats from {name: array (height, width)}. The file appears complete or not at all."""
     names = list(channels)
     pixels = np.stack([np.asarray(channels[name], np.float32) for name in names], axis=-1)
     height, width, count = pixels.shape

@@ -1,11 +1,11 @@
-"""Frame ranges ("1-10,20-40x2") and the names of a sequence's files ("shot.####.exr"), as the program reads them too.
+"""Frame ranges ("1-10,20-40x2") and the names of a sequence's files ("shot.####.exr"), with the rules of the program.
 
 Frame names follow the tools that write the files:
 
-- `####` stands for at least so many digits, and a minus sign comes before them: frame -5 is -0005, as Blender writes it.
+- `####` stands for at least so many digits with a minus sign before them: frame -5 is -0005, as Blender writes it.
 - `%04d` is C's format, where the sign counts as a digit: frame -5 is -005, as Nuke and OpenImageIO write it.
-- The last place of this kind in the file's name is the frame's number, as in Blender. Other places, in the name or in
-  its folders, stand for the number only where they have the very same text, as in Nuke: "####/shot.####.exr".
+- The last place of this kind in the file's name is the frame's number, as in Blender. Other places, in the name or
+  in its folders, stand for the number only where they have the very same text, as in Nuke: "####/shot.####.exr".
 
 tests/inputs/frame_names.json has examples of every rule; the tests of the program and of the drivers read it.
 """

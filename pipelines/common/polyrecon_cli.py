@@ -11,7 +11,8 @@ BUILDS = ("release", "dev")
 
 
 def find_polyrecon(given=None):
-    """--polyrecon PATH, else $POLYRECON, else on the PATH, else the build of this checkout."""
+    """The path of the program. `given` is the value of --polyrecon. Without it, $POLYRECON, the PATH and the builds of
+    this checkout are tried."""
     named = given or os.environ.get("POLYRECON")
     if named:
         if not (found := shutil.which(named)):  # a path, or a name on the PATH
@@ -23,25 +24,27 @@ def find_polyrecon(given=None):
     for build in BUILDS:
         if os.access(program := root / "build" / build / "src" / "polyrecon", os.X_OK):
             return program
-    raise DriverError(ExitCode.MISSING, "polyrecon is not on the PATH and not built here: name it by --polyrecon")
+    raise DriverError(
+        ExitCode.MISSING, "polyrecon is neither on the PATH nor built in this checkout: give --polyrecon PATH"
+    )
 
 
 class Polyrecon:
-    """polyrecon's commands as methods. A failure keeps the program's own exit code and line."""
+    """Runs commands of polyrecon. An error has the exit code and the last line of the program."""
 
     def __init__(self, path=None):
         self.program = find_polyrecon(path)
 
     def run(self, command, *words):
-        """Runs one sub-command; returns what it printed."""
+        """Runs one sub-command; returns its standard output."""
         return self.run_side_by_side(command, [words])[0]
 
-    def run_side_by_side(self, command, several):
-        """Runs one sub-command with several lists of words at the same time."""
-        answers = process.run_side_by_side([[self.program, command, *words] for words in several])
-        for code, _, errors in answers:
+    def run_side_by_side(self, command, word_lists):
+        """Runs one sub-command concurrently with each list of words; returns the standard outputs."""
+        results = process.run_side_by_side([[self.program, command, *words] for words in word_lists])
+        for code, _, errors in results:
             if code != 0:
                 lines = [line for line in errors.splitlines() if line.strip()] or [f"ended with code {code}"]
                 known = code in ExitCode.__members__.values()
                 raise DriverError(code if known else ExitCode.INTERNAL, f"polyrecon {command}: {lines[-1]}")
-        return [output for _, output, _ in answers]
+        return [output for _, output, _ in results]

@@ -1,5 +1,6 @@
-"""Children: started without a shell, in a process group of their own, and never left behind."""
+"""Child processes. Each is started without a shell, leads a process group, and ends with the driver."""
 
+import contextlib
 import os
 import signal
 import subprocess
@@ -8,46 +9,46 @@ GRACE_SECONDS = 5
 
 
 def start(words, **options):
-    """subprocess.Popen of a list of words, as the leader of a new process group."""
+    """Starts a command as the leader of a new process group; returns its subprocess.Popen."""
     return subprocess.Popen(
         [word if isinstance(word, os.PathLike) else str(word) for word in words], start_new_session=True, **options
     )
 
 
 def stop(child):
-    """Ends the child and all that it started: asked first, killed after GRACE_SECONDS."""
+    """Ends the child and all processes that it started: by SIGTERM, and by SIGKILL after GRACE_SECONDS."""
     for signal_number, seconds in ((signal.SIGTERM, GRACE_SECONDS), (signal.SIGKILL, None)):
-        try:
+        with contextlib.suppress(ProcessLookupError):
             os.killpg(child.pid, signal_number)
-        except ProcessLookupError:
-            pass
         try:
             child.wait(seconds)
             break
         except subprocess.TimeoutExpired:
             continue
-    try:  # grandchildren that outlived their parent
+    with contextlib.suppress(ProcessLookupError):  # Grandchildren may outlive their parent.
         os.killpg(child.pid, signal.SIGKILL)
-    except ProcessLookupError:
-        pass
 
 
 def run(words, timeout=None, **options):
-    """Runs a command to its end; returns (exit code, standard output, standard error). Whatever interrupts the wait,
-    a time limit (subprocess.TimeoutExpired) or a signal, the child's group is ended first."""
+    """Runs a command to its end; returns (exit code, standard output, standard error).
+
+    If a time limit (subprocess.TimeoutExpired) or a signal interrupts the wait, the child's process group is ended
+    before the exception is passed on."""
     return run_side_by_side([words], timeout, **options)[0]
 
 
 def run_side_by_side(commands, timeout=None, **options):
-    """The same for several commands at once, in their order; each prints a few lines at most."""
+    """Runs several commands concurrently; returns what `run` returns for each, in their order.
+
+    The output of each command must fit into a pipe."""
     children = []
     try:
         for words in commands:
             children.append(
                 start(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, errors="replace", **options)
             )
-        said = [child.communicate(timeout=timeout) for child in children]
-        return [(child.returncode, *texts) for child, texts in zip(children, said)]
+        outputs = [child.communicate(timeout=timeout) for child in children]
+        return [(child.returncode, *texts) for child, texts in zip(children, outputs)]
     except BaseException:
         for child in children:
             stop(child)

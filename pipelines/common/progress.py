@@ -1,4 +1,4 @@
-"""What a loop tells while it runs: a bar on a terminal, or one JSON object a line on standard error."""
+"""The progress of a driver: a bar on a terminal, or JSON objects on standard error, one a line."""
 
 import json
 import sys
@@ -7,7 +7,7 @@ STYLES = ("auto", "bar", "json", "none")
 
 
 class Progress:
-    """style: 'auto' is a bar on a terminal and nothing elsewhere."""
+    """Shows the progress in one of STYLES. 'auto' is 'bar' on a terminal and 'none' elsewhere."""
 
     def __init__(self, style="auto"):
         self.style = ("bar" if sys.stderr.isatty() else "none") if style == "auto" else style
@@ -35,8 +35,8 @@ class Progress:
             self.bar.stop()
 
     def update(self, stage, **figures):
-        """stage: what is being done. figures: frame, round, samples, error, seconds, seconds_left, done (0..1); None where
-        unknown."""
+        """stage: what is being done. figures: frame, round, samples, error, seconds, seconds_left, done (0..1); None
+        where unknown."""
         figures = {key: value for key, value in figures.items() if value is not None}
         if self.style == "json":
             print(json.dumps({"event": "progress", "stage": stage, **figures}), file=sys.stderr, flush=True)

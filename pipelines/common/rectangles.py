@@ -1,14 +1,13 @@
 """Divides a frame into rectangles for a renderer that has a fixed cost for each of them.
 
-A rectangle is cut in two where the two parts cost least, and each part is cut again, and so on (a k-d tree). A cut is kept
-if all rectangles that came of it cost less than the uncut one. Rectangles are (x0, y0, x1, y1) in pixels from the top left,
-with the end excluded.
-"""
+A rectangle is cut in two where the two parts cost least, and each part is cut again, and so on (a k-d tree). A cut is
+kept if all rectangles that came of it cost less than the uncut one. Rectangles are (x0, y0, x1, y1) in pixels from the
+top left, with the end excluded."""
 
 import numpy as np
 
-# No part is narrower than this share of the rectangle that is cut. Otherwise noise in the values is shaved off row by row,
-# and a tree of hundreds of levels gains nothing.
+# No part is narrower than this share of the rectangle that is cut. Otherwise noise in the values is shaved off row by
+# row, and a tree of hundreds of levels gains nothing.
 NARROWEST = 1 / 12
 
 

@@ -1,1 +1,1 @@
-"""Frames over machines, by engines that exist: Slurm and Open Job Description."""
+"""Distributes frames over machines, with Slurm or Open Job Description."""

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Prints what denoising a shot costs on nodes of a given kind: a Markdown table out of the measured model."""
+"""Prints what denoising a shot costs on nodes of a given kind, as a Markdown table. The figures come from the measured
+model."""
 
 import argparse
 import pathlib
@@ -10,12 +11,12 @@ if not __package__:  # run as a script from a checkout
     __package__ = "pipelines.farm"
 
 from ..common.errors import DriverError, ExitCode, run_main
-from .plan import positive, size
 from .requirements import Frame, Model, Node, threads_for
+from .submission import positive, size
 
 EXAMPLES = """\
 examples:
-  polyrecon-farm cost                                                      # 1000 frames of 4K
+  polyrecon-farm cost                                                      # for 1000 frames of 4K
   polyrecon-farm cost --size 1920x1080 --frames 240 --node-cpus 32 --node-memory 128G --price 0.03
 """
 QUALITIES = ("draft", "standard", "best")
@@ -30,7 +31,7 @@ def print_table(options):
     try:
         width, height = (int(word) for word in options.size.lower().split("x"))
     except ValueError:
-        raise DriverError(ExitCode.USAGE, f"--size {options.size}: write 3840x2160") from None
+        raise DriverError(ExitCode.USAGE, f"--size {options.size}: write it as 3840x2160") from None
     frame = Frame(width, height, options.channels, options.fit_channels)
     node = Node(options.node_cpus, options.node_memory)
     row(
@@ -51,7 +52,7 @@ def print_table(options):
         seconds = model.wall_seconds(frame, quality, threads) / options.speed
         per_hour = 3600 * tasks / seconds
         node_hours = options.frames / per_hour
-        core_hours = node_hours * node.cpus  # a node is paid whole
+        core_hours = node_hours * node.cpus  # whole nodes are paid
         row(
             quality,
             f"{request / 1e9:.1f}",
@@ -72,16 +73,22 @@ def arguments(words):
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     add = parser.add_argument
-    add("--size", default="3840x2160", metavar="WxH")
-    add("--frames", type=positive, default=1000, metavar="N")
-    add("--channels", type=positive, default=42, metavar="N", help="of a file, in all (default: 42)")
-    add("--fit-channels", type=positive, default=41, metavar="N", help="that take part in the fit (default: 41)")
-    add("--nodes", type=positive, default=10, metavar="N")
-    add("--node-cpus", type=positive, default=64, metavar="N")
-    add("--node-memory", type=size, default="256G", metavar="SIZE")
-    add("--price", type=float, default=0.04, metavar="P", help="of a core-hour (default: 0.04)")
-    add("--speed", type=float, default=1, metavar="F", help="of a node's core over that of the measured machine")
-    add("--model", metavar="FILE", help="constants that tests/bench/farm_model.py measured on your nodes")
+    add("--size", default="3840x2160", metavar="WxH", help="size of a frame (3840x2160)")
+    add("--frames", type=positive, default=1000, metavar="N", help="frames of the shot (1000)")
+    add("--channels", type=positive, default=42, metavar="N", help="channels of a file (42)")
+    add("--fit-channels", type=positive, default=41, metavar="N", help="channels that take part in the fit (41)")
+    add("--nodes", type=positive, default=10, metavar="N", help="nodes that work on it (10)")
+    add("--node-cpus", type=positive, default=64, metavar="N", help="processors of a node (64)")
+    add("--node-memory", type=size, default="256G", metavar="SIZE", help="memory of a node (256G)")
+    add("--price", type=float, default=0.04, metavar="P", help="price of a core-hour (0.04)")
+    add(
+        "--speed",
+        type=float,
+        default=1,
+        metavar="F",
+        help="speed of a node's core, relative to the measured machine (1)",
+    )
+    add("--model", metavar="FILE", help="constants of your nodes, measured by tests/bench/farm_model.py")
     return parser.parse_args(words)
 
 

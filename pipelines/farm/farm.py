@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""polyrecon on many machines: one command for what this folder holds."""
+"""The command polyrecon-farm: its sub-commands are modules of this folder."""
 
 import pathlib
 import sys
@@ -23,9 +23,9 @@ def main(words=None):
     words = sys.argv[1:] if words is None else words
     if words and words[0] in COMMANDS:
         return COMMANDS[words[0]].main(words[1:])
-    asked = bool(words) and words[0] in ("-h", "--help")
-    print(usage(), file=sys.stdout if asked else sys.stderr)
-    return ExitCode.DONE if asked else ExitCode.USAGE
+    help_requested = bool(words) and words[0] in ("-h", "--help")
+    print(usage(), file=sys.stdout if help_requested else sys.stderr)
+    return ExitCode.DONE if help_requested else ExitCode.USAGE
 
 
 if __name__ == "__main__":

@@ -1,20 +1,19 @@
-"""The description of a job that all its tasks read: one JSON file in the job's folder."""
+"""The description of a job, which all its tasks read: a JSON file in the job's folder."""
 
 import dataclasses
 import json
-import os
 import pathlib
 import re
-import tempfile
 from dataclasses import dataclass, field
 
 from ..common.errors import DriverError, ExitCode
+from ..common.files import write_text
 from ..common.frame_names import ranges_text
 
 JOB_FILE = "job.json"
 RECORDS = "records"
 REPORT_FILE = "report.json"
-COMPLAINT = re.compile(r"polyrecon: frame (-?\d+): (.*)")  # of one frame, by the program
+FRAME_ERROR = re.compile(r"polyrecon: frame (-?\d+): (.*)")  # the program's line about one frame
 
 
 def chunks(frames, size):
@@ -24,22 +23,22 @@ def chunks(frames, size):
 
 @dataclass
 class Job:
-    input: str  # pattern, absolute
-    output: str  # pattern, absolute
+    input: str  # absolute pattern of the renders
+    output: str  # absolute pattern of the results
     frames: list
-    polyrecon: str  # the program
-    options: list = field(default_factory=list)  # further words of `polyrecon denoise`
+    polyrecon: str  # path of the program
+    options: list = field(default_factory=list)  # further options of `polyrecon denoise`
     chunk: int = 1  # frames of a task
-    threads: int = 0
-    memory: int = 0  # the program's --max-memory, bytes; 0: its own default
-    request: int = 0  # bytes that each task was given
+    threads: int = 0  # of a task; 0: the program's default
+    memory: int = 0  # --max-memory in bytes; 0: the program's default
+    request: int = 0  # bytes that the engine reserves for a task
 
     @property
     def chunks(self):
         return chunks(self.frames, self.chunk)
 
     def words(self, frames, *more):
-        """The command that denoises these frames, those that are finished already left out."""
+        """The command that denoises those of these frames that are not finished."""
         words = [self.polyrecon, "denoise", "-i", self.input, "-o", self.output]
         words += ["--frames", ranges_text(frames), "--skip-existing"]
         if self.threads:
@@ -59,17 +58,14 @@ class Job:
         except OSError as error:
             raise DriverError(ExitCode.MISSING, f"{path}: {error.strerror}") from error
         except (ValueError, TypeError) as error:
-            raise DriverError(ExitCode.BAD_INPUT, f"{path}: not the file of a job ({error})") from error
+            raise DriverError(ExitCode.BAD_INPUT, f"{path}: is not the description of a job ({error})") from error
 
 
 def write_json(path, value):
-    """The file appears whole or not at all."""
+    """Writes a JSON file, and its folder if that is missing. The file appears complete or not at all."""
     path = pathlib.Path(path)
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        handle, temporary = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
-        with os.fdopen(handle, "w") as file:
-            json.dump(value, file, indent=1)
-        os.replace(temporary, path)
     except OSError as error:
-        raise DriverError(ExitCode.OUTPUT, f"{path}: {error.strerror}") from error
+        raise DriverError(ExitCode.OUTPUT, f"{path.parent}: {error.strerror}") from error
+    write_text(path, json.dumps(value, indent=1))

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Writes an Open Job Description bundle for one sequence: the template with what a worker must have, and its values."""
+"""Writes an Open Job Description bundle for a sequence: a job template with the requirements of a worker, and its
+parameters."""
 
 import argparse
 import math
@@ -14,11 +15,11 @@ if not __package__:  # run as a script from a checkout
 from ..common.errors import DriverError, ExitCode, run_main
 from ..common.frame_names import parse_ranges, ranges_text
 from ..common.polyrecon_cli import Polyrecon
-from .plan import add_plan_options, first_frame, limit_of, parse_words, quality_of, request_of, seconds_of, size
 from .requirements import MIB, Node, chunk_for, threads_for
+from .submission import add_job_options, first_frame, limit_of, parse_words, quality_of, request_of, seconds_of, size
 
 TEMPLATE = pathlib.Path(__file__).with_name("template.yaml")
-MOST_TASKS = 1000
+MAX_TASKS = 1000
 EXAMPLES = """\
 examples:
   polyrecon-farm openjd -i shot.####.exr -o clean/shot.####.exr --frames 1-240 --bundle denoise_shot
@@ -32,17 +33,19 @@ def load_template():
     try:
         import yaml
     except ImportError as error:
-        raise DriverError(ExitCode.MISSING, "the Python module yaml is not there (Debian: python3-yaml)") from error
+        raise DriverError(
+            ExitCode.MISSING, "the Python module yaml is missing: install PyYAML (Debian: python3-yaml)"
+        ) from error
     return yaml, yaml.safe_load(TEMPLATE.read_text())
 
 
 def range_text(frames):
-    """Ranges without steps, which Open Job Description and the program write alike."""
+    """Ranges without steps, which Open Job Description and the program write in the same way."""
     return ranges_text(sorted(frames))
 
 
-def template_for(template, request, threads, more):
-    """The template with what a worker must have, and the further words of the program."""
+def template_for(template, request, threads, options):
+    """The template with the requirements of a worker, and with further options of the program."""
     denoise, report = template["steps"]
     denoise["hostRequirements"] = {
         "amounts": [
@@ -51,12 +54,12 @@ def template_for(template, request, threads, more):
         ]
     }
     for step in (denoise, report):
-        step["script"]["actions"]["onRun"]["args"] += more
+        step["script"]["actions"]["onRun"]["args"] += options
     return template
 
 
 def without_quality(words):
-    """Quality is a parameter of the template."""
+    """The options without --quality, which is a parameter of the template."""
     kept = list(words)
     while "--quality" in kept:
         at = kept.index("--quality")
@@ -72,7 +75,7 @@ def write_bundle(options):
     worker = Node(options.worker_cpus, options.worker_memory)
     threads = options.threads or threads_for(request, [worker] if worker.memory else [])
     chunk = options.chunk or chunk_for(
-        seconds_of(options, frame, threads), options.task_minutes, len(frames), MOST_TASKS
+        seconds_of(options, frame, threads), options.task_minutes, len(frames), MAX_TASKS
     )
     yaml, template = load_template()
     template = template_for(template, request, threads, without_quality(options.options))
@@ -105,10 +108,12 @@ def arguments(words):
         epilog=EXAMPLES,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    add_plan_options(parser)
-    parser.add_argument("--bundle", required=True, metavar="FOLDER", help="where template and parameter values go")
+    add_job_options(parser)
+    parser.add_argument(
+        "--bundle", required=True, metavar="FOLDER", help="folder for the template and its parameter values"
+    )
     parser.add_argument("--worker-cpus", type=int, default=0, metavar="N", help="processors of a worker")
-    parser.add_argument("--worker-memory", type=size, default=0, metavar="SIZE", help="memory of a worker, 64G")
+    parser.add_argument("--worker-memory", type=size, default=0, metavar="SIZE", help="memory of a worker, such as 64G")
     return parse_words(parser, words)
 
 

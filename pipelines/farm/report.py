@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Looks at every frame of a job and says which are finished, and what they took."""
+"""Checks every frame of a job: which are finished, and what they took."""
 
 import argparse
 import collections
@@ -18,42 +18,42 @@ from ..common import process
 from ..common.errors import DriverError, ExitCode, run_main
 from ..common.frame_names import parse_ranges, ranges_text
 from ..common.polyrecon_cli import find_polyrecon
-from .job import COMPLAINT, RECORDS, REPORT_FILE, Job, chunks, write_json
+from .job import FRAME_ERROR, RECORDS, REPORT_FILE, Job, chunks, write_json
 
 EXAMPLES = """\
 examples:
-  polyrecon-farm report out/polyrecon_farm/shot                 # a job's folder, at any time
+  polyrecon-farm report out/polyrecon_farm/shot                 # folder of a job, at any time
   polyrecon-farm report -i shot.####.exr -o out/shot.####.exr --frames 1-100 -- --quality best
 """
 FINISHED = re.compile(r"frame (-?\d+): .*, finished already: skipped")
 
 
-def look_at(job, frames):
-    """Which of these frames are finished, by the program itself: the output decodes to its last byte, and was made of
-    this very input with these settings. Returns (finished frames, {frame: what is wrong with its input})."""
+def check(job, frames):
+    """Checks frames with the program: a finished output decodes to its last byte, and comes from this input and these
+    settings. Returns (finished frames, {frame: problem of its input})."""
     code, output, errors = process.run(job.words(frames, "--dry-run"))
     if code not in (ExitCode.DONE, ExitCode.MISSING):
         raise DriverError(ExitCode.CHECK, f"frames {ranges_text(frames)}: {errors.strip() or f'ended with {code}'}")
     finished = {int(match[1]) for line in output.splitlines() if (match := FINISHED.fullmatch(line))}
-    return finished, {int(match[1]): match[2] for line in errors.splitlines() if (match := COMPLAINT.match(line))}
+    return finished, {int(match[1]): match[2] for line in errors.splitlines() if (match := FRAME_ERROR.match(line))}
 
 
-def look_at_all(job, processes, done):
-    """look_at by several processes at once; done(frames looked at) is called as they come in."""
+def check_all(job, processes, done):
+    """Checks all frames of the job in several processes; calls done(frames checked so far)."""
     size = min(50, max(1, math.ceil(len(job.frames) / processes)))
-    finished, wrong, seen = set(), {}, 0
+    finished, problems, checked = set(), {}, 0
     with concurrent.futures.ThreadPoolExecutor(processes) as pool:
         groups = chunks(job.frames, size)
-        for group, (some, bad) in zip(groups, pool.map(lambda group: look_at(job, group), groups)):
+        for group, (some, their_problems) in zip(groups, pool.map(lambda group: check(job, group), groups)):
             finished |= some
-            wrong.update(bad)
-            seen += len(group)
-            done(seen)
-    return finished, wrong
+            problems.update(their_problems)
+            checked += len(group)
+            done(checked)
+    return finished, problems
 
 
 def records_of(folder):
-    """What the tasks wrote down, in order of time; a task that is writing or was killed is in it without an end."""
+    """The records of the tasks, in order of time. The record of a task that runs or was killed has no end."""
     records = []
     for path in pathlib.Path(folder, RECORDS).glob("*.json"):
         try:
@@ -68,7 +68,7 @@ def frames_in(text):
 
 
 def nodes_of(ended):
-    """{node: frames, seconds of its tasks, frames per hour of one task}."""
+    """{node: its tasks, their frames and seconds, and the frames per hour of one task}"""
     nodes = collections.defaultdict(lambda: {"tasks": 0, "frames": 0, "seconds": 0.0, "cpu_seconds": 0.0})
     for record in ended:
         node = nodes[record["node"]]
@@ -81,25 +81,25 @@ def nodes_of(ended):
     return dict(nodes)
 
 
-def summary(job, finished, wrong, records):
+def summary(job, finished, problems, records):
     ended = [record for record in records if "exit_code" in record]
     unfinished = [frame for frame in job.frames if frame not in finished]
-    for record in ended:  # what only the pixels tell
-        wrong = {**wrong, **{int(frame): text for frame, text in record["complaints"].items()}}
+    for record in ended:  # Problems of the pixels are not known before a task reads them.
+        problems = {**problems, **{int(frame): text for frame, text in record["frame_errors"].items()}}
     written = sum(frames_in(record["written"]) for record in ended)
     return {
         "frames": len(job.frames),
         "finished": len(job.frames) - len(unfinished),
         "unfinished": ranges_text(unfinished),
-        "reasons": {str(frame): wrong[frame] for frame in unfinished if frame in wrong},
+        "reasons": {str(frame): problems[frame] for frame in unfinished if frame in problems},
         "attempts": len(records),
         "attempts_without_end": [f"{r['node']}: {r['frames']}" for r in records if "exit_code" not in r],
-        "attempts_that_failed": [f"{r['node']}: {r['frames']}: {r['exit_code']}" for r in ended if r["exit_code"]],
+        "failed_attempts": [f"{r['node']}: {r['frames']}: {r['exit_code']}" for r in ended if r["exit_code"]],
         "nodes": nodes_of(ended),
         "seconds": max((r["begun"] + r["seconds"] for r in ended), default=0)
         - min((r["begun"] for r in ended), default=0),
         "peak_bytes": max((r["peak_bytes"] for r in ended), default=0),
-        "bytes_asked": job.request,
+        "bytes_requested": job.request,
         "bytes_read_per_frame": sum(r.get("bytes_read", 0) for r in ended) / written if written else 0,
         "bytes_written_per_frame": sum(r.get("bytes_written", 0) for r in ended) / written if written else 0,
     }
@@ -115,11 +115,11 @@ def text_of(found):
             f"{name}: {node['frames']} frames by {node['tasks']} tasks, {node['seconds']:.0f} s "
             f"({node['cpu_seconds']:.0f} s of processors), {node['frames_per_hour']:.0f} frames an hour and task"
         )
-    lines += [f"no end, the node died or is at it still: {attempt}" for attempt in found["attempts_without_end"]]
-    lines += [f"failed, and with which code: {attempt}" for attempt in found["attempts_that_failed"]]
+    lines += [f"no end, the node died or still works on it: {attempt}" for attempt in found["attempts_without_end"]]
+    lines += [f"failed (node, frames, exit code): {attempt}" for attempt in found["failed_attempts"]]
     if found["peak_bytes"]:
-        asked = f", of {found['bytes_asked'] / 1e6:.0f} MB that it asked for" if found["bytes_asked"] else ""
-        lines.append(f"most memory of a task: {found['peak_bytes'] / 1e6:.0f} MB{asked}")
+        requested = f", of {found['bytes_requested'] / 1e6:.0f} MB requested" if found["bytes_requested"] else ""
+        lines.append(f"most memory of a task: {found['peak_bytes'] / 1e6:.0f} MB{requested}")
         lines.append(
             f"a frame read {found['bytes_read_per_frame'] / 1e6:.1f} MB and wrote "
             f"{found['bytes_written_per_frame'] / 1e6:.1f} MB"
@@ -128,12 +128,12 @@ def text_of(found):
 
 
 def make_report(job, folder, processes, openjd):
-    def told(seen):
+    def report_progress(checked):
         if openjd:
-            print(f"openjd_progress: {100 * seen / len(job.frames):.1f}", flush=True)
+            print(f"openjd_progress: {100 * checked / len(job.frames):.1f}", flush=True)
 
-    finished, wrong = look_at_all(job, processes, told)
-    found = summary(job, finished, wrong, records_of(folder) if folder else [])
+    finished, problems = check_all(job, processes, report_progress)
+    found = summary(job, finished, problems, records_of(folder) if folder else [])
     if folder:
         write_json(pathlib.Path(folder) / REPORT_FILE, found)
     print(text_of(found), flush=True)
@@ -152,19 +152,30 @@ def arguments(words):
         epilog=EXAMPLES,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("folder", nargs="?", help="folder of a job that was submitted")
-    parser.add_argument("-i", "--input", metavar="PATTERN", help="in place of a folder: the renders, shot.####.exr")
+    parser.add_argument("folder", nargs="?", help="folder of a submitted job")
+    parser.add_argument(
+        "-i", "--input", metavar="PATTERN", help="the renders, such as shot.####.exr, if there is no folder of a job"
+    )
     parser.add_argument("-o", "--output", metavar="PATTERN", help="the results")
-    parser.add_argument("--frames", metavar="RANGES", help="1-10,20-40x2")
-    parser.add_argument("--processes", type=int, default=1, metavar="N", help="looking at frames at once (default: 1)")
-    parser.add_argument("--progress", choices=["none", "openjd"], default="none")
-    parser.add_argument("--polyrecon", metavar="PATH", help="the program")
-    parser.add_argument("options", nargs="*", metavar="-- OPTION", help="what else the frames were denoised with")
+    parser.add_argument("--frames", metavar="RANGES", help="frames, such as 1-10,20-40x2")
+    parser.add_argument(
+        "--processes", type=int, default=1, metavar="N", help="processes that check frames concurrently (1)"
+    )
+    parser.add_argument(
+        "--progress",
+        choices=["none", "openjd"],
+        default="none",
+        help="openjd: lines for an Open Job Description session",
+    )
+    parser.add_argument("--polyrecon", metavar="PATH", help="the program (default: $POLYRECON, else `polyrecon`)")
+    parser.add_argument(
+        "options", nargs="*", metavar="-- OPTION", help="further options that the frames were denoised with"
+    )
     at = words.index("--") if "--" in words else len(words)
     options = parser.parse_args(words[:at])
     options.options = words[at + 1 :]
     if bool(options.folder) == bool(options.input):
-        parser.error("either the folder of a job, or -i, -o and --frames")
+        parser.error("give either the folder of a job, or -i, -o and --frames")
     if options.input and not (options.output and options.frames):
         parser.error("-i needs -o and --frames")
     return options

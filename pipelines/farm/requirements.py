@@ -1,6 +1,6 @@
-"""What a frame asks of a machine: memory and seconds, by a model whose constants are measured.
+"""Memory and seconds of a frame, by a model with measured constants, and the threads and chunks of a task.
 
-The constants are in model.json, and tests/bench/farm_model.py is the command that measures them.
+The constants are in model.json; tests/bench/farm_model.py measures them.
 """
 
 import json
@@ -11,22 +11,22 @@ from dataclasses import dataclass
 from ..common.errors import DriverError, ExitCode
 
 MODEL_FILE = pathlib.Path(__file__).with_name("model.json")
-MEMORY_MARGIN = 1.15  # of what is asked for over what the model says
+MEMORY_MARGIN = 1.15  # requested memory over that of the model
 MIB = 1 << 20
-AOV_BYTES = 24  # of a neighbour's pixel: two halves of three floats
-DEFAULT_RADIUS = 2  # of `polyrecon denoise --frame-radius`
+AOV_BYTES = 24  # a pixel of a neighbouring frame and an --aov: two halves of three floats
+DEFAULT_RADIUS = 2  # default of `polyrecon denoise --frame-radius`
 # The passes that take part in the fit; other channels are only copied.
 ROLES_OF_THE_FIT = ("beauty", "normal", "albedo", "depth", "visibility", "prior", "alpha")
 
 
 @dataclass(frozen=True)
 class Frame:
-    """Of one input file: pixels of its data window, channels in all, and channels that take part in the fit."""
+    """The size of an input file."""
 
-    width: int
+    width: int  # of the data window
     height: int
-    channels: int
-    fit_channels: int
+    channels: int  # of all layers
+    fit_channels: int  # of the layers that take part in the fit
 
     @property
     def pixels(self):
@@ -35,14 +35,14 @@ class Frame:
 
 @dataclass(frozen=True)
 class Node:
-    """One kind of machine: processors, and bytes of memory (0: the engine does not know)."""
+    """A kind of machine."""
 
     cpus: int
-    memory: int
+    memory: int  # bytes; 0 if the engine does not know
 
 
 def frame_of(inspection):
-    """A Frame out of what `polyrecon inspect --json` prints."""
+    """The Frame of what `polyrecon inspect --json` prints."""
     parts = [part for part in inspection["files"][0]["parts"] if part["readable"]]
     window = max((part["data_window"] for part in parts), key=lambda w: w["width"] * w["height"])
     fit_layers = {role["layer"] for role in inspection["roles"] if role["role"] in ROLES_OF_THE_FIT}
@@ -60,35 +60,37 @@ class Model:
         except OSError as error:
             raise DriverError(ExitCode.MISSING, f"{path}: {error.strerror}") from error
         except (ValueError, KeyError) as error:
-            raise DriverError(ExitCode.BAD_INPUT, f"{path}: no model of farm_model.py ({error})") from error
+            raise DriverError(
+                ExitCode.BAD_INPUT, f"{path}: is not a file that farm_model.py writes ({error})"
+            ) from error
 
     def peak_bytes(self, frame, quality, aovs=0, radius=DEFAULT_RADIUS):
-        """Largest resident size of `polyrecon denoise` on a sequence (the next frame is read meanwhile), no tiles."""
+        """Largest resident size of `polyrecon denoise` on a sequence, with the next frame, and without tiles."""
         m = self.memory
         per_pixel = m["per_pixel"][quality] + m["per_fit_channel"] * (frame.fit_channels + 3 * aovs)
-        held = 2 * radius + 2 if radius else 0  # neighbours, with those of the next frame
+        held = 2 * radius + 2 if radius else 0  # neighbours of this frame and of the next one
         per_pixel += held * (self.neighbour["bytes"] + AOV_BYTES * aovs)
         return m["base"] + frame.pixels * (per_pixel + m["per_channel"] * frame.channels)
 
     def request_bytes(self, frame, quality, aovs=0, radius=DEFAULT_RADIUS):
-        """What to ask an engine for: with margin, whole MiB."""
+        """The memory to request from an engine: peak_bytes with a margin, in whole MiB."""
         return math.ceil(MEMORY_MARGIN * self.peak_bytes(frame, quality, aovs, radius) / MIB) * MIB
 
     def cpu_seconds(self, frame, quality, radius=DEFAULT_RADIUS):
-        """Of all threads, for one frame, on a machine like the one that was measured."""
+        """Processor seconds of one frame, of all threads, on a machine like the measured one."""
         s = self.seconds
         per_pixel = s["per_pixel"][quality] + s["per_channel"] * frame.channels + self.neighbour["seconds"] * 2 * radius
         return s["start"] + frame.pixels * per_pixel
 
     def wall_seconds(self, frame, quality, threads, radius=DEFAULT_RADIUS):
-        """Amdahl's law with the measured parallel part."""
+        """Seconds of one frame by Amdahl's law with the measured parallel part."""
         return self.cpu_seconds(frame, quality, radius) * (1 - self.parallel_part + self.parallel_part / threads)
 
 
 def threads_for(memory, nodes):
-    """Threads of one task, so that tasks use up the processors of a node no later than its memory.
+    """Threads of a task of so many bytes, so that the tasks that fill a node's memory use all its processors.
 
-    Frames do not depend on each other, so a node does most with as many tasks of few threads as its memory holds.
+    Frames do not depend on each other, so many tasks with few threads finish most frames per hour.
     """
     known = [node for node in nodes if node.memory]
     fitting = [node for node in known if node.memory >= memory]
@@ -97,12 +99,12 @@ def threads_for(memory, nodes):
         raise DriverError(
             ExitCode.MEMORY,
             f"a frame needs {memory / 1e9:.1f} GB, the largest node has {most / 1e9:.1f} GB: "
-            "give --memory, the frame is then worked in tiles",
+            "give --memory to denoise the frame in tiles",
         )
     return max((math.ceil(node.cpus / (node.memory // memory)) for node in fitting), default=1)
 
 
-def chunk_for(seconds_a_frame, task_minutes, frames, most_tasks):
-    """Frames of one task: about task_minutes of work, and no more tasks than the engine takes."""
+def chunk_for(seconds_a_frame, task_minutes, frames, max_tasks):
+    """Frames of a task: about task_minutes of work, and as many as make max_tasks tasks at most."""
     by_time = int(60 * task_minutes / max(seconds_a_frame, 1e-3))
-    return max(1, min(by_time, frames), math.ceil(frames / most_tasks))
+    return max(1, min(by_time, frames), math.ceil(frames / max_tasks))

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Denoises a sequence on a Slurm cluster: an array job, one task a chunk of frames, and a report when all have ended."""
+"""Denoises a sequence on a Slurm cluster: an array job with a task for each chunk of frames, then a job for the
+report."""
 
 import argparse
 import itertools
@@ -22,8 +23,8 @@ from ..common.errors import DriverError, ExitCode, run_main
 from ..common.frame_names import parse_ranges
 from ..common.polyrecon_cli import Polyrecon
 from .job import JOB_FILE, REPORT_FILE, Job
-from .plan import add_plan_options, first_frame, limit_of, parse_words, positive, request_of, seconds_of
 from .requirements import MIB, Node, chunk_for, threads_for
+from .submission import add_job_options, first_frame, limit_of, parse_words, positive, request_of, seconds_of
 
 EXAMPLES = """\
 examples:
@@ -31,12 +32,12 @@ examples:
   polyrecon-farm slurm submit -i shot.####.exr -o clean/shot.####.exr --frames 1-240 --after 4711 \\
       --partition night --sbatch=--account=film --wait -- --quality best --aov 'Diffuse Direct'
   polyrecon-farm slurm submit -i shot.####.exr -o clean/shot.####.exr --frames 1-240 --dry-run
-  polyrecon-farm report clean/polyrecon_farm/shot        # how far it is
+  polyrecon-farm report clean/polyrecon_farm/shot        # progress, at any time
 """
 REPORT_LOG = "report.txt"
 POLL_SECONDS = 2
-MOST_UNANSWERED = 20
-# Tasks and the report are Python without a shell: sbatch takes a copy of this file, which finds the driver again.
+MAX_UNANSWERED = 20  # calls of squeue
+# The script of a task or of the report. sbatch copies it, so it names the folder of the drivers.
 SCRIPT = """\
 #!/usr/bin/env python3
 import sys
@@ -47,9 +48,9 @@ sys.exit(main({words!r}))
 
 
 def slurm(*words):
-    """Output of one of Slurm's commands."""
+    """Runs a command of Slurm; returns its output."""
     if not shutil.which(words[0]):
-        raise DriverError(ExitCode.MISSING, f"{words[0]} is not on the PATH: is this a machine of the cluster?")
+        raise DriverError(ExitCode.MISSING, f"{words[0]} is not on the PATH: run this on a machine of the cluster")
     code, output, errors = process.run(words, timeout=120)
     if code:
         raise DriverError(ExitCode.USAGE, f"{words[0]}: {' '.join(errors.split()) or f'ended with {code}'}")
@@ -57,25 +58,25 @@ def slurm(*words):
 
 
 def nodes_of(partition):
-    """The kinds of node of a partition. A cluster that does not manage memory says 1 MB."""
+    """The kinds of node of a partition. A cluster that does not manage memory reports 1 MB."""
     words = ["sinfo", "-h", "-N", "-o", "%c %m", *(["-p", partition] if partition else [])]
     nodes = set()
     for line in slurm(*words).splitlines():
         cpus, megabytes = (int(word.rstrip("+")) for word in line.split())
         nodes.add(Node(cpus, megabytes * MIB if megabytes > 1 else 0))
     if not nodes:
-        raise DriverError(ExitCode.USAGE, f"--partition {partition}: no nodes")
+        raise DriverError(ExitCode.USAGE, f"--partition {partition}: has no nodes")
     return nodes
 
 
-def most_tasks():
-    """How many tasks an array may have."""
+def max_tasks():
+    """The largest number of tasks of an array."""
     match = re.search(r"^MaxArraySize\s*=\s*(\d+)", slurm("scontrol", "show", "config"), re.MULTILINE)
     return max(1, int(match[1]) - 1) if match else 1000
 
 
-def plan(options):
-    """The job, and the bytes to ask for each task (0: the cluster does not manage memory)."""
+def job_of(options):
+    """The job, and the bytes to request for a task; 0 if the cluster does not manage memory."""
     frames = parse_ranges(options.frames)
     polyrecon = Polyrecon(options.polyrecon)
     frame = first_frame(options, frames, polyrecon)
@@ -84,7 +85,7 @@ def plan(options):
     threads = options.threads or threads_for(request, nodes)
     chunk = options.chunk
     if not chunk:
-        chunk = chunk_for(seconds_of(options, frame, threads), options.task_minutes, len(frames), most_tasks())
+        chunk = chunk_for(seconds_of(options, frame, threads), options.task_minutes, len(frames), max_tasks())
     job = Job(
         input=os.path.abspath(options.input),
         output=os.path.abspath(options.output),
@@ -100,7 +101,7 @@ def plan(options):
 
 
 def common_words(options, job_name, folder, log):
-    """Words of sbatch for both jobs. Slurm expands % in the name of a log."""
+    """The options of sbatch that both jobs have. Slurm expands % in the name of a log."""
     words = ["sbatch", "--parsable", f"--job-name={job_name}", "--open-mode=append", "--requeue"]
     words.append(f"--output={str(folder).replace('%', '%%')}/{log}")
     if options.partition:
@@ -141,11 +142,13 @@ def holds_another(folder, job):
 
 
 def job_folder(options, name, job):
-    """--folder, else one beside the results, with a number where the name is another job's: its tasks may still run."""
+    """The folder of the job: --folder, else one in the folder of the results.
+
+    If it holds another job, whose tasks may still run, a number is added to its name."""
     if options.folder:
         folder = pathlib.Path(options.folder).absolute()
         if holds_another(folder, job):
-            raise DriverError(ExitCode.USAGE, f"{folder}: holds another job, name another --folder")
+            raise DriverError(ExitCode.USAGE, f"{folder}: holds another job; name another --folder")
         return folder
     jobs = pathlib.Path(job.output).parent / "polyrecon_farm"
     names = itertools.chain([name], (f"{name}_{number}" for number in itertools.count(2)))
@@ -165,12 +168,12 @@ def make_folder(folder, job):
 
 
 def describe(job, request):
-    asked = f", {request / 1e9:.2f} GB" if request else ""
-    return f"{len(job.frames)} frames, {len(job.chunks)} tasks of {job.chunk}; a task: {job.threads} threads{asked}"
+    memory = f", {request / 1e9:.2f} GB" if request else ""
+    return f"{len(job.frames)} frames, {len(job.chunks)} tasks of {job.chunk}; a task: {job.threads} threads{memory}"
 
 
 def submit(options):
-    job, request = plan(options)
+    job, request = job_of(options)
     name = options.name or re.sub(r"\W+", "_", pathlib.Path(options.input).name.split("#")[0].split("%")[0]).strip("_")
     name = name or "polyrecon"
     folder = job_folder(options, name, job)
@@ -182,14 +185,15 @@ def submit(options):
     make_folder(folder, job)
     array = slurm(*array_words(options, job, request, name, folder)).strip().split(";")[0]
     report = slurm(*report_words(options, job, request, name, folder, array)).strip().split(";")[0]
-    print(f"job {array}, and {report} for the report; all in {folder}", flush=True)
+    print(f"job {array} denoises, job {report} reports; their files are in {folder}", flush=True)
     if options.wait:
         wait_for(report, folder)
 
 
 def is_over(job):
-    """Whether no task of the job waits or runs any more; None where Slurm does not answer, a busy controller does not
-    always. It forgets jobs some minutes after their end."""
+    """Whether all tasks of the job have ended; None if Slurm does not answer, as a busy controller sometimes does not.
+
+    Slurm forgets a job some minutes after its end: the job is over then, too."""
     code, output, errors = process.run(["squeue", "-h", "-j", job, "-o", "%T"], timeout=120)
     if code and "Invalid job id" not in errors:
         return None
@@ -197,12 +201,12 @@ def is_over(job):
 
 
 def wait_for(job, folder):
-    """Until the report is there; prints it. Raises what it says."""
+    """Waits for the report and prints it. Unfinished frames are an error."""
     unanswered = 0
     while not (over := is_over(job)):
         unanswered = unanswered + 1 if over is None else 0
-        if unanswered == MOST_UNANSWERED:
-            raise DriverError(ExitCode.INTERNAL, f"squeue does not answer any more; job {job} goes on, see {folder}")
+        if unanswered == MAX_UNANSWERED:
+            raise DriverError(ExitCode.INTERNAL, f"squeue does not answer; job {job} continues, see {folder}")
         time.sleep(POLL_SECONDS)
     log, found = folder / REPORT_LOG, folder / REPORT_FILE
     if not found.exists():
@@ -223,17 +227,21 @@ def arguments(words):
     sub = commands.add_parser(
         "submit", help=__doc__, epilog=EXAMPLES, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    add_plan_options(sub)
-    sub.add_argument("--partition", metavar="NAME")
-    sub.add_argument("--after", metavar="JOB", help="wait for the end of this job, the render")
-    sub.add_argument("--max-running", type=positive, metavar="N", help="tasks at once, where storage is slow")
+    add_job_options(sub)
+    sub.add_argument("--partition", metavar="NAME", help="partition of the cluster (default: the cluster's)")
+    sub.add_argument("--after", metavar="JOB", help="start after the end of this job, such as the render")
     sub.add_argument(
-        "--sbatch", action="append", default=[], metavar="=OPTION", help="any option of sbatch (repeatable)"
+        "--max-running", type=positive, metavar="N", help="limit of tasks that run concurrently, for slow storage"
     )
-    sub.add_argument("--name", help="of the job (default: the input's)")
-    sub.add_argument("--folder", help="for logs, records and the report (default: beside the results)")
-    sub.add_argument("--wait", action="store_true", help="until the report is there; its exit code: 4, frames missing")
-    sub.add_argument("--dry-run", action="store_true", help="only print what would be submitted")
+    sub.add_argument(
+        "--sbatch", action="append", default=[], metavar="=OPTION", help="an option of sbatch (repeatable)"
+    )
+    sub.add_argument("--name", help="name of the job (default: that of the input)")
+    sub.add_argument("--folder", help="folder of logs, records and report (default: in the folder of the results)")
+    sub.add_argument(
+        "--wait", action="store_true", help="wait for the report; the exit code is 4 if frames are unfinished"
+    )
+    sub.add_argument("--dry-run", action="store_true", help="print what would be submitted, and submit nothing")
     return parse_words(parser, words)
 
 

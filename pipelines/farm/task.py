@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What one task of a farm job runs: the frames of its chunk, and a record of what they took."""
+"""Runs a task of a farm job: denoises the frames of its chunk, and records what they took."""
 
 import argparse
 import os
@@ -16,11 +16,11 @@ if not __package__:  # run as a script from a checkout
 from ..common import process
 from ..common.errors import DriverError, ExitCode, run_main
 from ..common.frame_names import frame_path, ranges_text
-from .job import COMPLAINT, RECORDS, Job, write_json
+from .job import FRAME_ERROR, RECORDS, Job, write_json
 
 
 def identities(job, frames):
-    """{frame: what changes when its output is written anew}."""
+    """{frame: inode and time of its output}, which change when it is written; None if there is no output."""
     found = {}
     for frame in frames:
         try:
@@ -32,7 +32,7 @@ def identities(job, frames):
 
 
 def traffic(pid):
-    """Bytes that a process asked its files for and gave them, caches not counted; it may have ended, unwaited for."""
+    """Bytes that a process has read and written, with those served by the page cache. A zombie process has them too."""
     try:
         lines = pathlib.Path(f"/proc/{pid}/io").read_text().splitlines()
     except OSError:
@@ -42,15 +42,15 @@ def traffic(pid):
 
 
 def run_counted(words):
-    """Runs a command to its end. Returns its exit code, what it took, and its complaints of single frames."""
+    """Runs a command to its end. Returns its exit code, and a dict of what it took and its errors of single frames."""
     begun = time.time()
     child = process.start(words, stderr=subprocess.PIPE, text=True, errors="replace")
     try:
-        complaints = {}
+        frame_errors = {}
         for line in child.stderr:
             print(line, end="", file=sys.stderr, flush=True)
-            if match := COMPLAINT.match(line):
-                complaints[match[1]] = match[2]
+            if match := FRAME_ERROR.match(line):
+                frame_errors[match[1]] = match[2]
         os.waitid(os.P_PID, child.pid, os.WEXITED | os.WNOWAIT)
         counts = traffic(child.pid)
         _, status, usage = os.wait4(child.pid, 0)
@@ -65,13 +65,13 @@ def run_counted(words):
         cpu_seconds=usage.ru_utime + usage.ru_stime,
         peak_bytes=usage.ru_maxrss * 1024,
         exit_code=child.returncode,
-        complaints=complaints,
+        frame_errors=frame_errors,
     )
     return child.returncode, counts
 
 
 def attempt_name(index):
-    """Of this run of the task: a task that is requeued keeps its first record."""
+    """The file name of this run's record. A requeued task keeps the record of its first run."""
     job, restart = os.environ.get("SLURM_JOB_ID", str(os.getpid())), os.environ.get("SLURM_RESTART_COUNT", "0")
     return f"{index}.{job}.{restart}.json"
 
@@ -79,7 +79,7 @@ def attempt_name(index):
 def run_chunk(folder, index):
     job = Job.load(folder)
     if not 0 <= index < len(job.chunks):
-        raise DriverError(ExitCode.USAGE, f"{folder}: no chunk {index}, there are {len(job.chunks)}")
+        raise DriverError(ExitCode.USAGE, f"{folder}: has no chunk {index}, only 0 to {len(job.chunks) - 1}")
     frames = job.chunks[index]
     path = pathlib.Path(folder) / RECORDS / attempt_name(index)
     node = os.environ.get("SLURMD_NODENAME") or socket.gethostname()
@@ -98,12 +98,14 @@ def run_chunk(folder, index):
 def main(words=None):
     def work(words):
         parser = argparse.ArgumentParser(prog="polyrecon-farm task", description=__doc__)
-        parser.add_argument("folder", help="the job's folder")
-        parser.add_argument("index", type=int, nargs="?", help="chunk, counted from 0 (default: $SLURM_ARRAY_TASK_ID)")
+        parser.add_argument("folder", help="folder of the job")
+        parser.add_argument(
+            "index", type=int, nargs="?", help="number of the chunk, from 0 (default: $SLURM_ARRAY_TASK_ID)"
+        )
         options = parser.parse_args(words)
         index = options.index if options.index is not None else os.environ.get("SLURM_ARRAY_TASK_ID")
         if index is None:
-            parser.error("which chunk?")
+            parser.error("the number of the chunk is missing")
         run_chunk(options.folder, int(index))
 
     return run_main("polyrecon-farm", work, words)

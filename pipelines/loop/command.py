@@ -1,4 +1,4 @@
-"""The command line options of the loop, and the loop over all frames that they name."""
+"""The command line options of the adaptive loop, and the loop over the frames that they name."""
 
 import pathlib
 
@@ -9,17 +9,24 @@ from .budget import Budget
 
 
 def add_loop_arguments(parser, first_pass, first_pass_help):
-    """The options of the loop, for a driver whose first pass has so many samples."""
+    """Adds the options of the loop. first_pass is the driver's default number of uniform samples."""
     budget = parser.add_mutually_exclusive_group(required=True)
     budget.add_argument("--budget-spp", type=positive, metavar="N", help="samples per pixel on average")
-    budget.add_argument("--budget-seconds", type=positive, metavar="S", help="seconds of everything, for each frame")
-    budget.add_argument("--target", type=positive, metavar="E", help="mean relative MSE of the result, as estimated")
-    parser.add_argument("--first-pass", type=int, default=first_pass, metavar="N", help=first_pass_help)
-    parser.add_argument("--max-rounds", type=int, default=8, metavar="N", help="most rounds of extra samples (8)")
-    parser.add_argument(
-        "--quality", choices=adaptive.QUALITIES, default="standard", help="of the last reconstruction (standard)"
+    budget.add_argument(
+        "--budget-seconds", type=positive, metavar="S", help="seconds for each frame, from start to result"
     )
-    parser.add_argument("--resume", action="store_true", help="go on with the passes of an earlier run")
+    budget.add_argument("--target", type=positive, metavar="E", help="estimated mean relative MSE of the result")
+    parser.add_argument("--first-pass", type=int, default=first_pass, metavar="N", help=first_pass_help)
+    parser.add_argument(
+        "--max-rounds", type=int, default=8, metavar="N", help="limit of the rounds of extra samples (8)"
+    )
+    parser.add_argument(
+        "--quality",
+        choices=adaptive.QUALITIES,
+        default="standard",
+        help="quality of the last reconstruction (standard)",
+    )
+    parser.add_argument("--resume", action="store_true", help="continue with the passes of an earlier run")
 
 
 def check_budget(parser, options):
@@ -28,8 +35,9 @@ def check_budget(parser, options):
 
 
 def run_frames(options, renderer, identity):
-    """The loop over all frames that the options ask for. `identity` tells what the passes are of, beside the scene file
-    itself: other passes may not go on with them."""
+    """Runs the loop for every frame of the options.
+
+    `identity` and the scene file say what the passes are of. --resume continues only passes of the same identity."""
     status = pathlib.Path(options.scene).stat()
     identity = {
         "scene": str(pathlib.Path(options.scene).resolve()),
