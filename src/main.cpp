@@ -14,7 +14,7 @@
 
 #include "cli/app.h"
 #include "cli/common/signals.h"
-#include "core/error.h"
+#include "polyrecon/error.h"
 
 namespace {
 

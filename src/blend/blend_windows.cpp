@@ -6,6 +6,7 @@
 
 #include "core/parallel.h"
 #include "core/real.h"
+#include "core/rect.h"
 #include "core/simd.h"
 #include "regression/least_squares.h"
 #include "regression/order_selection.h"

@@ -5,8 +5,9 @@
 #include <cstddef>
 #include <vector>
 
-#include "core/image.h"
-#include "core/progress.h"
+#include "polyrecon/params.h"
+#include "polyrecon/image.h"
+#include "polyrecon/progress.h"
 #include "regression/basis.h"
 #include "regression/weights.h"
 

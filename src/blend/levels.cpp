@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "blend/select.h"
 #include "core/resample.h"
 
 namespace polyrecon {

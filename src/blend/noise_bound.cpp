@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "blend/select.h"
 #include "core/parallel.h"
 #include "core/rect.h"
 

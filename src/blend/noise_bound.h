@@ -4,7 +4,7 @@
 
 #include "blend/select.h"
 #include "core/half_pair.h"
-#include "core/image.h"
+#include "polyrecon/image.h"
 
 namespace polyrecon {
 

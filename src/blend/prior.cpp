@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "blend/select.h"
 #include "blend/sharpen.h"
 #include "core/gaussian.h"
 #include "core/parallel.h"

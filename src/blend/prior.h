@@ -3,8 +3,8 @@
 #include <cstddef>
 
 #include "blend/select.h"
-#include "core/frame.h"
 #include "core/half_pair.h"
+#include "polyrecon/frame.h"
 
 namespace polyrecon {
 

@@ -5,8 +5,9 @@
 #include <functional>
 #include <vector>
 
+#include "polyrecon/params.h"
 #include "core/half_pair.h"
-#include "core/image.h"
+#include "polyrecon/image.h"
 
 namespace polyrecon {
 
@@ -16,11 +17,6 @@ struct Candidate {
   Image squared_bias;         ///< As the windows estimate it (5), 3 channels; empty if the candidate has none.
   Image variance;             ///< Of the windows, equation (6), 3 channels; empty if the candidate has none.
   Image order;                ///< Taylor order, 1 channel.
-};
-
-struct SelectParams {
-  double risk_sigma = 3;   ///< Gaussian over which cross-validated errors are averaged, pixels.
-  double map_sigma = 1.5;  ///< Gaussian by which the choice itself is smoothed.
 };
 
 /// Pixels around a region that select looks at.

@@ -1,4 +1,4 @@
-#include "io/merge.h"
+#include "polyrecon/merge.h"
 
 #include <fmt/format.h>
 
@@ -11,9 +11,9 @@
 #include "cli/common/checks.h"
 #include "cli/common/choice.h"
 #include "cli/common/read_limits.h"
-#include "core/error.h"
 #include "core/parallel.h"
 #include "io/exr/file.h"
+#include "polyrecon/error.h"
 
 namespace polyrecon {
 namespace {

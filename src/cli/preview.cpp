@@ -14,10 +14,10 @@
 #include "cli/common/checks.h"
 #include "cli/common/display_options.h"
 #include "cli/common/layers.h"
-#include "core/error.h"
 #include "io/pictures/color.h"
 #include "io/pictures/false_color.h"
 #include "io/pictures/png_file.h"
+#include "polyrecon/error.h"
 
 namespace polyrecon {
 namespace {

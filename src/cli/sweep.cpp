@@ -14,10 +14,11 @@
 #include "cli/common/checks.h"
 #include "cli/common/layers.h"
 #include "cli/common/progress_output.h"
-#include "core/error.h"
 #include "core/parallel.h"
 #include "io/atomic_file.h"
-#include "io/read_frame.h"
+#include "io/channel_names.h"
+#include "polyrecon/error.h"
+#include "polyrecon/read_frame.h"
 #include "sweep/page.h"
 
 namespace polyrecon {

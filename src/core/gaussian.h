@@ -1,7 +1,7 @@
 #pragma once
 
-#include "core/image.h"
-#include "core/progress.h"
+#include "polyrecon/image.h"
+#include "polyrecon/progress.h"
 
 namespace polyrecon {
 

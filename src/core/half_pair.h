@@ -3,7 +3,7 @@
 #include <array>
 #include <vector>
 
-#include "core/image.h"
+#include "polyrecon/image.h"
 
 namespace polyrecon {
 

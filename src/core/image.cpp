@@ -1,7 +1,9 @@
-#include "core/image.h"
+#include "polyrecon/image.h"
 
 #include <algorithm>
 #include <cassert>
+
+#include "core/rect.h"
 
 namespace polyrecon {
 

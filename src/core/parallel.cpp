@@ -7,7 +7,7 @@
 #include <memory>
 #include <vector>
 
-#include "core/error.h"
+#include "polyrecon/error.h"
 
 namespace polyrecon {
 

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <functional>
 
-#include "core/progress.h"
+#include "polyrecon/progress.h"
 
 namespace polyrecon {
 

@@ -1,4 +1,4 @@
-#include "core/progress.h"
+#include "polyrecon/progress.h"
 
 namespace polyrecon {
 

@@ -3,10 +3,9 @@
 #include <algorithm>
 #include <limits>
 
-namespace polyrecon {
+#include "polyrecon/image.h"
 
-/// Type of stored samples, chosen when the project is configured (POLYRECON_REAL). Sums are always double.
-using Real = POLYRECON_REAL;
+namespace polyrecon {
 
 /// Relative error of rounding to a half float, at most.
 constexpr double half_float_rounding = 0x1p-11;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/parallel.h"
+#include "core/rect.h"
 
 namespace polyrecon {
 namespace {

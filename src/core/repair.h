@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-#include "core/image.h"
+#include "polyrecon/image.h"
 
 namespace polyrecon {
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/parallel.h"
+#include "core/rect.h"
 
 namespace polyrecon {
 

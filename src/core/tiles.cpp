@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "core/rect.h"
+
 namespace polyrecon {
 
 Rect inside(const Tile& tile) {

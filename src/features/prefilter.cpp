@@ -6,6 +6,7 @@
 
 #include "core/fast_math.h"
 #include "core/parallel.h"
+#include "core/rect.h"
 #include "core/simd.h"
 
 namespace polyrecon {

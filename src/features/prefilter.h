@@ -2,16 +2,11 @@
 
 #include <array>
 
-#include "core/image.h"
-#include "core/progress.h"
+#include "polyrecon/params.h"
+#include "polyrecon/image.h"
+#include "polyrecon/progress.h"
 
 namespace polyrecon {
-
-struct PrefilterParams {
-  int search_radius = 5;
-  int patch_radius = 3;
-  double bandwidth = 0.5;
-};
 
 /// Cleans the two halves of one feature pass by cross-filtered non-local means (Rousselle et al. 2013): each half is
 /// averaged with weights measured on the other one, so that the noise left in it is not the noise it was weighed by.

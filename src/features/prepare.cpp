@@ -7,10 +7,10 @@
 #include <limits>
 #include <utility>
 
-#include "core/error.h"
 #include "core/parallel.h"
 #include "core/repair.h"
 #include "noise/fission.h"
+#include "polyrecon/error.h"
 
 namespace polyrecon {
 namespace {

@@ -4,11 +4,11 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/decision.h"
-#include "core/frame.h"
 #include "core/half_pair.h"
-#include "core/progress.h"
 #include "features/prefilter.h"
+#include "polyrecon/frame.h"
+#include "polyrecon/progress.h"
+#include "polyrecon/report.h"
 
 namespace polyrecon {
 

@@ -19,7 +19,7 @@
 #include <random>
 #include <system_error>
 
-#include "core/error.h"
+#include "polyrecon/error.h"
 
 namespace polyrecon {
 namespace {

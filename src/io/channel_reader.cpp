@@ -12,8 +12,8 @@
 #include <new>
 #include <utility>
 
-#include "core/error.h"
 #include "io/plain_image_file.h"
+#include "polyrecon/error.h"
 
 namespace polyrecon {
 namespace {

@@ -9,8 +9,10 @@
 #include <system_error>
 #include <tuple>
 
-#include "core/error.h"
+#include "core/rect.h"
+#include "io/channel_names.h"
 #include "io/sibling_files.h"
+#include "polyrecon/error.h"
 
 namespace polyrecon {
 namespace {

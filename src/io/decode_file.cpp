@@ -4,9 +4,9 @@
 #include <OpenEXR/ImfThreading.h>
 #include <fmt/format.h>
 
-#include "core/error.h"
 #include "io/exr/bands.h"
 #include "io/exr/file.h"
+#include "polyrecon/error.h"
 
 namespace polyrecon {
 

@@ -8,7 +8,7 @@
 #include <fstream>
 #include <vector>
 
-#include "core/error.h"
+#include "polyrecon/error.h"
 
 namespace polyrecon {
 

@@ -4,8 +4,9 @@
 #include <cmath>
 #include <cstddef>
 
-#include "core/error.h"
+#include "io/channel_names.h"
 #include "io/channel_reader.h"
+#include "polyrecon/error.h"
 
 namespace polyrecon {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "io/read_frame.h"
+#include "polyrecon/read_frame.h"
 
 namespace polyrecon {
 

@@ -1,4 +1,4 @@
-#include "io/merge.h"
+#include "polyrecon/merge.h"
 
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfFloatAttribute.h>
@@ -20,13 +20,13 @@
 #include <set>
 #include <system_error>
 
-#include "core/error.h"
 #include "core/parallel.h"
 #include "io/channel_names.h"
 #include "io/channel_reader.h"
 #include "io/exr/bands.h"
 #include "io/exr/single_part.h"
 #include "io/merge_sums.h"
+#include "polyrecon/error.h"
 
 namespace polyrecon {
 namespace {

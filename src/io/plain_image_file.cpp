@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <memory>
 
-#include "core/error.h"
+#include "polyrecon/error.h"
 
 namespace polyrecon {
 namespace {

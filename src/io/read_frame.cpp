@@ -1,4 +1,4 @@
-#include "io/read_frame.h"
+#include "polyrecon/read_frame.h"
 
 #include <fmt/format.h>
 
@@ -8,8 +8,10 @@
 #include <memory>
 #include <utility>
 
-#include "core/error.h"
+#include "io/channel_names.h"
 #include "io/choose_layers.h"
+#include "io/exr/file.h"
+#include "polyrecon/error.h"
 
 namespace polyrecon {
 namespace {

@@ -6,6 +6,8 @@
 #include <string_view>
 #include <system_error>
 
+#include "io/channel_names.h"
+
 namespace polyrecon {
 namespace {
 

@@ -1,4 +1,4 @@
-#include "io/write_result.h"
+#include "polyrecon/write_result.h"
 
 #include <Iex.h>
 #include <OpenEXR/ImfChannelList.h>
@@ -24,11 +24,11 @@
 #include <stdexcept>
 #include <utility>
 
-#include "core/error.h"
 #include "io/atomic_file.h"
 #include "io/exr/bands.h"
 #include "io/exr/raw.h"
 #include "io/exr/single_part.h"
+#include "polyrecon/error.h"
 
 namespace polyrecon {
 namespace {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "blend/select.h"
 #include "core/gaussian.h"
 #include "core/parallel.h"
 #include "core/real.h"

@@ -1,4 +1,4 @@
-#include "maps/sample_map.h"
+#include "polyrecon/sample_map.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,8 +6,8 @@
 #include <limits>
 #include <vector>
 
-#include "core/error.h"
 #include "core/parallel.h"
+#include "polyrecon/error.h"
 
 namespace polyrecon {
 namespace {

@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/error.h"
 #include "core/parallel.h"
+#include "polyrecon/error.h"
 
 namespace polyrecon {
 namespace {

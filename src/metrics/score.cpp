@@ -1,4 +1,4 @@
-#include "metrics/score.h"
+#include "polyrecon/score.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include <numeric>
 #include <vector>
 
-#include "core/error.h"
+#include "polyrecon/error.h"
 
 namespace polyrecon {
 

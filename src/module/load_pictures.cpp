@@ -7,8 +7,8 @@
 
 #include <filesystem>
 
-#include "core/error.h"
 #include "module/picture_functions.h"
+#include "polyrecon/error.h"
 
 namespace polyrecon {
 namespace {

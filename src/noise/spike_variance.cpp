@@ -8,6 +8,7 @@
 
 #include "core/parallel.h"
 #include "core/real.h"
+#include "core/rect.h"
 
 namespace polyrecon {
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/image.h"
+#include "polyrecon/image.h"
 
 namespace polyrecon {
 

@@ -7,6 +7,7 @@
 #include "core/gaussian.h"
 #include "core/parallel.h"
 #include "core/real.h"
+#include "core/rect.h"
 #include "core/repair.h"
 #include "noise/spike_variance.h"
 #include "regression/least_squares.h"

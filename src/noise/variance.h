@@ -2,8 +2,8 @@
 
 #include <string>
 
-#include "core/frame.h"
-#include "core/progress.h"
+#include "polyrecon/frame.h"
+#include "polyrecon/progress.h"
 
 namespace polyrecon {
 

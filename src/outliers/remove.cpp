@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "core/parallel.h"
+#include "core/rect.h"
 
 namespace polyrecon {
 namespace {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/parallel.h"
+#include "core/rect.h"
 #include "core/repair.h"
 
 namespace polyrecon {

@@ -3,8 +3,8 @@
 #include <array>
 #include <vector>
 
-#include "core/image.h"
 #include "outliers/outlier.h"
+#include "polyrecon/image.h"
 
 namespace polyrecon {
 

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "core/error.h"
 #include "noise/variance.h"
 #include "pipeline/stage.h"
+#include "polyrecon/error.h"
 
 namespace polyrecon {
 namespace {

@@ -3,8 +3,8 @@
 #include <cstddef>
 #include <string>
 
-#include "core/frame.h"
-#include "pipeline/params.h"
+#include "polyrecon/frame.h"
+#include "polyrecon/params.h"
 
 namespace polyrecon {
 

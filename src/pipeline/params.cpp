@@ -1,8 +1,8 @@
-#include "pipeline/params.h"
+#include "polyrecon/params.h"
 
 #include <algorithm>
 
-#include "core/error.h"
+#include "polyrecon/error.h"
 
 namespace polyrecon {
 namespace {

@@ -1,4 +1,4 @@
-#include "pipeline/reconstruct.h"
+#include "polyrecon/reconstruct.h"
 
 #include <chrono>
 #include <cmath>
@@ -7,9 +7,12 @@
 #include "blend/levels.h"
 #include "blend/noise_bound.h"
 #include "blend/prior.h"
+#include "blend/select.h"
 #include "blend/undershoot.h"
 #include "core/parallel.h"
+#include "core/rect.h"
 #include "features/prepare.h"
+#include "maps/error_map.h"
 #include "noise/variance.h"
 #include "noise/variance_floor.h"
 #include "outliers/remove.h"
@@ -17,6 +20,7 @@
 #include "pipeline/memory.h"
 #include "pipeline/savings.h"
 #include "pipeline/stage.h"
+#include "temporal/neighbour.h"
 
 namespace polyrecon {
 namespace {
@@ -156,7 +160,8 @@ std::size_t fit_steps(const Frame& frame, const Params& params) {
 
 }  // namespace
 
-Neighbour prepare_neighbour(const Frame& frame, int number, const Params& params, Progress& progress) {
+std::shared_ptr<const Neighbour> prepare_neighbour(const Frame& frame, int number, const Params& params,
+                                                   Progress& progress) {
   require_usable(frame);
   const NoiseVariance noise = noise_variance(frame, progress);
   Frame colors;  // the frame in hand has features of its own
@@ -170,7 +175,7 @@ Neighbour prepare_neighbour(const Frame& frame, int number, const Params& params
   if (params.steps.outliers)
     remove_outliers(prepared.pair, prepared.independent_halves, outlier_params(noise), progress);
   if (params.parts.variance_floor) prepared.pair.variance = floor_variance(prepared.pair.variance);
-  return {std::move(prepared.pair), frame.motion};
+  return std::make_shared<Neighbour>(Neighbour{std::move(prepared.pair), frame.motion});
 }
 
 Result reconstruct(Frame& frame, const Params& params, Progress& progress) {

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <chrono>
 
+#include "core/rect.h"
+
 namespace polyrecon {
 namespace {
 

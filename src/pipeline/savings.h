@@ -2,9 +2,9 @@
 
 #include <vector>
 
-#include "core/decision.h"
-#include "core/frame.h"
-#include "pipeline/params.h"
+#include "polyrecon/frame.h"
+#include "polyrecon/params.h"
+#include "polyrecon/report.h"
 
 namespace polyrecon {
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "blend/blend_windows.h"
+#include "blend/select.h"
 #include "core/gaussian.h"
 #include "core/parallel.h"
 #include "core/tiles.h"
@@ -100,15 +102,15 @@ Candidate stage_of_tile(const HalfPair& pair, const Candidate* before, const Par
   const bool cross_filter = params.parts.cross_filter;
   const std::size_t guides_a = cross_filter ? 1 : 0;
   const Guide raw{{&pair.color[guides_a], &pair.color[1 - guides_a]}, &pair.variance};
-  const FitParams raw_fit = before ? params.fit(params.later_bandwidths) : params.first_fit();
+  const FitParams raw_fit = before ? fit_params(params, params.later_bandwidths) : first_fit_params(params);
   add_candidates(pair, raw, before, noisy, raw_fit, cross_filter, counters, progress, candidates);
   Image brightness;
   if (before) {
     brightness = mean_of_halves(before->half);
     const Image variance = residual_variance(*before);
     const Guide guided{{&brightness, &brightness}, &variance};
-    add_candidates(pair, guided, before, noisy, params.fit(params.guided_bandwidths), cross_filter, counters, progress,
-                   candidates);
+    add_candidates(pair, guided, before, noisy, fit_params(params, params.guided_bandwidths), cross_filter, counters,
+                   progress, candidates);
   } else {
     brightness = mean_of_halves(candidates.back().half);
   }
@@ -133,6 +135,20 @@ void paste_candidate(const Candidate& part, const Tile& tile, Candidate& whole) 
 
 }  // namespace
 
+FitParams fit_params(const Params& params, const std::vector<Real>& bandwidths) {
+  return {params.radius,    params.stride,          params.patch,    bandwidths,
+          params.max_order, params.order_tolerance, params.coverage, params.parts.shrinkage};
+}
+
+FitParams first_fit_params(const Params& params) {
+  FitParams fit = fit_params(params, params.first_bandwidths);
+  if (params.stages > 1) {
+    fit.stride = std::min(params.stride + params.stride / 2, params.radius);
+    fit.coverage = params.coverage / 4;
+  }
+  return fit;
+}
+
 double skipped_share(const HalfPair& pair, const Params& params) {
   const auto noisy = noisy_pixels(pair, params);
   const auto left = std::count(noisy.begin(), noisy.end(), 0);
@@ -142,7 +158,7 @@ double skipped_share(const HalfPair& pair, const Params& params) {
 int stage_halo(const Params& params) {
   // The guide's noise is final its blur inside a tile, every candidate fit_halo further in, the choice select_halo
   // more.
-  const int fits = std::max(fit_halo(params.first_fit()), fit_halo(params.fit(params.later_bandwidths)));
+  const int fits = std::max(fit_halo(first_fit_params(params)), fit_halo(fit_params(params, params.later_bandwidths)));
   return gaussian_reach(residual_sigma) + fits + select_halo(params.selection);
 }
 

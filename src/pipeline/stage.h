@@ -3,8 +3,8 @@
 #include "blend/blend_windows.h"
 #include "blend/select.h"
 #include "core/half_pair.h"
-#include "core/progress.h"
-#include "pipeline/params.h"
+#include "polyrecon/params.h"
+#include "polyrecon/progress.h"
 
 namespace polyrecon {
 
@@ -26,5 +26,11 @@ std::size_t smallest_tile_pixels(const Params& params);
 
 /// Bytes that run_stage works with per pixel of a tile; color_channels: of the beauty and the AOVs.
 std::size_t stage_bytes_per_pixel(int color_channels, int feature_channels, const Params& params);
+
+/// The fits that the parameters ask for, with these bandwidths.
+FitParams fit_params(const Params& params, const std::vector<Real>& bandwidths);
+
+/// The fits of stage 1. Where other stages follow it only guesses mu for them, and fewer windows do.
+FitParams first_fit_params(const Params& params);
 
 }  // namespace polyrecon

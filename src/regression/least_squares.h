@@ -28,7 +28,8 @@ struct NestedFactor {
   std::vector<double> scratch;  ///< Weighted responses.
 };
 
-/// Where a column, depending on those before it, counts for half: docs/dev/stability.md has what speaks for these values.
+/// Where a column, depending on those before it, counts for half: docs/dev/stability.md has what speaks for these
+/// values.
 struct DependenceLimits {
   double remainder = 0.03;             ///< This part of its length is left beside them, or,
   double variation = least_variation;  ///< if a feature's, this weighted root mean square over the window.

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "core/fast_math.h"
+#include "core/rect.h"
 #include "core/simd.h"
 
 namespace polyrecon {

@@ -3,18 +3,14 @@
 #include <limits>
 #include <vector>
 
-#include "core/image.h"
+#include "polyrecon/params.h"
+#include "polyrecon/image.h"
 #include "regression/window.h"
 
 namespace polyrecon {
 
 /// Patch distances are cut where even the widest bandwidth leaves a weight below exp(-cut_exponent).
 constexpr Real cut_exponent = 7;
-
-struct PatchParams {
-  int radius = 1;
-  Real most_around = std::numeric_limits<Real>::infinity();  ///< What a pixel around the middle one counts at most.
-};
 
 /// Patch distance of the non-local means filter (Buades et al. 2005, in the noise-aware form of Rousselle et al. 2012)
 /// between a centre and every pixel of its window:

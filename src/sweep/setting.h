@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "core/frame.h"
-#include "pipeline/params.h"
+#include "polyrecon/frame.h"
+#include "polyrecon/params.h"
 
 namespace polyrecon {
 

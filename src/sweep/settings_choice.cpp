@@ -7,7 +7,8 @@
 #include <numeric>
 
 #include "core/parallel.h"
-#include "pipeline/reconstruct.h"
+#include "core/rect.h"
+#include "polyrecon/reconstruct.h"
 #include "sweep/pareto.h"
 
 namespace polyrecon {

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "core/frame.h"
-#include "core/progress.h"
+#include "polyrecon/frame.h"
+#include "polyrecon/progress.h"
 #include "sweep/setting.h"
 
 namespace polyrecon {

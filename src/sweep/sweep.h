@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "core/frame.h"
-#include "core/progress.h"
+#include "polyrecon/frame.h"
+#include "polyrecon/progress.h"
 #include "sweep/trial.h"
 
 namespace polyrecon {

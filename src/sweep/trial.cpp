@@ -4,7 +4,7 @@
 #include <chrono>
 #include <utility>
 
-#include "pipeline/reconstruct.h"
+#include "polyrecon/reconstruct.h"
 
 namespace polyrecon {
 namespace {

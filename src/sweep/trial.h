@@ -3,11 +3,11 @@
 #include <string>
 #include <vector>
 
-#include "core/frame.h"
-#include "core/image.h"
-#include "core/progress.h"
-#include "metrics/score.h"
-#include "pipeline/report.h"
+#include "polyrecon/frame.h"
+#include "polyrecon/image.h"
+#include "polyrecon/progress.h"
+#include "polyrecon/report.h"
+#include "polyrecon/score.h"
 #include "sweep/setting.h"
 
 namespace polyrecon {

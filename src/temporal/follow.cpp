@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/parallel.h"
+#include "temporal/neighbour.h"
 
 namespace polyrecon {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "core/image.h"
+#include "polyrecon/image.h"
 #include "temporal/neighbour.h"
 
 namespace polyrecon {

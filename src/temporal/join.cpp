@@ -6,10 +6,12 @@
 #include <cstdlib>
 #include <utility>
 
-#include "core/error.h"
 #include "core/gaussian.h"
 #include "core/parallel.h"
+#include "core/rect.h"
+#include "polyrecon/error.h"
 #include "temporal/follow.h"
+#include "temporal/neighbour.h"
 
 namespace polyrecon {
 namespace {

@@ -2,20 +2,13 @@
 
 #include <vector>
 
+#include "polyrecon/params.h"
 #include "core/half_pair.h"
-#include "core/image.h"
-#include "core/progress.h"
+#include "polyrecon/image.h"
+#include "polyrecon/progress.h"
 #include "temporal/neighbour.h"
 
 namespace polyrecon {
-
-struct TemporalParams {
-  int radius = 0;                          ///< Frames before and after that may join; 0..8.
-  std::vector<double> scales{1, 2, 4, 8};  ///< Standard deviations of the Gaussians that look for a change, pixels.
-  double accept = 3;                       ///< Change, in units of what noise alone brings, that is not minded.
-  double softness = 2;                     ///< A neighbour's weight falls as exp(-(change - accept) / softness).
-  double max_weight = 4;                   ///< Most weight of an estimate beside the pixel's own.
-};
 
 /// What joined.
 struct JoinCounts {

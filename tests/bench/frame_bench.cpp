@@ -8,7 +8,8 @@
 #include "blend/select.h"
 #include "core/gaussian.h"
 #include "features/prefilter.h"
-#include "pipeline/params.h"
+#include "pipeline/stage.h"
+#include "polyrecon/params.h"
 
 namespace polyrecon::bench {
 namespace {
@@ -30,7 +31,8 @@ void fit_and_blend_frame(benchmark::State& state) {
   FitCounters counters;
   Progress silent;
   for ([[maybe_unused]] const auto pass : state)
-    benchmark::DoNotOptimize(fit_and_blend(source, active, params.fit(params.first_bandwidths), counters, silent));
+    benchmark::DoNotOptimize(
+        fit_and_blend(source, active, fit_params(params, params.first_bandwidths), counters, silent));
   state.counters["windows/s"] = benchmark::Counter(static_cast<double>(counters.windows), benchmark::Counter::kIsRate);
   count_pixels(state);
 }

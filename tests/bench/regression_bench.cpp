@@ -6,7 +6,7 @@
 #include "bench/synthetic.h"
 #include "blend/blend_windows.h"
 #include "core/simd.h"
-#include "pipeline/params.h"
+#include "polyrecon/params.h"
 #include "regression/least_squares.h"
 #include "regression/weights.h"
 

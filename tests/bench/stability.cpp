@@ -13,10 +13,11 @@
 #include <limits>
 #include <string>
 
+#include "core/rect.h"
 #include "features/prepare.h"
-#include "io/read_frame.h"
 #include "noise/variance.h"
-#include "pipeline/params.h"
+#include "polyrecon/params.h"
+#include "polyrecon/read_frame.h"
 #include "regression/least_squares.h"
 #include "regression/order_selection.h"
 #include "regression/weights.h"

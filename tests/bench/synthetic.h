@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "core/half_pair.h"
-#include "core/image.h"
+#include "polyrecon/image.h"
 #include "regression/basis.h"
 #include "regression/window.h"
 

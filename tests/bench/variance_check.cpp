@@ -9,8 +9,8 @@
 #include <numeric>
 #include <vector>
 
-#include "io/read_frame.h"
 #include "noise/variance.h"
+#include "polyrecon/read_frame.h"
 
 using polyrecon::Frame;
 using polyrecon::Image;

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "blend/select.h"
 #include "support/images.h"
 #include "support/random.h"
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "blend/select.h"
 #include "core/gaussian.h"
 #include "support/images.h"
 #include "support/scene.h"

@@ -1,7 +1,8 @@
-#include "core/image.h"
+#include "polyrecon/image.h"
 
 #include <gtest/gtest.h>
 
+#include "core/rect.h"
 #include "support/images.h"
 
 namespace polyrecon {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "core/error.h"
+#include "polyrecon/error.h"
 #include "support/threads.h"
 
 namespace polyrecon {

@@ -4,6 +4,8 @@
 
 #include <vector>
 
+#include "core/rect.h"
+
 namespace polyrecon {
 namespace {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/error.h"
+#include "polyrecon/error.h"
 #include "regression/basis.h"
 #include "support/images.h"
 #include "support/scene.h"

@@ -3,10 +3,10 @@
 #include <fstream>
 #include <functional>
 
-#include "core/error.h"
 #include "io/inspect.h"
-#include "io/merge.h"
-#include "io/write_result.h"
+#include "polyrecon/error.h"
+#include "polyrecon/merge.h"
+#include "polyrecon/write_result.h"
 
 namespace polyrecon::fuzz {
 namespace {

@@ -18,8 +18,8 @@
 #include "cli/program.h"
 #include "io/atomic_file.h"
 #include "io/exr_fixture.h"
-#include "io/read_frame.h"
-#include "io/write_result.h"
+#include "polyrecon/read_frame.h"
+#include "polyrecon/write_result.h"
 #include "support/instances.h"
 #include "support/random.h"
 

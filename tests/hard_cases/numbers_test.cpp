@@ -8,16 +8,17 @@
 #include <limits>
 #include <string>
 
-#include "core/error.h"
+#include "blend/select.h"
 #include "core/resample.h"
 #include "features/prepare.h"
 #include "io/exr_fixture.h"
-#include "io/merge.h"
-#include "io/read_frame.h"
 #include "outliers/remove.h"
 #include "outliers/restore.h"
 #include "pipeline/memory.h"
 #include "pipeline/stage.h"
+#include "polyrecon/error.h"
+#include "polyrecon/merge.h"
+#include "polyrecon/read_frame.h"
 #include "support/images.h"
 #include "support/instances.h"
 #include "support/random.h"

@@ -8,8 +8,8 @@
 #include <limits>
 #include <string>
 
-#include "core/error.h"
-#include "pipeline/reconstruct.h"
+#include "polyrecon/error.h"
+#include "polyrecon/reconstruct.h"
 #include "support/images.h"
 #include "support/random.h"
 #include "support/threads.h"

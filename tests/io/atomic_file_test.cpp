@@ -12,7 +12,7 @@
 #include <stdexcept>
 
 #include "io/exr_fixture.h"
-#include "io/write_result.h"
+#include "polyrecon/write_result.h"
 
 namespace polyrecon {
 namespace {

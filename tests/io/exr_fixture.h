@@ -22,8 +22,8 @@
 #include <string>
 #include <vector>
 
-#include "core/error.h"
 #include "core/rect.h"
+#include "polyrecon/error.h"
 
 namespace polyrecon::testing {
 

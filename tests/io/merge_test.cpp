@@ -1,4 +1,4 @@
-#include "io/merge.h"
+#include "polyrecon/merge.h"
 
 #include <OpenEXR/ImfStandardAttributes.h>
 #include <OpenEXR/ImfStringAttribute.h>
@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "io/exr_fixture.h"
-#include "io/read_frame.h"
+#include "polyrecon/read_frame.h"
 
 namespace polyrecon {
 namespace {

@@ -1,4 +1,4 @@
-#include "io/read_frame.h"
+#include "polyrecon/read_frame.h"
 
 #include <OpenEXR/ImfStandardAttributes.h>
 #include <OpenEXR/ImfStringAttribute.h>

@@ -1,4 +1,4 @@
-#include "io/write_result.h"
+#include "polyrecon/write_result.h"
 
 #include <OpenEXR/ImfDeepFrameBuffer.h>
 #include <OpenEXR/ImfDeepScanLineInputPart.h>
@@ -12,6 +12,7 @@
 #include <cmath>
 #include <limits>
 
+#include "io/exr/file.h"
 #include "io/exr_fixture.h"
 
 namespace polyrecon {

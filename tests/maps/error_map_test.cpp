@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "blend/select.h"
 #include "core/gaussian.h"
 #include "support/images.h"
 #include "support/scene.h"

@@ -1,4 +1,4 @@
-#include "maps/sample_map.h"
+#include "polyrecon/sample_map.h"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <random>
 #include <vector>
 
-#include "core/error.h"
 #include "core/parallel.h"
+#include "polyrecon/error.h"
 
 namespace polyrecon {
 namespace {

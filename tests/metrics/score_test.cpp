@@ -1,11 +1,11 @@
-#include "metrics/score.h"
+#include "polyrecon/score.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "core/error.h"
+#include "polyrecon/error.h"
 
 namespace polyrecon {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "core/error.h"
 #include "pipeline/stage.h"
+#include "polyrecon/error.h"
 
 namespace polyrecon {
 namespace {

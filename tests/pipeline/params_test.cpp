@@ -1,8 +1,10 @@
-#include "pipeline/params.h"
+#include "polyrecon/params.h"
 
 #include <gtest/gtest.h>
 
-#include "core/error.h"
+#include "blend/blend_windows.h"
+#include "pipeline/stage.h"
+#include "polyrecon/error.h"
 
 namespace polyrecon {
 namespace {
@@ -14,13 +16,13 @@ TEST(Params, EveryQualityIsValid) {
 
 TEST(Params, OnlyAFirstStageThatOthersFollowTakesFewerWindows) {
   Params params;
-  const FitParams later = params.fit(params.first_bandwidths);
-  EXPECT_GT(params.first_fit().stride, later.stride);
-  EXPECT_LT(params.first_fit().coverage, later.coverage);
+  const FitParams later = fit_params(params, params.first_bandwidths);
+  EXPECT_GT(first_fit_params(params).stride, later.stride);
+  EXPECT_LT(first_fit_params(params).coverage, later.coverage);
   params.stride = params.radius;
-  EXPECT_EQ(params.first_fit().stride, params.radius);  // or pixels between the windows would be in none
+  EXPECT_EQ(first_fit_params(params).stride, params.radius);  // or pixels between the windows would be in none
   params.stages = 1;
-  EXPECT_EQ(params.first_fit().coverage, later.coverage);
+  EXPECT_EQ(first_fit_params(params).coverage, later.coverage);
 }
 
 TEST(Params, ValuesOutOfRangeAreErrorsOfUse) {

@@ -1,11 +1,11 @@
-#include "pipeline/reconstruct.h"
+#include "polyrecon/reconstruct.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <string>
 
-#include "core/error.h"
+#include "polyrecon/error.h"
 #include "support/images.h"
 #include "support/random.h"
 #include "support/reconstruction.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <ctime>
 
-#include "pipeline/reconstruct.h"
+#include "polyrecon/reconstruct.h"
 #include "support/scene.h"
 
 namespace polyrecon {

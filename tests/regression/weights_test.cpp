@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "core/rect.h"
 #include "support/images.h"
 #include "support/random.h"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "core/image.h"
+#include "polyrecon/image.h"
 
 namespace polyrecon::test {
 

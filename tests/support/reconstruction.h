@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "pipeline/reconstruct.h"
+#include "polyrecon/reconstruct.h"
 #include "support/images.h"
 
 namespace polyrecon::test {

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "core/frame.h"
 #include "core/half_pair.h"
+#include "polyrecon/frame.h"
 #include "support/images.h"
 #include "support/random.h"
 

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "pipeline/reconstruct.h"
+#include "polyrecon/reconstruct.h"
 #include "support/scene.h"
 
 namespace polyrecon {

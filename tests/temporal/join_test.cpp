@@ -6,7 +6,7 @@
 #include <functional>
 #include <vector>
 
-#include "pipeline/reconstruct.h"
+#include "polyrecon/reconstruct.h"
 #include "support/images.h"
 #include "support/scene.h"
 #include "temporal/follow.h"

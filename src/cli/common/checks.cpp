@@ -5,8 +5,8 @@
 #include <set>
 #include <utility>
 
-#include "core/error.h"
 #include "io/atomic_file.h"
+#include "polyrecon/error.h"
 
 namespace polyrecon {
 namespace {

@@ -8,7 +8,7 @@
 #include <set>
 #include <system_error>
 
-#include "core/error.h"
+#include "polyrecon/error.h"
 
 namespace polyrecon {
 namespace {

@@ -4,7 +4,9 @@
 #include <array>
 #include <cctype>
 
-#include "core/error.h"
+#include "io/channel_names.h"
+#include "io/exr/file.h"
+#include "polyrecon/error.h"
 
 namespace polyrecon {
 namespace {

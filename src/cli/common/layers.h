@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "core/image.h"
 #include "io/channel_names.h"
 #include "io/exr/file.h"
+#include "polyrecon/image.h"
 
 namespace polyrecon {
 

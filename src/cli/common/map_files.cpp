@@ -5,9 +5,10 @@
 #include <utility>
 #include <vector>
 
-#include "core/error.h"
+#include "core/rect.h"
 #include "io/exr/file.h"
-#include "io/write_result.h"
+#include "polyrecon/error.h"
+#include "polyrecon/write_result.h"
 
 namespace polyrecon {
 namespace {

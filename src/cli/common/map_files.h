@@ -2,9 +2,9 @@
 
 #include <string>
 
-#include "core/image.h"
 #include "maps/error_map.h"
-#include "maps/sample_map.h"
+#include "polyrecon/image.h"
+#include "polyrecon/sample_map.h"
 
 namespace polyrecon {
 

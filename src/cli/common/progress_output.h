@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "core/progress.h"
+#include "polyrecon/progress.h"
 
 namespace polyrecon {
 

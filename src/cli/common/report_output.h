@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "cli/denoise/planning.h"
-#include "io/read_frame.h"
-#include "pipeline/report.h"
+#include "polyrecon/read_frame.h"
+#include "polyrecon/report.h"
 
 namespace polyrecon {
 

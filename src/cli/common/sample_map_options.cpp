@@ -9,7 +9,7 @@
 #include "cli/common/checks.h"
 #include "cli/common/choice.h"
 #include "cli/common/layers.h"
-#include "core/error.h"
+#include "polyrecon/error.h"
 
 namespace polyrecon {
 namespace {

@@ -4,8 +4,8 @@
 #include <string>
 
 #include "cli/common/map_files.h"
-#include "core/progress.h"
-#include "maps/sample_map.h"
+#include "polyrecon/progress.h"
+#include "polyrecon/sample_map.h"
 
 namespace polyrecon {
 

@@ -6,8 +6,8 @@
 #include <cstdio>
 #include <string_view>
 
-#include "core/error.h"
 #include "io/atomic_file.h"
+#include "polyrecon/error.h"
 
 namespace polyrecon {
 namespace {

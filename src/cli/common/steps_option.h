@@ -3,7 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <string>
 
-#include "pipeline/params.h"
+#include "polyrecon/params.h"
 
 namespace polyrecon {
 

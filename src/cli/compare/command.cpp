@@ -12,9 +12,9 @@
 #include "cli/compare/comparison.h"
 #include "cli/compare/comparison_output.h"
 #include "cli/compare/comparison_page.h"
-#include "core/error.h"
 #include "io/atomic_file.h"
 #include "io/pictures/png_file.h"
+#include "polyrecon/error.h"
 
 namespace polyrecon {
 namespace {

@@ -5,8 +5,8 @@
 #include <numeric>
 #include <utility>
 
-#include "core/error.h"
 #include "metrics/flip.h"
+#include "polyrecon/error.h"
 
 namespace polyrecon {
 namespace {

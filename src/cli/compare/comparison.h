@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "cli/common/layers.h"
-#include "core/progress.h"
-#include "metrics/score.h"
+#include "polyrecon/progress.h"
+#include "polyrecon/score.h"
 
 namespace polyrecon {
 

@@ -13,10 +13,10 @@
 #include "cli/denoise/fetch_frame.h"
 #include "cli/denoise/frame_files.h"
 #include "cli/denoise/sequence.h"
-#include "core/error.h"
 #include "core/parallel.h"
 #include "io/exr/file.h"
 #include "pipeline/memory.h"
+#include "polyrecon/error.h"
 
 namespace polyrecon {
 namespace {

@@ -9,10 +9,11 @@
 #include "cli/common/map_files.h"
 #include "cli/common/report_output.h"
 #include "cli/denoise/finished.h"
-#include "core/error.h"
 #include "io/atomic_file.h"
-#include "io/write_result.h"
-#include "pipeline/reconstruct.h"
+#include "io/channel_names.h"
+#include "polyrecon/error.h"
+#include "polyrecon/reconstruct.h"
+#include "polyrecon/write_result.h"
 
 namespace polyrecon {
 namespace {

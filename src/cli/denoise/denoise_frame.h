@@ -6,8 +6,8 @@
 
 #include "cli/denoise/denoise_options.h"
 #include "cli/denoise/frame_files.h"
-#include "core/progress.h"
-#include "io/read_frame.h"
+#include "polyrecon/progress.h"
+#include "polyrecon/read_frame.h"
 #include "temporal/neighbour.h"
 
 namespace polyrecon {

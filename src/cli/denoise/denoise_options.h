@@ -8,8 +8,8 @@
 
 #include "cli/common/progress_output.h"
 #include "cli/common/sample_map_options.h"
-#include "io/read_frame.h"
-#include "pipeline/params.h"
+#include "polyrecon/params.h"
+#include "polyrecon/read_frame.h"
 
 namespace polyrecon {
 

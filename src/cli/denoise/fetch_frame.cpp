@@ -11,8 +11,8 @@
 #include <utility>
 
 #include "cli/denoise/finished.h"
-#include "core/error.h"
-#include "pipeline/reconstruct.h"
+#include "polyrecon/error.h"
+#include "polyrecon/reconstruct.h"
 
 namespace polyrecon {
 namespace {
@@ -88,8 +88,7 @@ void FrameFetcher::add_neighbours(const FrameFiles& files, LoadedFrame& loaded) 
   Cancellable progress(cancelled_);
   const auto known = prepared_.find(files.input);
   kept[files.input] = known != prepared_.end() ? known->second
-                                               : std::make_shared<const Neighbour>(prepare_neighbour(
-                                                     loaded.in.frame, files.place, params_of(options_), progress));
+                                               : prepare_neighbour(loaded.in.frame, files.place, params_of(options_), progress);
   prepared_ = std::move(kept);
   loaded.read_seconds += std::chrono::duration<double>(Clock::now() - start).count();
 }
@@ -102,8 +101,7 @@ FrameFetcher::Prepared FrameFetcher::neighbour(const NeighbourFile& file, Loaded
   try {
     return wait_for(file.path, patience, [&] {
       const LoadedFrame frame = load_frame(file.path, options_);
-      return std::make_shared<const Neighbour>(
-          prepare_neighbour(frame.in.frame, file.number, params_of(options_), progress));
+      return prepare_neighbour(frame.in.frame, file.number, params_of(options_), progress);
     });
   } catch (const Error& error) {
     if (error.code() == ExitCode::Interrupted) throw;

@@ -5,10 +5,10 @@
 #include <filesystem>
 #include <system_error>
 
-#include "core/error.h"
 #include "io/decode_file.h"
 #include "io/exr/file.h"
 #include "io/file_identity.h"
+#include "polyrecon/error.h"
 
 namespace polyrecon {
 namespace {

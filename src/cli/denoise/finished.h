@@ -4,7 +4,7 @@
 
 #include "cli/denoise/denoise_options.h"
 #include "cli/denoise/frame_files.h"
-#include "io/read_frame.h"
+#include "polyrecon/read_frame.h"
 
 namespace polyrecon {
 

@@ -9,7 +9,7 @@
 
 #include "cli/common/frame_names.h"
 #include "cli/denoise/denoise_options.h"
-#include "core/error.h"
+#include "polyrecon/error.h"
 
 namespace polyrecon {
 namespace {

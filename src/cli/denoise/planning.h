@@ -4,7 +4,7 @@
 #include <string>
 
 #include "cli/denoise/denoise_options.h"
-#include "core/frame.h"
+#include "polyrecon/frame.h"
 #include "sweep/settings_choice.h"
 
 namespace polyrecon {

@@ -15,8 +15,8 @@
 #include "cli/denoise/denoise_frame.h"
 #include "cli/denoise/fetch_frame.h"
 #include "cli/denoise/finished.h"
-#include "core/error.h"
 #include "pipeline/memory.h"
+#include "polyrecon/error.h"
 
 namespace polyrecon {
 namespace {

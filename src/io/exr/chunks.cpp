@@ -11,7 +11,7 @@
 #include <algorithm>
 #include <array>
 
-#include "core/error.h"
+#include "polyrecon/error.h"
 
 namespace polyrecon {
 namespace {

@@ -15,13 +15,13 @@
 #include <filesystem>
 #include <fstream>
 
-#include "core/error.h"
 #include "core/parallel.h"
 #include "io/channel_reader.h"
 #include "io/exr/attributes.h"
 #include "io/exr/chunks.h"
 #include "io/exr/guard.h"
 #include "io/plain_image_file.h"
+#include "polyrecon/error.h"
 
 namespace polyrecon {
 namespace {

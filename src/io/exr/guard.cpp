@@ -12,8 +12,8 @@
 #include <map>
 #include <string_view>
 
-#include "core/error.h"
 #include "io/exr/chunks.h"
+#include "polyrecon/error.h"
 
 namespace polyrecon {
 namespace {

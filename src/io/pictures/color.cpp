@@ -9,7 +9,7 @@
 #include <sstream>
 #include <vector>
 
-#include "core/error.h"
+#include "polyrecon/error.h"
 
 namespace polyrecon {
 namespace {

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <functional>
 
-#include "core/error.h"
+#include "polyrecon/error.h"
 
 namespace polyrecon {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "core/image.h"
+#include "polyrecon/image.h"
 
 namespace polyrecon {
 

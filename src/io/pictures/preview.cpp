@@ -9,8 +9,8 @@
 #include <cmath>
 #include <string>
 
-#include "core/error.h"
 #include "io/pictures/false_color.h"
+#include "polyrecon/error.h"
 
 namespace polyrecon {
 namespace {

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "core/image.h"
 #include "io/pictures/color.h"
+#include "polyrecon/image.h"
 
 namespace polyrecon {
 

@@ -7,8 +7,8 @@
 
 #include <chrono>
 
-#include "core/error.h"
 #include "io/exr_fixture.h"
+#include "polyrecon/error.h"
 
 namespace polyrecon {
 namespace {

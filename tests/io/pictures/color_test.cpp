@@ -11,9 +11,9 @@
 #include <string>
 #include <vector>
 
-#include "core/error.h"
 #include "io/pictures/false_color.h"
 #include "io/pictures/preview.h"
+#include "polyrecon/error.h"
 
 namespace polyrecon {
 namespace {

@@ -3,10 +3,10 @@
 #include <cstdio>
 #include <exception>
 
-#include "core/progress.h"
-#include "io/read_frame.h"
-#include "io/write_result.h"
-#include "pipeline/reconstruct.h"
+#include "polyrecon/progress.h"
+#include "polyrecon/read_frame.h"
+#include "polyrecon/reconstruct.h"
+#include "polyrecon/write_result.h"
 
 int main(int argc, char** argv) {
   if (argc != 3) return 2;

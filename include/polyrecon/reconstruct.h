@@ -1,14 +1,13 @@
 #pragma once
 
-#include <cstddef>
+#include <memory>
 #include <vector>
 
-#include "core/frame.h"
-#include "core/progress.h"
 #include "maps/error_map.h"
-#include "pipeline/params.h"
-#include "pipeline/report.h"
-#include "temporal/neighbour.h"
+#include "polyrecon/frame.h"
+#include "polyrecon/params.h"
+#include "polyrecon/progress.h"
+#include "polyrecon/report.h"
 
 namespace polyrecon {
 
@@ -29,6 +28,15 @@ struct Result {
 /// tile fits, Error{Interrupted} when progress asks to stop.
 Result reconstruct(Frame& frame, const Params& params, Progress& progress);
 
+/// A frame as the frames before and after it need it (temporal/neighbour.h).
+struct Neighbour;
+
+/// A neighbour and its place in time: `offset` frames after the frame in hand (before it where negative).
+struct TimedNeighbour {
+  int offset = 0;
+  const Neighbour* frame = nullptr;  ///< Must outlive the call.
+};
+
 /// The same with the help of frames before and after (temporal/join.h), as prepare_neighbour made them, sorted in any
 /// way, at most params.temporal.radius frames away. They count towards params.max_memory.
 Result reconstruct(Frame& frame, const std::vector<TimedNeighbour>& neighbours, const Params& params,
@@ -37,6 +45,7 @@ Result reconstruct(Frame& frame, const std::vector<TimedNeighbour>& neighbours, 
 /// A frame as its neighbours in time need it, which is the same for all of them. number: of the frame; two frames that
 /// meet must not have the same one, since noise of a frame without half buffers is split with random numbers of its
 /// own. Throws as reconstruct does.
-Neighbour prepare_neighbour(const Frame& frame, int number, const Params& params, Progress& progress);
+std::shared_ptr<const Neighbour> prepare_neighbour(const Frame& frame, int number, const Params& params,
+                                                   Progress& progress);
 
 }  // namespace polyrecon

@@ -5,9 +5,20 @@
 #include <string>
 #include <vector>
 
-#include "core/decision.h"
-
 namespace polyrecon {
+
+/// Work that a decision spares.
+enum class Spared { Nothing, Pixels, Columns, Prefilter };
+
+/// Whether an step of the pipeline is run on this frame, and why (or why not).
+struct Decision {
+  std::string step;
+  bool run = false;
+  std::string reason;
+  Spared spared = Spared::Nothing;
+  int channels = 0;          ///< Of the pass that the decision is about.
+  double saved_seconds = 0;  ///< About what the spared work would have taken on this machine (pipeline/savings.h).
+};
 
 /// Wall-clock seconds of one stage of the pipeline.
 struct StageTime {

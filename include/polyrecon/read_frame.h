@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "core/frame.h"
-#include "io/channel_names.h"
-#include "io/exr/file.h"
+#include "polyrecon/file_info.h"
+#include "polyrecon/frame.h"
+#include "polyrecon/layers.h"
 
 namespace polyrecon {
 

@@ -3,10 +3,27 @@
 #include <cstddef>
 #include <vector>
 
-#include "core/real.h"
-#include "core/rect.h"
-
 namespace polyrecon {
+
+/// Type of stored samples, chosen when the project is configured (POLYRECON_REAL). Sums are always double.
+using Real = POLYRECON_REAL;
+
+/// A rectangle of pixels: columns x0 .. x1 - 1, rows y0 .. y1 - 1.
+struct Rect {
+  int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+
+  int width() const { return x1 - x0; }
+  int height() const { return y1 - y0; }
+  bool empty() const { return x1 <= x0 || y1 <= y0; }
+  std::size_t area() const {
+    return empty() ? 0 : static_cast<std::size_t>(width()) * static_cast<std::size_t>(height());
+  }
+  bool contains(int x, int y) const { return x >= x0 && x < x1 && y >= y0 && y < y1; }
+
+  friend bool operator==(const Rect& a, const Rect& b) {
+    return a.x0 == b.x0 && a.y0 == b.y0 && a.x1 == b.x1 && a.y1 == b.y1;
+  }
+};
 
 /// A planar image: channels() planes, each height() rows of width() samples, rows without padding.
 /// A default-constructed Image is empty and stands for "this pass is not there".

@@ -2,9 +2,9 @@
 
 #include <cstddef>
 
-#include "core/image.h"
-#include "core/progress.h"
 #include "maps/error_map.h"
+#include "polyrecon/image.h"
+#include "polyrecon/progress.h"
 
 namespace polyrecon {
 

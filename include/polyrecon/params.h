@@ -1,16 +1,55 @@
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
+#include <limits>
 #include <vector>
 
-#include "blend/blend_windows.h"
-#include "blend/select.h"
-#include "core/decision.h"
-#include "features/prefilter.h"
-#include "temporal/join.h"
+#include "polyrecon/image.h"
 
 namespace polyrecon {
+
+struct PatchParams {
+  int radius = 1;
+  Real most_around = std::numeric_limits<Real>::infinity();  ///< What a pixel around the middle one counts at most.
+};
+
+struct PrefilterParams {
+  int search_radius = 5;
+  int patch_radius = 3;
+  double bandwidth = 0.5;
+};
+
+struct OutlierParams {
+  int neighbourhood = 2;             ///< Radius of the neighbourhood that an outlier stands out of, pixels.
+  bool variance_is_measured = true;  ///< Otherwise the variance says nothing of single pixels and is not asked.
+  double height = 3;  ///< How far above the median it stands, in units of (upper end of the neighbourhood - median).
+  /// How far above the other half's pixel it stands, in units of the third largest difference of the halves around.
+  double height_over_other_half = 8;
+  double reliability = 4;  ///< It is unreliable: its excess is below this many of its own standard deviations.
+  int density_radius = 9;  ///< Where outliers are common within this radius they are the light itself and stay.
+  double density = 0.01;   ///< Part of the pixels around that may be outliers, beside the pixel itself.
+};
+
+struct SelectParams {
+  double risk_sigma = 3;   ///< Gaussian over which cross-validated errors are averaged, pixels.
+  double map_sigma = 1.5;  ///< Gaussian by which the choice itself is smoothed.
+};
+
+struct TemporalParams {
+  int radius = 0;                          ///< Frames before and after that may join; 0..8.
+  std::vector<double> scales{1, 2, 4, 8};  ///< Standard deviations of the Gaussians that look for a change, pixels.
+  double accept = 3;                       ///< Change, in units of what noise alone brings, that is not minded.
+  double softness = 2;                     ///< A neighbour's weight falls as exp(-(change - accept) / softness).
+  double max_weight = 4;                   ///< Most weight of an estimate beside the pixel's own.
+};
+
+/// Which steps may run, and who decides.
+struct Steps {
+  bool decide = true;  ///< A look at the frame leaves out what it does not call for; false: all that is allowed runs.
+  bool normal = true, albedo = true, depth = true, visibility = true;  ///< Feature passes that may take part.
+  bool prefilter = true;                                               ///< Of noisy feature passes.
+  bool outliers = true;  ///< Their removal, and the return of their light.
+};
 
 enum class Quality { Draft, Standard, Best };
 
@@ -47,19 +86,6 @@ struct Params {
   TemporalParams temporal;         ///< How neighbours in time join, where there are any.
   bool reconstruct_alpha = false;  ///< Reconstruct alpha with the beauty's windows instead of keeping it.
   std::size_t max_memory = std::size_t{4} << 30;  ///< Bytes; larger frames are worked in tiles.
-
-  FitParams fit(const std::vector<Real>& bandwidths) const {
-    return {radius, stride, patch, bandwidths, max_order, order_tolerance, coverage, parts.shrinkage};
-  }
-  /// Of stage 1. Where others follow it only guesses mu for them, and fewer windows do.
-  FitParams first_fit() const {
-    FitParams fit_params = fit(first_bandwidths);
-    if (stages > 1) {
-      fit_params.stride = std::min(stride + stride / 2, radius);
-      fit_params.coverage = coverage / 4;
-    }
-    return fit_params;
-  }
 };
 
 Params params_for(Quality quality);

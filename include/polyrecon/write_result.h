@@ -4,9 +4,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/frame.h"
-#include "io/atomic_file.h"
-#include "io/read_frame.h"
+#include "polyrecon/frame.h"
+#include "polyrecon/read_frame.h"
 
 namespace polyrecon {
 
