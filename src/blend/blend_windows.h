@@ -5,8 +5,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "polyrecon/params.h"
 #include "polyrecon/image.h"
+#include "polyrecon/params.h"
 #include "polyrecon/progress.h"
 #include "regression/basis.h"
 #include "regression/weights.h"

@@ -5,9 +5,9 @@
 #include <functional>
 #include <vector>
 
-#include "polyrecon/params.h"
 #include "core/half_pair.h"
 #include "polyrecon/image.h"
+#include "polyrecon/params.h"
 
 namespace polyrecon {
 

@@ -2,8 +2,8 @@
 
 #include <array>
 
-#include "polyrecon/params.h"
 #include "polyrecon/image.h"
+#include "polyrecon/params.h"
 #include "polyrecon/progress.h"
 
 namespace polyrecon {

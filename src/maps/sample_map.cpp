@@ -108,17 +108,17 @@ class Window {
 };
 
 /// Of the error map, every value finite and not negative.
-struct Parts {
+struct ErrorParts {
   Plane variance, noise;
   double relative_mse = 0;  ///< Mean over the pixels where it is known.
   std::size_t unknown = 0;
 };
 
-Parts split_error(const ErrorMap& error) {
+ErrorParts split_error(const ErrorMap& error) {
   const Image& mse = error.relative_mse;
   const Image& variance = error.relative_variance;
   const Plane zeros(mse.width(), mse.height());
-  Parts parts{zeros, zeros};
+  ErrorParts parts{zeros, zeros};
   const std::size_t count = mse.pixels();
   std::vector<std::size_t> unknown;
   double variance_sum = 0, mse_sum = 0, noise_sum = 0;
@@ -224,7 +224,7 @@ double lowest_level(Levels r, Reached reached, Progress& progress) {
 }
 
 /// V_i: what pixel i's noise does to the windows around it, up to a common factor.
-Plane weight_of_samples(const Parts& parts, const Window& window, Progress& progress) {
+Plane weight_of_samples(const ErrorParts& parts, const Window& window, Progress& progress) {
   Plane V = window.spread(parts.variance, progress);
   Plane both = window.spread(parts.noise, progress);
   for (std::size_t i = 0; i < both.v.size(); ++i) both.v[i] = std::sqrt(both.v[i]) * std::sqrt(V.v[i]);
@@ -279,7 +279,7 @@ SampleMap make_sample_map(const ErrorMap& error, const Image& sample_count, cons
   SampleMap map;
   map.samples = map.importance = Image(width, height, 1);
 
-  const Parts parts = split_error(error);
+  const ErrorParts parts = split_error(error);
   map.unknown_pixels = parts.unknown;
   if (params.target > 0 && parts.unknown == error.relative_mse.pixels())
     throw Error(ExitCode::BadInput, "no pixel of the error map is finite: a target cannot be judged, give a budget");

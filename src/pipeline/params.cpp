@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "polyrecon/error.h"
+#include "regression/basis.h"
 
 namespace polyrecon {
 namespace {

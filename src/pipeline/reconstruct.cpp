@@ -20,6 +20,7 @@
 #include "pipeline/memory.h"
 #include "pipeline/savings.h"
 #include "pipeline/stage.h"
+#include "temporal/join.h"
 #include "temporal/neighbour.h"
 
 namespace polyrecon {

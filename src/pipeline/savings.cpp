@@ -6,6 +6,7 @@
 #include <chrono>
 
 #include "core/rect.h"
+#include "features/prefilter.h"
 
 namespace polyrecon {
 namespace {

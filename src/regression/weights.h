@@ -3,8 +3,8 @@
 #include <limits>
 #include <vector>
 
-#include "polyrecon/params.h"
 #include "polyrecon/image.h"
+#include "polyrecon/params.h"
 #include "regression/window.h"
 
 namespace polyrecon {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "blend/blend_windows.h"
 #include "core/parallel.h"
 #include "core/rect.h"
 #include "polyrecon/reconstruct.h"

@@ -2,9 +2,9 @@
 
 #include <vector>
 
-#include "polyrecon/params.h"
 #include "core/half_pair.h"
 #include "polyrecon/image.h"
+#include "polyrecon/params.h"
 #include "polyrecon/progress.h"
 #include "temporal/neighbour.h"
 

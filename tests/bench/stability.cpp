@@ -13,6 +13,7 @@
 #include <limits>
 #include <string>
 
+#include "blend/blend_windows.h"
 #include "core/rect.h"
 #include "features/prepare.h"
 #include "noise/variance.h"

@@ -18,7 +18,7 @@ def documented():
 
 class ExitCodes(unittest.TestCase):
     def test_names_and_numbers_are_those_of_the_library(self):
-        enum = re.search(r"enum class ExitCode \{(.*?)\};", tree.read("src/core/error.h"), re.S)[1]
+        enum = re.search(r"enum class ExitCode \{(.*?)\};", tree.read("include/polyrecon/error.h"), re.S)[1]
         in_library = {int(code): name for name, code in re.findall(r"(\w+) = (\d+)", enum)}
         self.assertGreater(len(in_library), 5)
         self.assertEqual(in_library, documented())

@@ -104,7 +104,7 @@ class DebianPackages(Folder):
         )
         self.assertTrue(any(name.endswith(f"/polyrecon/{MODULE}") for name in names["polyrecon"]), names["polyrecon"])
         library = names["libpolyrecon-dev"]
-        self.assertIn("/usr/include/polyrecon/pipeline/reconstruct.h", library)
+        self.assertIn("/usr/include/polyrecon/reconstruct.h", library)
         self.assertTrue(any(name.endswith("/libpolyrecon_core.a") for name in library), library)
         self.assertTrue(any(name.endswith("/polyreconConfig.cmake") for name in library), library)
         self.assertFalse(set(names["polyrecon"]) & {name for name in library if not name.endswith("/")})

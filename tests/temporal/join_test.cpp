@@ -262,7 +262,7 @@ TEST(PrepareNeighbour, SplitsEveryFrameWithNumbersOfItsOwn) {
   Progress silent;
   const Params params;
   const auto difference = [&](int number) {
-    const Neighbour n = prepare_neighbour(frame, number, params, silent);
+    const Neighbour n = *prepare_neighbour(frame, number, params, silent);
     std::vector<double> out;
     for (std::size_t i = 0; i < n.pair.variance.pixels(); ++i)
       out.push_back(static_cast<double>(n.pair.color[0].plane(0)[i]) -
@@ -285,8 +285,8 @@ TEST(Reconstruct, NeighboursInTimeLowerTheError) {
   Params params;
   params.temporal.radius = 1;
   Progress silent;
-  const Neighbour before = prepare_neighbour(test::make_scene(80, 64, 0.5, 2).frame, 1, params, silent);
-  const Neighbour after = prepare_neighbour(test::make_scene(80, 64, 0.5, 3).frame, 3, params, silent);
+  const Neighbour before = *prepare_neighbour(test::make_scene(80, 64, 0.5, 2).frame, 1, params, silent);
+  const Neighbour after = *prepare_neighbour(test::make_scene(80, 64, 0.5, 3).frame, 3, params, silent);
   Frame once = scene.frame, again = scene.frame;
   const Result alone = reconstruct(once, params, silent);
   const Result joined = reconstruct(again, {{-1, &before}, {1, &after}}, params, silent);

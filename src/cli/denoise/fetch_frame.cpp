@@ -87,8 +87,9 @@ void FrameFetcher::add_neighbours(const FrameFiles& files, LoadedFrame& loaded) 
   // The frame itself is a neighbour of the next one.
   Cancellable progress(cancelled_);
   const auto known = prepared_.find(files.input);
-  kept[files.input] = known != prepared_.end() ? known->second
-                                               : prepare_neighbour(loaded.in.frame, files.place, params_of(options_), progress);
+  kept[files.input] = known != prepared_.end()
+                          ? known->second
+                          : prepare_neighbour(loaded.in.frame, files.place, params_of(options_), progress);
   prepared_ = std::move(kept);
   loaded.read_seconds += std::chrono::duration<double>(Clock::now() - start).count();
 }
