@@ -1,1 +1,1 @@
-"""Blender (Cycles) behind the interface of the loop: see README.md."""
+"""Drivers of Blender's Cycles: see README.md."""

@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
-"""Renders a .blend file with Cycles, taking samples only where the reconstruction needs them, and writes the clean picture.
+"""Renders a .blend file with Cycles, takes samples where the reconstruction needs them, and writes the clean picture.
 
 examples:
   adaptive.py shot.blend -o shot.exr --budget-spp 64
   adaptive.py shot.blend -o 'out/shot_####.exr' --frames 1-10 --budget-seconds 120 --quality best
   adaptive.py shot.blend -o shot.exr --target 0.002 --bpy
-  adaptive.py shot.blend -o shot.exr --budget-spp 128 --resume        # goes on after an interruption, or with more budget
+  adaptive.py shot.blend -o shot.exr --budget-spp 128 --resume    # continues after an interruption, or with more budget
 
-The file is never changed and no script in it is run. Passes, merged picture, error map, sample maps, journal and
+The file is not changed and none of its scripts is run. Passes, merged picture, error map, sample maps, journal and
 report.html stay in --passes-dir."""
 
 import argparse
@@ -28,16 +28,16 @@ def arguments(words):
         prog="polyrecon-blender", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     add_common(parser)
-    command.add_loop_arguments(parser, 8, "uniform samples to begin with: 4 or a multiple of 8 (8)")
+    command.add_loop_arguments(parser, 8, "uniform samples of the first pass: 4 or a multiple of 8 (8)")
     parser.add_argument(
         "--method",
         choices=("auto", "osl", "regions"),
         default="auto",
-        help="how extra samples are rendered: by a camera with a mask (Blender 5), or as rectangles (auto)",
+        help="way of extra samples: osl, a camera with a mask (Blender 5), or regions, rectangles (auto)",
     )
     options = parser.parse_args(words)
     if options.first_pass != 4 and (options.first_pass < 8 or options.first_pass % 8):
-        parser.error("--first-pass: 4 or a multiple of 8")
+        parser.error(f"--first-pass {options.first_pass}: must be 4 or a multiple of 8")
     command.check_budget(parser, options)
     return options
 

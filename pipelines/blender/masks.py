@@ -1,4 +1,4 @@
-"""Masks of passes, as images for the camera of inside/camera.py."""
+"""Images of the masks of passes, for the camera of inside/camera.py."""
 
 import itertools
 import math
@@ -12,12 +12,12 @@ from ..common.errors import DriverError, ExitCode
 SUBPIXELS = 4
 
 
-def subpixel_mask(inside, reach, margin):
-    """SUBPIXELS x SUBPIXELS values a pixel, open up to `reach` pixels around each pixel inside; `margin` pixels are added
-    on each side."""
+def subpixel_mask(inside, overhang, margin):
+    """A mask with SUBPIXELS x SUBPIXELS values a pixel, which is open up to `overhang` pixels around each pixel inside.
+    It has `margin` more pixels on each side than `inside`."""
     mask = np.kron(np.pad(inside, margin), np.ones((SUBPIXELS, SUBPIXELS), bool))
     for axis in (0, 1):
-        mask = _dilated(mask, math.ceil(reach * SUBPIXELS - 1e-6), axis)
+        mask = _dilated(mask, math.ceil(overhang * SUBPIXELS - 1e-6), axis)
     return mask
 
 
@@ -34,11 +34,13 @@ def _dilated(mask, by, axis):
 _number = itertools.count()
 
 
-def write(folder, piece, reach, frame):
-    """Writes the mask of a pass; returns what inside/camera.py asks for: a path, new every time since Cycles caches images
-    by name, and the place in the frame (0..1, from the bottom left) that the image covers. frame: (height, width)."""
-    margin = math.ceil(reach)
-    mask = subpixel_mask(piece.inside, reach, margin)
+def write(folder, render_pass, overhang, frame):
+    """Writes the mask of a pass; returns the argument of inside/camera.py: MaskCamera.use.
+
+    overhang: pixels by which samples may fall outside of their pixel. frame: (height, width). Each mask has a new name,
+    because Cycles caches images by name."""
+    margin = math.ceil(overhang)
+    mask = subpixel_mask(render_pass.inside, overhang, margin)
     path = os.fspath(folder / f"mask_{next(_number)}.tif")
     spec = oiio.ImageSpec(mask.shape[1], mask.shape[0], 1, "uint8")
     spec.attribute("compression", "none")
@@ -51,7 +53,7 @@ def write(folder, piece, reach, frame):
     ):
         raise DriverError(ExitCode.OUTPUT, f"{path}: {file.geterror() if file else oiio.geterror()}")
     height, width = frame
-    x0, y0, x1, y1 = piece.box
+    x0, y0, x1, y1 = render_pass.box
     return {
         "path": path,
         "left": (x0 - margin) / width,

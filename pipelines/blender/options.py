@@ -1,4 +1,4 @@
-"""What the commands of this folder have in common."""
+"""The options that the commands of this folder have in common."""
 
 import pathlib
 
@@ -9,30 +9,32 @@ from .renderer import BlenderRenderer
 
 
 def add_common(parser):
-    parser.add_argument("scene", type=pathlib.Path, metavar="SCENE.blend")
+    """Adds the options for scene, frames, passes and Blender."""
+    parser.add_argument("scene", type=pathlib.Path, metavar="SCENE.blend", help="the scene; it is never changed")
     add_frame_arguments(parser)
     parser.add_argument(
         "--visibility",
         choices=("shadow", "ambient-occlusion", "none"),
         default="none",
-        help="pass to render as the feature of that name (none)",
+        help="pass that is the feature `visibility` (none)",
     )
     parser.add_argument(
         "--with-prior",
         action="store_true",
-        help="denoise each half by Cycles' own denoiser too, stored as the layers Prior A and Prior B",
+        help="also denoise each half with Cycles' denoiser and store the results as the layers Prior A and Prior B",
     )
     blender = parser.add_mutually_exclusive_group()
-    blender.add_argument("--blender", metavar="PATH", help="Blender to run ($BLENDER, else `blender`)")
+    blender.add_argument("--blender", metavar="PATH", help="Blender (default: $BLENDER, else `blender`)")
     blender.add_argument(
-        "--bpy", action="store_const", const="bpy", dest="blender", help="use the module bpy of this Python"
+        "--bpy", action="store_const", const="bpy", dest="blender", help="use the module bpy of this Python as Blender"
     )
     parser.add_argument(
-        "--pass-timeout", type=positive, default=3600, metavar="S", help="a pass that takes longer has hung (3600)"
+        "--pass-timeout", type=positive, default=3600, metavar="S", help="seconds after which a pass has failed (3600)"
     )
 
 
 def renderer_of(options, method="auto"):
+    """The BlenderRenderer of the options."""
     if not options.scene.is_file():
         raise DriverError(ExitCode.MISSING, f"{options.scene}: no such file")
     visibility = None if options.visibility == "none" else options.visibility

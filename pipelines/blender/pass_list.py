@@ -1,4 +1,5 @@
-"""The passes that render counts of samples: masked ones where the camera has a mask, else rectangles with one count each."""
+"""The passes that render counts of samples: masked ones where the camera has a mask, else rectangles with one count
+each."""
 
 import dataclasses
 
@@ -22,9 +23,9 @@ class Pass:
 def masked_passes(counts):
     """Passes for counts[y, x], each over the boxes that hold its pixels.
 
-    The passes lie one in another: all pixels with samples take those of the lowest count; the pixels of higher counts go on
-    in the sequence up to the next count, and so on. A border between two counts thus has one rim, on one side, of the
-    samples that the two differ by. With a pass for each count it would have two rims, of all samples."""
+    The passes lie one in another: all pixels with samples take those of the lowest count; the pixels of higher counts
+    go on in the sequence up to the next count, and so on. A border between two counts thus has one rim, on one side, of
+    the samples that the two differ by. With a pass for each count it would have two rims, of all samples."""
     passes, done = [], 0
     for count in np.unique(counts[counts > 0]).astype(int):
         inside, samples = counts >= count, int(count) - done
@@ -36,8 +37,8 @@ def masked_passes(counts):
 
 
 def rectangular_passes(counts, overhead):
-    """Passes for counts[y, x] without masks: rectangles that take the mean of their counts, rounded to a power of two, in
-    every pixel. overhead: the fixed cost of a pass, in samples of a pixel."""
+    """Passes for counts[y, x] without masks: rectangles that take the mean of their counts, rounded to a power of two,
+    in every pixel. overhead: the fixed cost of a pass, in samples of a pixel."""
     passes = []
     for x0, y0, x1, y1 in rectangles.level(counts, overhead):
         mean = counts[y0:y1, x0:x1].mean()

@@ -1,16 +1,17 @@
-"""Priors: each half of a picture's samples denoised by Cycles' own denoiser, for the reconstruction to draw on."""
+"""Priors: the halves of a picture, denoised by Cycles' denoiser, as an input of the reconstruction."""
 
 import numpy as np
 
 from ..common import exr
 
-OVER_ROUND = 1.3  # seconds of add over those of a round's decision: docs/lab/2026-11-28-adaptive-loop.md
+SECONDS_OVER_DECISION = 1.3  # seconds of `add` over those of a round's decision (docs/lab/2026-11-28-adaptive-loop.md)
 FEATURES = {"Denoising Albedo": "RGB", "Denoising Normal": "XYZ", "Denoising Depth": "Z"}
 
 
 def add(merged, layer, session):
-    """Puts the layers `Prior A`, `Prior B` and their mean `Prior` into a merged file. A and B come from their half of picture and
-    features alone, so that the noise of one is not in the other."""
+    """Adds the layers `Prior A`, `Prior B` and their mean `Prior` to a merged file.
+
+    Prior A comes from half A of picture and features alone, and B from half B, so their noise is independent."""
     channels = exr.read(merged)
     attributes = {name: value for name, value in exr.metadata(merged).items() if isinstance(value, (str, int, float))}
     source, target = session.folder / "half.exr", session.folder / "denoised.exr"
@@ -25,11 +26,12 @@ def add(merged, layer, session):
     priors.update(
         {f"{layer}.Prior.{c}": (priors[f"{layer}.Prior A.{c}"] + priors[f"{layer}.Prior B.{c}"]) / 2 for c in "RGB"}
     )
-    exr.write(merged, {**channels, **priors}, attributes, compression="none")  # as it was
+    exr.write(merged, {**channels, **priors}, attributes, compression="none")  # as the file was
 
 
 def _half(channels, layer, half):
-    """The passes that Cycles' denoiser of files asks for; it wants motion vectors too, and reads them in animations only."""
+    """The passes that Cycles' denoiser of files requires. It also requires motion vectors, which it uses in animations
+    only."""
     picture = {c: channels[f"{layer}.Combined {half}.{c}"] for c in "RGB"} | {
         "A": np.ones_like(channels[f"{layer}.Combined.R"])
     }

@@ -1,13 +1,14 @@
 #!/usr/bin/env python3
-"""Renders a .blend file with Cycles as several subsets of one sample sequence and merges them: a noisy picture with its
-features, and mean, variance and half buffers of each, ready for `polyrecon denoise`.
+"""Renders a .blend file with Cycles in several subsets of one sample sequence and merges them for `polyrecon denoise`.
+
+The file has the noisy picture and its features, and mean, variance and half buffers of each.
 
 examples:
   render_passes.py shot.blend -o noisy.exr --spp 64 && polyrecon denoise -i noisy.exr -o clean.exr
   render_passes.py shot.blend -o 'out/noisy_####.exr' --frames 1-100 --spp 32 --bpy
 
-The mean of the subsets is the ordinary render of all samples; nothing is lost by splitting it. The file is never changed and
-no script in it is run."""
+The mean of the subsets is the ordinary render of all samples. The scene file is not changed and none of its scripts is
+run."""
 
 import argparse
 import pathlib
@@ -27,12 +28,14 @@ def arguments(words):
         prog="polyrecon-blender-passes", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     add_common(parser)
-    parser.add_argument("--spp", type=int, required=True, metavar="N", help="samples per pixel in all")
-    parser.add_argument("--parts", type=int, default=8, metavar="K", help="subsets; more tell the variance better (8)")
+    parser.add_argument("--spp", type=int, required=True, metavar="N", help="samples per pixel, of all subsets")
+    parser.add_argument(
+        "--parts", type=int, default=8, metavar="K", help="number of subsets; more subsets give a better variance (8)"
+    )
     parser.add_argument("--keep-parts", action="store_true", help="keep the subsets in --passes-dir")
     options = parser.parse_args(words)
     if options.parts < 2 or options.spp < options.parts or options.spp % options.parts:
-        parser.error(f"--spp {options.spp} is no multiple of --parts {options.parts}, or less than two parts")
+        parser.error(f"--spp {options.spp}: must be a multiple of --parts {options.parts}, which must be 2 or more")
     return options
 
 
@@ -53,7 +56,7 @@ def one_frame(options, renderer, frame, output, passes, polyrecon, progress):
     for k, part in enumerate(parts):
         progress.update("pass", frame=frame, samples=k * each, done=k / options.parts)
         renderer.uniform(k * each, each, part)
-    told = polyrecon.run("merge", *parts, "-o", output)
+    summary = polyrecon.run("merge", *parts, "-o", output)
     renderer.complete_last(output)
     if not options.keep_parts:
         for part in parts:
@@ -61,7 +64,7 @@ def one_frame(options, renderer, frame, output, passes, polyrecon, progress):
         if not any(passes.iterdir()):
             passes.rmdir()
     if not options.quiet:
-        print(told, end="")
+        print(summary, end="")
 
 
 def main(words=None):

@@ -1,4 +1,4 @@
-"""Blender's Cycles as a Renderer of the loop."""
+"""Blender's Cycles as a Renderer of the adaptive loop."""
 
 import concurrent.futures
 import pathlib
@@ -21,20 +21,23 @@ PART_LAYERS = {
     "Ambient Occlusion",
     "AO",
 }
-RENDER_TIME = "Render Time"  # of all samples of a pass, in milliseconds of a thread
-OVERHEAD_SECONDS = 0.045  # of a pass, until one was measured
+RENDER_TIME = "Render Time"  # Cycles' pass: milliseconds of a thread for all samples of a pixel
+OVERHEAD_SECONDS = 0.045  # fixed seconds of a pass, until they are measured
 
 
 class BlenderRenderer(Renderer):
-    """scene: a .blend file. method: how extra samples are rendered: 'osl' (a camera with a mask, Blender >= 5), 'regions'
-    (rectangles), or 'auto'. visibility: 'shadow', 'ambient-occlusion' or None. with_prior: see prior.py."""
+    """Renders the frames of a .blend file.
+
+    method: the way of extra samples: 'osl' (a camera with a mask, Blender 5 or later), 'regions' (rectangles), or
+    'auto'. visibility: the pass for that feature: 'shadow', 'ambient-occlusion' or None. with_prior: whether
+    complete_last adds priors (prior.py)."""
 
     def __init__(self, scene, blender=None, method="auto", visibility=None, timeout=3600.0, with_prior=False):
         self.scene = pathlib.Path(scene).absolute()
         self.method = method
         self.visibility = visibility
         self.with_prior = with_prior
-        self.complete_last_over_decision = prior.OVER_ROUND if with_prior else 0.0
+        self.complete_last_over_decision = prior.SECONDS_OVER_DECISION if with_prior else 0.0
         self.session = BlenderSession(blender, timeout)
         self.overhead_seconds = OVERHEAD_SECONDS
         self.seconds_per_sample = 0.0
@@ -72,25 +75,27 @@ class BlenderRenderer(Renderer):
         if self.visibility:
             passes[self.visibility] = "feature: visibility"
         if self.with_prior:
-            passes["Prior A, B"] = "each half by Cycles' own denoiser"
-        if found["own_passes"]:
-            passes[", ".join(found["own_passes"])] = "switched on in the file: rendered once, in the first part"
-        effects = (f"{name}: {_said(value)}" for name, value in found["effects"].items())
+            passes["Prior A, B"] = "each half, denoised by Cycles' denoiser"
+        if found["user_passes"]:
+            passes[", ".join(found["user_passes"])] = "switched on in the file; rendered once, in the first part"
+        effects = (f"{name}: {_effect_text(value)}" for name, value in found["effects"].items())
         notes = ["effects: " + ", ".join(effects)]
         if found["effects"]["scripted drivers"]:
-            notes.append("Python drivers of the file are not run: what they move stays as it was saved")
-        method = "masks by a camera shader" if self.masked else f"rectangles, since {found['no_mask_camera']}"
+            notes.append(
+                "Python drivers of the file are not run; the properties that they drive keep their saved values"
+            )
+        method = "masks by a camera shader" if self.masked else f"rectangles, because {found['no_mask_camera']}"
         switches = [Switch(**switch) for switch in found["switches"]]
         return Audit(
             found["width"], found["height"], f"{found['view_layer']}.Combined", switches, passes, notes, method
         )
 
     def uniform(self, first, samples, target):
-        own_passes = first == 0 and bool(self.opened["own_passes"])
-        channels, seconds = self._render(first=first, samples=samples, own_passes=own_passes)
+        user_passes = first == 0 and bool(self.opened["user_passes"])
+        channels, seconds = self._render(first=first, samples=samples, user_passes=user_passes)
         counts = np.full(self.shape, float(samples))
         self.seconds_per_sample = max(seconds - self.overhead_seconds, 0) / counts.sum()
-        self._write(target, channels, counts, keep_all=own_passes)
+        self._write(target, channels, counts, keep_all=user_passes)
 
     def extra(self, first, counts, target):
         samples = int(counts.max())
@@ -98,14 +103,15 @@ class BlenderRenderer(Renderer):
             self._write(target, self._render(first=first, samples=samples)[0], counts)
             return samples
         sums, taken = {}, np.zeros(counts.shape)
-        pieces = masked_passes(counts) if self.masked else rectangular_passes(counts, self._overhead_samples())
-        for piece, channels in self._render_ahead(first, pieces):
-            x0, y0, x1, y1 = piece.box
+        passes = masked_passes(counts) if self.masked else rectangular_passes(counts, self._overhead_samples())
+        for render_pass, channels in self._render_ahead(first, passes):
+            x0, y0, x1, y1 = render_pass.box
+            inside = render_pass.inside
             for name, values in channels.items():
                 whole = sums.setdefault(name, np.zeros(counts.shape))
-                weight = 1 if _is_time(name) else piece.samples
-                np.add(whole[y0:y1, x0:x1], weight * values, out=whole[y0:y1, x0:x1], where=piece.inside)
-            taken[y0:y1, x0:x1] += piece.samples * piece.inside
+                weight = 1 if _is_time(name) else render_pass.samples
+                np.add(whole[y0:y1, x0:x1], weight * values, out=whole[y0:y1, x0:x1], where=inside)
+            taken[y0:y1, x0:x1] += render_pass.samples * inside
         means = {name: whole if _is_time(name) else whole / np.maximum(taken, 1) for name, whole in sums.items()}
         self._write(target, means, taken)
         return int(taken.max(initial=0))
@@ -114,49 +120,54 @@ class BlenderRenderer(Renderer):
         if self.with_prior:
             prior.add(merged, self.opened["view_layer"], self.session)
 
-    def _render_ahead(self, first, pieces):
-        """Each piece with its channels. While the caller works on one, the next is rendered. Where one fails, or at an
-        interrupt, Blender ends."""
+    def _render_ahead(self, first, passes):
+        """Yields each pass with its channels. While the caller processes one, the next is rendered. An error or an
+        interrupt ends Blender."""
         renderer = concurrent.futures.ThreadPoolExecutor(1)
         try:
-            before = None
-            for piece in [*pieces, None]:
-                rendering = piece and renderer.submit(self._render_piece, first, piece)
-                if before:
-                    yield before[0], before[1].result()
-                before = piece, rendering
+            previous = None
+            for render_pass in [*passes, None]:
+                rendering = render_pass and renderer.submit(self._render_pass, first, render_pass)
+                if previous:
+                    yield previous[0], previous[1].result()
+                previous = render_pass, rendering
         except BaseException:
             with self.session.halt():
                 renderer.shutdown(cancel_futures=True)
             raise
         renderer.shutdown()
 
-    def _render_piece(self, first, piece):
-        if piece.inside.shape == self.shape and piece.inside.all():  # the lowest count, of every pixel
-            return self._render(first=first + piece.skip, samples=piece.samples)[0]
-        job = {"first": first + piece.skip, "samples": piece.samples, "crop": piece.box}
+    def _render_pass(self, first, render_pass):
+        samples, inside = render_pass.samples, render_pass.inside
+        if inside.shape == self.shape and inside.all():  # Every pixel takes the lowest count.
+            return self._render(first=first + render_pass.skip, samples=samples)[0]
+        job = {"first": first + render_pass.skip, "samples": samples, "crop": render_pass.box}
         if not self.masked:
             channels, seconds = self._render(**job)
-            self.overhead_seconds = max(0.001, seconds - self.seconds_per_sample * piece.samples * piece.inside.size)
+            self.overhead_seconds = max(0.001, seconds - self.seconds_per_sample * samples * inside.size)
             return channels
-        mask = masks.write(self.session.folder, piece, self.opened["filter_reach"], self.shape)
+        mask = masks.write(self.session.folder, render_pass, self.opened["filter_overhang"], self.shape)
         channels, _ = self._render(**job, mask=mask)
         pathlib.Path(mask["path"]).unlink()
         return channels
 
     def _overhead_samples(self):
-        """What one more pass costs, in samples of a pixel."""
+        """The fixed cost of a pass, in samples of a pixel."""
         return self.overhead_seconds / self.seconds_per_sample if self.seconds_per_sample > 0 else float("inf")
 
     def close(self):
         self.session.close()
 
-    def _render(self, first, samples, own_passes=False, **job):
-        """One pass: (channels, seconds). Where it takes samples of several sequences, it is a pass of each, and their mean; the
-        user's own passes are of the first then."""
+    def _render(self, first, samples, user_passes=False, **job):
+        """Renders a pass; returns (channels, seconds).
+
+        Samples of several sequences take a pass for each sequence, and the result is their mean. The user's passes then
+        come from the first one."""
         channels, seconds, done = {}, 0.0, 0
         for begin, length in _sequences_of(first, samples, self.opened["sequence"] or first + samples):
-            more, took = self._render_once(first=begin, samples=length, own_passes=own_passes and not done, **job)
+            more, more_seconds = self._render_once(
+                first=begin, samples=length, user_passes=user_passes and not done, **job
+            )
             done += length
             for name, values in more.items():
                 if done > length:
@@ -164,11 +175,11 @@ class BlenderRenderer(Renderer):
                         values if _is_time(name) else (values - channels[name]) * (length / done)
                     )
                 channels[name] = values
-            seconds += took
+            seconds += more_seconds
         return channels, seconds
 
     def _render_once(self, **job):
-        """A new process, where the last one died, opens the scene again."""
+        """Renders a pass of one sequence. If the last process died, a new one opens the scene again."""
         if not self.session.running:
             self._open()
         raw, seconds = self.session.render(**job)
@@ -187,11 +198,11 @@ class BlenderRenderer(Renderer):
         part[f"{layer}.{SAMPLE_COUNT}"] = counts
         if time is not None:
             part[f"{layer}.{RENDER_SECONDS}"] = 1e-3 * time
-        exr.write(target, part, compression="none")  # read again at once, and by every merge
+        exr.write(target, part, compression="none")  # It is read again soon, by every merge.
 
 
 def _sequences_of(first, samples, length):
-    """(first, samples) of each sequence of so many."""
+    """Divides samples at the borders of sequences of this length: yields (first, samples)."""
     end = first + samples
     while first < end:
         following = min(end, (first // length + 1) * length)
@@ -203,5 +214,5 @@ def _is_time(name):
     return name.split(".")[-2] == RENDER_TIME
 
 
-def _said(value):
+def _effect_text(value):
     return value if not isinstance(value, bool) else "yes" if value else "no"

@@ -1,4 +1,4 @@
-"""The Blender process behind a renderer: started once, told one job after another."""
+"""The Blender process of a renderer. It starts once and does one job after another."""
 
 import contextlib
 import json
@@ -20,27 +20,29 @@ LOG_LINES_KEPT = 40
 
 
 def find_blender(given=None):
-    """The words that start Blender: --blender PATH, else $BLENDER, else on the PATH. `bpy` stands for the module of this
-    Python."""
+    """The command that starts Blender. `given` is the value of --blender; without it, $BLENDER and the PATH are tried.
+    `bpy` stands for the module of this Python."""
     named = given or os.environ.get("BLENDER") or "blender"
     if named == "bpy":
         return [sys.executable, "-B", SCRIPT]
     program = shutil.which(named)
     if not program:
-        raise DriverError(ExitCode.MISSING, f"{named}: no such program (--blender PATH, or --bpy for the module)")
+        raise DriverError(ExitCode.MISSING, f"{named}: no such program: give --blender PATH, or --bpy for the module")
     return [program, "-b", "-Y", "--factory-startup", "--python-exit-code", "7", "-P", SCRIPT]
 
 
 class BlenderSession:
-    """One Blender process. A job that takes over `timeout` seconds, or a Blender that dies, ends the process group and
-    raises DriverError(RENDERER); the next job starts a new one."""
+    """A Blender process.
+
+    If a job takes over `timeout` seconds or Blender dies, the process group is ended and DriverError(RENDERER) is
+    raised. The next job starts a new process."""
 
     def __init__(self, blender=None, timeout=3600.0):
         self.command = find_blender(blender)
         self.timeout = timeout
         self.child, self.listener = None, None
         self.lock, self.halted = threading.Lock(), False
-        # Raw renders go to a folder with a name that Blender's output path takes literally (no '#', no '{').
+        # Blender replaces '#' and '{' in an output path; this folder's name has neither.
         self.folder = pathlib.Path(tempfile.mkdtemp(prefix="polyrecon-blender-"))
 
     def __enter__(self):
@@ -67,7 +69,7 @@ class BlenderSession:
         except queue.Empty:
             self.stop()
             raise DriverError(ExitCode.RENDERER, f"Blender did not answer within {self.timeout:g} s ({job})") from None
-        except (BrokenPipeError, ValueError):  # it died, or was stopped and its pipe closed
+        except (BrokenPipeError, ValueError):  # Blender died, or was stopped.
             answer = None
         except BaseException:
             self.stop()
@@ -82,16 +84,16 @@ class BlenderSession:
         return answer
 
     def render(self, **arguments):
-        """One pass; returns (path of the raw EXR, seconds inside Blender). A file that was not written anew is an error."""
+        """Renders a pass; returns (path of the raw EXR, seconds inside Blender)."""
         raw = self.folder / "raw.exr"
         raw.unlink(missing_ok=True)
         answer = self.ask("render", target=str(raw), **arguments)
         if not raw.exists():
-            raise DriverError(ExitCode.RENDERER, "Blender rendered, but wrote no file")
+            raise DriverError(ExitCode.RENDERER, "Blender rendered but wrote no file")
         return raw, answer["seconds"]
 
     def _process(self):
-        """The child, started where none runs, and the queue of its answers."""
+        """The child process and the queue of its answers. A process is started if none runs."""
         with self.lock:
             if self.halted:
                 raise DriverError(ExitCode.RENDERER, "Blender was stopped")
@@ -123,7 +125,7 @@ class BlenderSession:
 
     @contextlib.contextmanager
     def halt(self):
-        """Stops, and no thread can start Blender anew while this lasts."""
+        """A context in which Blender is stopped and no thread can start it."""
         self.stop(halted=True)
         try:
             yield
@@ -131,7 +133,7 @@ class BlenderSession:
             self.halted = False
 
     def stop(self, halted=False):
-        """From any thread; one that waits for an answer gets none and fails."""
+        """Ends Blender. Any thread may call this; a thread that waits for an answer then raises an error."""
         with self.lock:
             child, self.child = self.child, None
             self.halted = self.halted or halted
@@ -139,6 +141,6 @@ class BlenderSession:
         if child:
             process.stop(child)
             listener.join()
-            with contextlib.suppress(BrokenPipeError):  # a job that was not sent yet
+            with contextlib.suppress(BrokenPipeError):  # A job may not be sent yet.
                 child.stdin.close()
             child.stdout.close()

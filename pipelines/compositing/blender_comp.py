@@ -1,7 +1,8 @@
-"""A multilayer EXR in Blender's compositor: lists its layers, or grades the objects that Cryptomatte names.
+"""Opens a multilayer EXR in Blender's compositor: lists its layers, or grades objects that Cryptomatte names.
 
     blender -b -Y --factory-startup --python-exit-code 7 -P blender_comp.py -- clean.exr --list
-    blender -b -Y --factory-startup --python-exit-code 7 -P blender_comp.py -- clean.exr -o graded.exr --object Torus --exposure 1
+    blender -b -Y --factory-startup --python-exit-code 7 -P blender_comp.py -- clean.exr \\
+        -o graded.exr --object Torus --exposure 1
 
 Works in Blender 3.4 to 5, and with Blender as a Python module (python3 blender_comp.py clean.exr ...). The result is a
 float EXR: RGB is the picture, brighter by 2^exposure where the matte is 1; A is the matte.
@@ -24,8 +25,8 @@ def parse():
     parser.add_argument("input", help="multilayer EXR")
     parser.add_argument("-o", "--output", help="EXR to write")
     parser.add_argument("--object", action="append", default=[], help="object to grade (repeatable)")
-    parser.add_argument("--exposure", type=float, default=0.0, help="stops that these objects get brighter")
-    parser.add_argument("--list", action="store_true", help="print the layers that Blender finds, a line each")
+    parser.add_argument("--exposure", type=float, default=0.0, help="stops by which these objects become brighter")
+    parser.add_argument("--list", action="store_true", help="print the layers that Blender finds, one a line")
     options = parser.parse_args(words)
     if not options.list and not (options.output and options.object):
         parser.error("give --list, or -o and --object")
@@ -33,19 +34,19 @@ def parse():
 
 
 def size_of(path):
-    """Width and height of the first part, from the header: Blender tells them of single-layer images only."""
+    """Width and height of the first part, from the file's header; Blender reports them for single-layer images only."""
     mark = b"dataWindow\0box2i\0\x10\0\0\0"
     with open(path, "rb") as file:
         header = file.read(1 << 20)
     at = header.find(mark)
     if at < 0:
-        raise SystemExit(f"{path}: no EXR file")
+        raise SystemExit(f"{path}: is not an EXR file")
     x0, y0, x1, y1 = struct.unpack_from("<4i", header, at + len(mark))
     return x1 - x0 + 1, y1 - y0 + 1
 
 
 def open_tree():
-    """The scene's compositor, empty, and the socket that takes the picture."""
+    """Empties the scene's compositor; returns its tree and the input of the final picture."""
     scene = bpy.context.scene
     if BLENDER_5:
         tree = bpy.data.node_groups.new("Compositor", "CompositorNodeTree")
@@ -61,7 +62,7 @@ def open_tree():
 
 
 def add_matte(tree, image, objects):
-    """A Cryptomatte node for the objects of the file's first Cryptomatte layer; its matte."""
+    """Adds a Cryptomatte node for objects of the file's first Cryptomatte layer; returns the matte."""
     node = tree.nodes.new("CompositorNodeCryptomatteV2")
     node.source = "IMAGE"
     node.image = image
@@ -70,7 +71,7 @@ def add_matte(tree, image, objects):
 
 
 def add_grade(tree, picture, matte, stops):
-    """picture x 2^(stops x matte), with the matte in place of alpha."""
+    """Adds nodes for picture x 2^(stops x matte), with the matte as alpha; returns the result."""
     times = tree.nodes.new("ShaderNodeMath" if BLENDER_5 else "CompositorNodeMath")
     times.operation = "MULTIPLY"
     times.inputs[1].default_value = stops
@@ -88,7 +89,7 @@ def add_grade(tree, picture, matte, stops):
 
 
 def render(size, path):
-    """Runs the compositor; Blender expands '#' in the names that it writes to, so the file is renamed at the end."""
+    """Runs the compositor. Blender replaces '#' in output paths, so the file gets its name afterwards."""
     settings = bpy.context.scene.render
     settings.resolution_x, settings.resolution_y = size
     settings.resolution_percentage = 100

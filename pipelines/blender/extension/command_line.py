@@ -1,4 +1,5 @@
-"""`blender -c polyrecon COMMAND ...`: the loop and the passes by this Blender; every other command is polyrecon's own."""
+"""The command `blender -c polyrecon COMMAND ...`. The drivers render with this Blender; other commands are
+polyrecon's."""
 
 import subprocess
 
@@ -7,12 +8,12 @@ from . import preferences, programs
 _DRIVERS = {"adaptive": "adaptive.py", "render-passes": "render_passes.py"}
 _HELP = """usage: blender -c polyrecon COMMAND ...
 
-  adaptive       the adaptive loop on a .blend, rendered by this Blender
-  render-passes  a .blend as subsets of its samples, merged, ready to denoise
+  adaptive       render a .blend file with the adaptive loop and this Blender
+  render-passes  render a .blend file in subsets of its samples and merge them
   denoise, merge, inspect, samplemap, preview, compare
-                 the program polyrecon's own commands
+                 commands of the program polyrecon
 
-blender -c polyrecon COMMAND --help tells more, with examples."""
+blender -c polyrecon COMMAND --help shows options and examples."""
 
 
 def run(words):
@@ -25,8 +26,8 @@ def run(words):
             command = [*preferences.driver_words(_DRIVERS[words[0]]), *words[1:]]
         else:
             command = [preferences.program(), *words]
-    except programs.Problem as problem:
-        print(f"polyrecon: {problem}")
+    except programs.SetupError as error:
+        print(f"polyrecon: {error}")
         return 4
     try:
         return subprocess.run(command, env=programs.environment(), check=False).returncode

@@ -1,7 +1,10 @@
-"""One job at a time, beside Blender: commands run one after the other, read by a thread, looked at by a timer. Blender's
-window never waits for them."""
+"""Runs one job at a time in the background of Blender.
+
+A job is a list of commands that run one after another. A thread reads their output and a timer polls them, so Blender's
+window never waits."""
 
 import collections
+import contextlib
 import json
 import os
 import queue
@@ -12,25 +15,25 @@ import time
 
 from . import programs
 
-GRACE_SECONDS = 15  # from asking to killing: the loop has children of its own to stop
-KEPT_LINES = 200
+GRACE_SECONDS = 15  # between SIGTERM and SIGKILL; the adaptive loop ends its child processes meanwhile
+MAX_LINES = 200
 
-current = None  # the job that runs, or the last one
+current = None  # the running job, or else the last one
 
 
 class Job:
-    """Commands to run in a row. `title` and `results` (name -> path) are for who shows it."""
+    """Commands that run one after another. `title` and `results` ({name: path}) are shown in the panel."""
 
     def __init__(self, title, commands, results):
         self.title, self.results = title, results
-        self.state = "running"  # then: done, failed, cancelled
+        self.state = "running"  # later "done", "failed" or "cancelled"
         self.stage, self.fraction = "starting", 0.0
-        self.problem = ""
-        self.lines = collections.deque(maxlen=KEPT_LINES)
+        self.error = ""
+        self.lines = collections.deque(maxlen=MAX_LINES)
         self.begin = time.monotonic()
         self._commands = collections.deque(commands)
-        self._heard = queue.SimpleQueue()
-        self._child = self._asked = None
+        self._output = queue.SimpleQueue()
+        self._child = self._cancelled_at = None
         self._next()
 
     @property
@@ -42,21 +45,21 @@ class Job:
         return time.monotonic() - self.begin
 
     def poll(self):
-        """Takes in what the commands said, goes on to the next one; returns whether the job still runs. Never waits."""
+        """Reads output, starts the next command if one has ended; returns whether the job runs. It never waits."""
         if not self.running:
             return False
         self._listen()
         code = self._child.poll()
         if code is None:
-            if self._asked and time.monotonic() - self._asked > GRACE_SECONDS:
+            if self._cancelled_at and time.monotonic() - self._cancelled_at > GRACE_SECONDS:
                 self._signal(kill=True)
             return True
-        self._reader.join(1)  # the pipe is closed: the thread is at its end
+        self._reader.join(1)  # The pipe is closed, so the thread ends.
         self._listen()
-        if self._asked:
+        if self._cancelled_at:
             self._finish("cancelled")
         elif code != 0:
-            self.problem = self.lines[-1] if self.lines else f"ended with code {code}"
+            self.error = self.lines[-1] if self.lines else f"ended with code {code}"
             self._finish("failed")
         elif self._commands:
             self._next()
@@ -66,9 +69,9 @@ class Job:
         return self.running
 
     def cancel(self):
-        """Asks the command to stop; it is killed when it does not within GRACE_SECONDS."""
-        if self.running and not self._asked:
-            self._asked, self.stage = time.monotonic(), "stopping"
+        """Asks the command to stop. It is killed if it does not within GRACE_SECONDS."""
+        if self.running and not self._cancelled_at:
+            self._cancelled_at, self.stage = time.monotonic(), "stopping"
             self._commands.clear()
             self._signal()
 
@@ -91,7 +94,7 @@ class Job:
                 **group,
             )
         except OSError as error:
-            self.problem = f"{words[0]}: {error.strerror}"
+            self.error = f"{words[0]}: {error.strerror}"
             self._finish("failed")
             return
         self._reader = threading.Thread(target=self._read, args=(self._child.stdout,), daemon=True)
@@ -100,60 +103,59 @@ class Job:
     def _read(self, pipe):
         with pipe:
             for line in pipe:
-                self._heard.put(line.rstrip())
+                self._output.put(line.rstrip())
 
     def _listen(self):
         while True:
             try:
-                line = self._heard.get_nowait()
+                line = self._output.get_nowait()
             except queue.Empty:
                 return
             if not self._take_progress(line) and line:
                 self.lines.append(line)
 
     def _take_progress(self, line):
-        """A line of --progress json, of the program ("done" of "total") or of the loop ("done": a share, and more); False
-        for any other line."""
+        """Reads a line of --progress json; returns False for any other line.
+
+        The program writes "done" and "total"; the loop writes "done" as a share, and further figures."""
         if not line.startswith("{"):
             return False
         try:
-            told = json.loads(line)
+            progress = json.loads(line)
         except ValueError:
             return False
-        if not self._asked and "stage" in told:
-            self.stage = ", ".join([str(told["stage"]), *_figures(told)])
-            self.fraction = min(max(told.get("done", 0) / (told.get("total") or 1), 0.0), 1.0)
+        if not self._cancelled_at and "stage" in progress:
+            self.stage = ", ".join([str(progress["stage"]), *_figures(progress)])
+            self.fraction = min(max(progress.get("done", 0) / (progress.get("total") or 1), 0.0), 1.0)
         return True
 
     def _signal(self, kill=False):
-        try:
+        with contextlib.suppress(ProcessLookupError):
             if os.name == "posix":
                 os.killpg(self._child.pid, signal.SIGKILL if kill else signal.SIGTERM)
             elif kill:
                 self._child.kill()
             else:
                 self._child.send_signal(signal.CTRL_BREAK_EVENT)
-        except ProcessLookupError:
-            pass
 
     def _finish(self, state):
         self.state = state
         self.stage = state
 
 
-def _figures(told):
-    """What the loop knows of its result so far, in words."""
+def _figures(progress):
+    """The figures of the loop's progress as texts."""
     known = (("samples", "{:.3g} spp"), ("error", "error {:.2g}"), ("seconds_left", "{:.0f} s left"))
-    return [words.format(told[name]) for name, words in known if name in told]
+    return [text.format(progress[name]) for name, text in known if name in progress]
 
 
 def start(title, commands, results):
-    """Starts a job and the timer that looks after it; returns the job."""
+    """Starts a job and the timer that polls it; returns the job."""
     global current
     import bpy
 
     if current and current.running:
-        raise programs.Problem(f"{current.title} is still running")
+        raise programs.SetupError(f"{current.title} is still running")
     current = Job(title, commands, results)
     if not bpy.app.timers.is_registered(_tick):
         bpy.app.timers.register(_tick, first_interval=0.1, persistent=True)
@@ -161,7 +163,7 @@ def start(title, commands, results):
 
 
 def end():
-    """For when the add-on goes: what runs is asked to stop, and killed if it does not."""
+    """Ends the running job, when the add-on is disabled."""
     if not current or not current.running:
         return
     current.cancel()

@@ -1,4 +1,4 @@
-"""What the panel's buttons do. Each says what it needs where that is missing, and none waits for a program."""
+"""The operators of the panel's buttons. None of them waits for a program."""
 
 import os
 import shutil
@@ -6,17 +6,17 @@ import shutil
 import bpy
 
 from . import jobs, preferences
-from .programs import Problem
+from .programs import SetupError
 
 
 class _Operator:
-    """An operator whose `work` may raise Problem: that becomes its error message."""
+    """An operator whose `work` may raise SetupError, which becomes its error message."""
 
     def execute(self, context):
         try:
             self.work(context)
-        except (Problem, OSError) as problem:
-            self.report({"ERROR"}, str(problem))
+        except (SetupError, OSError) as error:
+            self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
         return {"FINISHED"}
 
@@ -25,7 +25,7 @@ class _Start(_Operator):
     @classmethod
     def poll(cls, _context):
         if jobs.current and jobs.current.running:
-            cls.poll_message_set("polyrecon is at work")
+            cls.poll_message_set("polyrecon is running")
             return False
         return True
 
@@ -39,11 +39,11 @@ class POLYRECON_OT_set_up_passes(_Operator, bpy.types.Operator):
 
     def work(self, context):
         changed = set_up_passes(context.scene, context.view_layer)
-        self.report({"INFO"}, "changed: " + ", ".join(changed) if changed else "all was set up already")
+        self.report({"INFO"}, "changed: " + ", ".join(changed) if changed else "everything is set up already")
 
 
 def set_up_passes(scene, view_layer):
-    """Returns the names of what it changed."""
+    """Sets up the passes; returns the names of the changed settings."""
     wanted = (
         ("engine Cycles", scene.render, "engine", "CYCLES"),
         ("denoising features", view_layer.cycles, "denoising_store_passes", True),
@@ -58,7 +58,7 @@ def set_up_passes(scene, view_layer):
 
 
 class POLYRECON_OT_denoise(_Start, bpy.types.Operator):
-    """Reconstruct the frame that was rendered last"""
+    """Denoise the frame that was rendered last"""
 
     bl_idname = "polyrecon.denoise"
     bl_label = "Denoise This Frame"
@@ -87,7 +87,7 @@ class POLYRECON_OT_denoise(_Start, bpy.types.Operator):
 
 
 def _results(clean):
-    """The files of one frame to show, beside the clean one; the error map as a picture in false colours."""
+    """The pictures of one frame that the panel shows. ERROR is the error map in false colours."""
     return {
         "CLEAN": clean,
         "NOISY": clean.with_name(clean.stem + "_noisy.exr"),
@@ -100,13 +100,13 @@ def _error_picture(program, error_map, results):
 
 
 def _save_render(scene, path):
-    """The last render with all its passes; the scene's output settings stay as they are."""
+    """Saves the last render with all its passes. The scene's output settings do not change."""
     render = bpy.data.images.get("Render Result")
     if render is None:
-        raise Problem("nothing is rendered yet: render the frame first")
+        raise SetupError("there is no render yet: render the frame first")
     settings = scene.render.image_settings
     wanted = {"file_format": "OPEN_EXR_MULTILAYER", "color_depth": "32", "exr_codec": "ZIP"}
-    if hasattr(settings, "media_type"):  # Blender 5: comes before the format
+    if hasattr(settings, "media_type"):  # Blender 5: must be set before the format
         wanted = {"media_type": "MULTI_LAYER_IMAGE", **wanted}
     before = {name: getattr(settings, name) for name in wanted}
     try:
@@ -114,15 +114,14 @@ def _save_render(scene, path):
             setattr(settings, name, value)
         render.save_render(str(path), scene=scene)
     except RuntimeError as error:
-        raise Problem("nothing is rendered yet: render the frame first") from error
+        raise SetupError("there is no render yet: render the frame first") from error
     finally:
         for name, value in before.items():
             setattr(settings, name, value)
 
 
 class POLYRECON_OT_adaptive(_Start, bpy.types.Operator):
-    """Render in the background, with samples only where the reconstruction needs them. Works on a copy of the scene as it
-    is now"""
+    """Render a copy of the scene in the background, with samples where the reconstruction needs them"""
 
     bl_idname = "polyrecon.adaptive"
     bl_label = "Render Adaptively"
@@ -131,20 +130,20 @@ class POLYRECON_OT_adaptive(_Start, bpy.types.Operator):
         scene = context.scene
         chosen = scene.polyrecon
         if scene.render.engine != "CYCLES":
-            raise Problem("only Cycles can be rendered adaptively: choose it as the render engine")
+            raise SetupError("adaptive rendering needs Cycles: choose it as the render engine")
         words, program = preferences.driver_words("adaptive.py"), preferences.program()
         frames = chosen.frames_of(scene)
         outputs = {frame: chosen.output_of(frame) for frame in frames}
         if len(set(outputs.values())) < len(frames):
-            raise Problem(f"{chosen.output}: needs #### for the number of the frame")
+            raise SetupError(f"{chosen.output}: several frames need #### in the file's name")
         last = outputs[frames[-1]]
         last.parent.mkdir(parents=True, exist_ok=True)
         copy = last.parent / "polyrecon_scene.blend"
-        if not (chosen.go_on and copy.exists()):
+        if not (chosen.resume and copy.exists()):
             _forget(outputs.values())
             bpy.ops.wm.save_as_mainfile(filepath=str(copy), copy=True, check_existing=False)
         words += [copy, "-o", chosen.output_pattern(), *chosen.limit_words(), *chosen.frames_words(scene)]
-        words += ["--polyrecon", program, "--progress", "json", *(["--resume"] if chosen.go_on else [])]
+        words += ["--polyrecon", program, "--progress", "json", *(["--resume"] if chosen.resume else [])]
         passes = _passes(last)
         results = {
             "CLEAN": last,
@@ -156,19 +155,19 @@ class POLYRECON_OT_adaptive(_Start, bpy.types.Operator):
 
 
 def _passes(clean):
-    """Where the loop keeps what belongs to a frame."""
+    """The folder of a frame's passes."""
     return clean.with_suffix(".passes")
 
 
 def _forget(outputs):
-    """Passes of an earlier scene would be refused by the loop."""
+    """Removes passes of an earlier scene, which the loop would refuse."""
     for folder in map(_passes, outputs):
         if (folder / "journal.json").exists():
             shutil.rmtree(folder)
 
 
 class POLYRECON_OT_cancel(bpy.types.Operator):
-    """Stop what runs in the background. Finished files stay"""
+    """Stop the job in the background. Finished files are kept"""
 
     bl_idname = "polyrecon.cancel"
     bl_label = "Cancel"
@@ -195,7 +194,7 @@ class POLYRECON_OT_show(_Operator, bpy.types.Operator):
     def work(self, context):
         path = jobs.current.results.get(self.which) if jobs.current else None
         if path is None or not os.path.exists(path):
-            raise Problem("there is no such picture yet")
+            raise SetupError("there is no such picture yet: run the job first")
         if self.which == "REPORT":
             if not bpy.app.background:
                 bpy.ops.wm.url_open(url=path.as_uri())
@@ -208,7 +207,7 @@ class POLYRECON_OT_show(_Operator, bpy.types.Operator):
 
 
 def _image_editor(context):
-    """The first image editor of any window, else one in a window of its own; None without windows."""
+    """The first image editor of any window, or else one in a new window; None without windows."""
     manager = context.window_manager
     for window in manager.windows:
         for area in window.screen.areas:

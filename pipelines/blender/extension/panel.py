@@ -30,7 +30,7 @@ class POLYRECON_PT_render(bpy.types.Panel):
         layout.row().prop(chosen, "limit", expand=True)
         layout.prop(chosen, {"SECONDS": "seconds", "SPP": "spp", "TARGET": "target"}[chosen.limit])
         layout.row().prop(chosen, "frames", expand=True)
-        layout.prop(chosen, "go_on")
+        layout.prop(chosen, "resume")
         layout.operator("polyrecon.adaptive", icon="RENDER_STILL")
         if jobs.current:
             _draw_job(layout.box(), jobs.current)
@@ -42,7 +42,7 @@ def _draw_job(box, job):
         row.progress(factor=job.fraction, text=f"{job.title}: {job.stage}, {job.seconds:.0f} s")
         row.operator("polyrecon.cancel", text="", icon="X")
     elif job.state == "failed":
-        box.label(text=job.problem, icon="ERROR")
+        box.label(text=job.error, icon="ERROR")
     else:
         box.label(text=f"{job.title}: {job.state}", icon="CHECKMARK" if job.state == "done" else "CANCEL")
     shown = [name for name, path in job.results.items() if os.path.exists(path)]

@@ -1,4 +1,4 @@
-"""Where the programs are; empty fields are found by themselves."""
+"""The preferences: paths of the programs. Programs of empty fields are searched."""
 
 import bpy
 
@@ -9,15 +9,19 @@ class PolyreconPreferences(bpy.types.AddonPreferences):
     bl_idname = __package__
 
     program: bpy.props.StringProperty(
-        name="polyrecon", subtype="FILE_PATH", description="The program polyrecon; empty: $POLYRECON, or on the PATH"
+        name="polyrecon",
+        subtype="FILE_PATH",
+        description="The program polyrecon. If empty: $POLYRECON, or the one on the PATH",
     )
     drivers: bpy.props.StringProperty(
-        name="Drivers", subtype="DIR_PATH", description="The folder with adaptive.py; empty: found by the program"
+        name="Drivers",
+        subtype="DIR_PATH",
+        description="The folder with adaptive.py. If empty: that of the checkout or installation of the program",
     )
     python: bpy.props.StringProperty(
         name="Python",
         subtype="FILE_PATH",
-        description="A Python with numpy, OpenImageIO, jinja2 and rich, which runs the adaptive loop; empty: python3 on the PATH",
+        description="Runs the adaptive loop; has numpy, OpenImageIO, jinja2 and rich. If empty: python3 on the PATH",
     )
 
     def draw(self, _context):
@@ -25,14 +29,14 @@ class PolyreconPreferences(bpy.types.AddonPreferences):
 
 
 def draw(layout, chosen):
-    """The fields, and what they come to."""
+    """Draws the fields and the commands that follow from them."""
     for name in ("program", "drivers", "python"):
         layout.prop(chosen, name)
     for find in (lambda: [program()], lambda: driver_words("adaptive.py")):
         try:
             layout.label(text="found: " + " ".join(map(str, find())), icon="CHECKMARK")
-        except programs.Problem as problem:
-            layout.label(text=str(problem), icon="ERROR")
+        except programs.SetupError as error:
+            layout.label(text=str(error), icon="ERROR")
 
 
 def _chosen(name):

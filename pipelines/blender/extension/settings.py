@@ -1,4 +1,4 @@
-"""What the panel remembers in the scene."""
+"""The settings of the panel, which are stored in the scene."""
 
 import pathlib
 import re
@@ -6,9 +6,9 @@ import re
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
 
-from .programs import Problem
+from .programs import SetupError
 
-# Blender 4.5 and later want to be told that "//" may stand in front.
+# Blender 4.5 and later: the path may begin with "//".
 _RELATIVE = {"options": {"PATH_SUPPORTS_BLEND_RELATIVE"}} if bpy.app.version >= (4, 5) else {}
 _PLACE = re.compile(r"#+|%(?:0[1-9])?d")
 
@@ -29,19 +29,21 @@ class PolyreconSettings(bpy.types.PropertyGroup):
         name="Output",
         subtype="FILE_PATH",
         default="//polyrecon/clean_####.exr",
-        description="Clean EXR to write; #### becomes the frame number. The noisy picture and the error map stand beside it",
+        description="Clean EXR to write; #### becomes the frame number. Noisy picture and error map are put next to it",
         **_RELATIVE,
     )
     limit: EnumProperty(
         name="Limit",
         default="SECONDS",
         items=(
-            ("SECONDS", "Time", "Stop when this much time is spent, all included"),
-            ("SPP", "Samples", "Stop when this many samples per pixel are spent, on average"),
-            ("TARGET", "Error", "Stop when the estimated error is small enough"),
+            ("SECONDS", "Time", "Stop after this much time, everything included"),
+            ("SPP", "Samples", "Stop after this many samples per pixel, on average"),
+            ("TARGET", "Error", "Stop when the estimated error is this small"),
         ),
     )
-    seconds: FloatProperty(name="Seconds", default=120, min=1, soft_max=3600, precision=0, description="For each frame")
+    seconds: FloatProperty(
+        name="Seconds", default=120, min=1, soft_max=3600, precision=0, description="Time for each frame"
+    )
     spp: IntProperty(
         name="Samples", default=64, min=1, soft_max=4096, description="Average samples per pixel of a frame"
     )
@@ -61,9 +63,9 @@ class PolyreconSettings(bpy.types.PropertyGroup):
             ("RANGE", "Range", "The scene's frame range with its step"),
         ),
     )
-    go_on: BoolProperty(
-        name="Go On",
-        description="Add to the passes of the last adaptive render, with the scene as it was then, in place of starting anew",
+    resume: BoolProperty(
+        name="Continue",
+        description="Add samples to the last adaptive render, with the scene as it was then",
     )
 
     def frames_of(self, scene):
@@ -72,13 +74,13 @@ class PolyreconSettings(bpy.types.PropertyGroup):
         return list(range(scene.frame_start, scene.frame_end + 1, scene.frame_step))
 
     def frames_words(self, scene):
-        """The frames as the driver's option."""
+        """The driver's option for the frames."""
         if self.frames == "CURRENT":
             return [f"--frame={scene.frame_current}"]
         return [f"--frames={scene.frame_start}-{scene.frame_end}x{scene.frame_step}"]
 
     def limit_words(self):
-        """The limit as the driver's options."""
+        """The driver's options for the limit."""
         return {
             "SECONDS": ["--budget-seconds", f"{self.seconds:g}"],
             "SPP": ["--budget-spp", str(self.spp)],
@@ -86,12 +88,12 @@ class PolyreconSettings(bpy.types.PropertyGroup):
         }[self.limit]
 
     def output_pattern(self):
-        """The output as an absolute path that may still hold ####."""
+        """The output as an absolute path, with the place of the frame's number."""
         if self.output.startswith("//") and not bpy.data.filepath:
-            raise Problem("the output is relative to the .blend file: save that first, or give a whole path")
+            raise SetupError("the output is relative to the .blend file: save that first, or give an absolute path")
         path = pathlib.Path(bpy.path.abspath(self.output))
         if path.suffix.lower() != ".exr":
-            raise Problem(f"{path.name}: the output has to be an .exr")
+            raise SetupError(f"{path.name}: the output must be an .exr file")
         return path
 
     def output_of(self, frame):

@@ -1,4 +1,4 @@
-"""Which effects a frame calls for, and what can be switched off without changing the picture (runs inside Blender)."""
+"""Finds the effects of a frame, and switches off what does not change its picture (runs inside Blender)."""
 
 import bpy
 
@@ -20,7 +20,7 @@ DYNAMIC_MODIFIERS = {
 
 
 def effects(scene, view_layer):
-    """{effect: True or False, or a number}: what the file's data call for. An effect counts as present wherever it may be."""
+    """{effect: True, False or a number}, by the file's data. An effect that may be present counts as present."""
     shaders = [node for tree in _shader_trees() for node in tree.nodes]
     return {
         "volumes": any(_volume_linked(tree) for tree in _shader_trees()) or bool(bpy.data.volumes),
@@ -42,7 +42,7 @@ def effects(scene, view_layer):
 
 
 def moves(scene):
-    """Whether anything may change from one moment to the next. In doubt: yes."""
+    """Whether anything may change from one moment to the next. In doubt the answer is yes."""
     return bool(
         scene.rigidbody_world
         or any(_drivers(owner) or _animated(owner) for owner in _data())
@@ -120,7 +120,7 @@ def _emits_texture(node):
 
 
 def switch_off(scene, view_layer):
-    """Switches off what would spoil the samples or cannot change them; returns a list of dicts like loop's Switch."""
+    """Switches off what would spoil the samples or cannot change them; returns the arguments of the loop's Switch."""
     switches = []
 
     def switch(owner, name, value, effect, reason, saves=""):
@@ -129,7 +129,9 @@ def switch_off(scene, view_layer):
             switches.append({"effect": effect, "setting": "off", "reason": reason, "saves": saves})
 
     render, cycles = scene.render, scene.cycles
-    switch(cycles, "use_adaptive_sampling", False, "Cycles' adaptive sampling", "the loop decides where samples go")
+    switch(
+        cycles, "use_adaptive_sampling", False, "Cycles' adaptive sampling", "the loop decides where to take samples"
+    )
     switch(
         cycles,
         "use_denoising",
@@ -138,13 +140,15 @@ def switch_off(scene, view_layer):
         "polyrecon reconstructs",
         "the denoiser's time in every pass",
     )
-    switch(cycles, "time_limit", 0, "time limit of a render", "a pass has to be whole")
+    switch(cycles, "time_limit", 0, "time limit of a render", "a pass must be complete")
     switch(cycles, "use_layer_samples", "IGNORE", "samples of the view layer", "the loop counts samples")
     switch(
-        render, "use_compositing", False, "compositor", "it does not touch the render layers", "its time in every pass"
+        render, "use_compositing", False, "compositor", "it does not change the render layers", "its time in every pass"
     )
-    switch(render, "use_sequencer", False, "sequencer", "it does not touch the render layers", "its time in every pass")
-    switch(render, "use_freestyle", False, "Freestyle", "its scripts would run code of the file; lines are not drawn")
+    switch(
+        render, "use_sequencer", False, "sequencer", "it does not change the render layers", "its time in every pass"
+    )
+    switch(render, "use_freestyle", False, "Freestyle", "its scripts would run code of the file; no lines are drawn")
     switch(render, "use_multiview", False, "stereo", "one view is rendered")
     switch(render, "use_border", False, "render border", "the whole frame is rendered")
     if render.use_motion_blur and not moves(scene):

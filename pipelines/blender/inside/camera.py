@@ -1,11 +1,10 @@
 """A camera that samples only the pixels of a mask (Blender 5 and later; runs inside Blender).
 
-Cycles' CUSTOM camera type takes an OSL shader that turns a place on the film into a ray. The shader here makes the rays of
-Blender's own perspective or orthographic camera, and a throughput of zero, for which Cycles traces nothing, outside the mask.
+Cycles' CUSTOM camera type takes an OSL shader that turns a place on the film into a ray. This shader makes the rays of
+Blender's perspective or orthographic camera. Outside the mask the throughput is zero, for which Cycles traces nothing.
 
-The place on the film includes the offset that the pixel filter drew, so a sample of a pixel may fall outside of it, by no more
-than `filter_reach`. The mask therefore has subpixels, and is open around its pixels by that reach.
-"""
+The place on the film includes a random offset by the pixel filter, so a sample of a pixel may fall outside of the
+pixel, by `filter_overhang` at most. Therefore the mask has subpixels, and is open by that much around its pixels."""
 
 import sys
 import types
@@ -34,7 +33,7 @@ shader camera(string mask = "", float left = 0, float bottom = 0, float width = 
   getattribute("cam:focal_distance", focus);
   if (%(orthographic)d) {
     direction = normalize(vector(0, 0, focus) - lens);
-    // Cycles moves the ray on by the near distance along itself, its own camera goes on to the near plane.
+    // Cycles moves the ray forward by the near distance; its built-in camera moves it to the near plane.
     position = plane + lens + direction * (%(near)r / direction[2] - %(near)r);
   } else {
     vector straight = vector(plane[0], plane[1], 1);
@@ -46,7 +45,7 @@ shader camera(string mask = "", float left = 0, float bottom = 0, float width = 
 
 
 def why_not(scene, camera_object, depsgraph):
-    """The reason why the mask camera would not equal the scene's own; empty where it would."""
+    """The reason why the mask camera would differ from the scene's camera; empty if it would not."""
     camera = camera_object.data
     if bpy.app.version < (5, 0):
         return "Blender before 5.0 has no camera shaders"
@@ -66,7 +65,7 @@ def why_not(scene, camera_object, depsgraph):
         return "adaptive subdivision dices by the camera"
     if _uses_window_coordinates():
         return "a material uses window coordinates"
-    if _reaches_beyond(camera_object, depsgraph):
+    if _extends_beyond_clipping(camera_object, depsgraph):
         return "the far clipping plane cuts the scene"
     return ""
 
@@ -79,9 +78,9 @@ def _uses_window_coordinates():
     )
 
 
-def _reaches_beyond(camera_object, depsgraph):
-    """Whether anything lies further than the far clipping distance: Blender's own camera cuts by a plane, the mask
-    camera by a sphere."""
+def _extends_beyond_clipping(camera_object, depsgraph):
+    """Whether anything is further away than the far clipping distance: Blender's camera clips with a plane, the mask
+    camera with a sphere."""
     camera = camera_object.matrix_world.translation
     limit = camera_object.data.clip_end
     for instance in depsgraph.object_instances:
@@ -92,21 +91,21 @@ def _reaches_beyond(camera_object, depsgraph):
     return False
 
 
-def filter_reach(scene):
-    """How far outside its pixel a sample may fall, in pixels: Cycles' table for a filter of width w ends at w (Blackman-Harris)
-    or 1.5 w (Gauss) from the pixel's centre."""
+def filter_overhang(scene):
+    """The distance in pixels by which a sample may fall outside of its pixel. Cycles' table for a filter of width w
+    ends at w (Blackman-Harris) or 1.5 w (Gauss) from the pixel's centre."""
     ends = {"BOX": 0.5, "BLACKMAN_HARRIS": scene.cycles.filter_width, "GAUSSIAN": 1.5 * scene.cycles.filter_width}
     return max(0.0, ends[scene.cycles.pixel_filter_type] - 0.5)
 
 
 class MaskCamera:
-    """Switches a scene's camera between its own type and the masked one. What it changes is in memory only."""
+    """Switches the scene's camera between its own type and the masked one, in memory only."""
 
     def __init__(self, scene):
         _provide_oslquery()
         self.camera = scene.camera.data
         self.own = {name: getattr(self.camera, name) for name in ("type", "shift_x", "shift_y")}
-        text = bpy.data.texts.get(TEXT_NAME) or bpy.data.texts.new(TEXT_NAME)  # of the frame before
+        text = bpy.data.texts.get(TEXT_NAME) or bpy.data.texts.new(TEXT_NAME)  # An earlier frame may have made it.
         text.clear()
         text.write(SHADER % self._values(scene))
         self.camera.custom_mode = "INTERNAL"
@@ -124,7 +123,9 @@ class MaskCamera:
             "bottom": min(ys),
             "width": max(xs) - min(xs),
             "height": max(ys) - min(ys),
-            "aperture_scale": 1.0 if orthographic else camera.lens * 1e-3,  # Cycles counts it in focal lengths there
+            "aperture_scale": 1.0
+            if orthographic
+            else camera.lens * 1e-3,  # Cycles' unit for perspective cameras is the focal length.
             "orthographic": orthographic,
             "near": camera.clip_start,
         }
@@ -140,9 +141,11 @@ class MaskCamera:
             raise RuntimeError(f"the camera shader does not compile: {errors}")
 
     def use(self, mask):
-        """mask: {path, left, bottom, width, height}: an image whose first channel is over 0.5 where samples are to be taken,
-        and the place in the frame (0..1, from the bottom left) that it covers; None: the own camera."""
-        # The shader's rays are shifted already; a shift of the camera would move the place that it is asked for.
+        """Selects a mask, or with None the scene's own camera.
+
+        mask: {path, left, bottom, width, height}: an image whose first channel is over 0.5 where samples are taken, and
+        the part of the frame (0..1, from the bottom left) that it covers."""
+        # The shader's rays include the shift; a shift of the camera would be added to them.
         for name, value in ({"type": "CUSTOM", "shift_x": 0, "shift_y": 0} if mask else self.own).items():
             setattr(self.camera, name, value)
         if mask:
@@ -152,8 +155,8 @@ class MaskCamera:
 
 
 def _provide_oslquery():
-    """Blender as a module lacks oslquery, by which Cycles' Python lists a shader's parameters. The mask is set without
-    that list, so an empty one does."""
+    """Defines the module oslquery, which Blender as a module lacks. Cycles lists a shader's parameters with it; the
+    mask is set without that list, so it may be empty."""
     try:
         import oslquery  # noqa: F401
     except ImportError:

@@ -1,11 +1,10 @@
-"""Runs inside Blender: opens one file and renders what it is told, pass after pass, in one process.
+"""Runs inside Blender: opens a file and renders passes of it in one process, as the driver requests.
 
     blender -b -Y --factory-startup --python-exit-code 7 -P session.py      with Blender itself
     python3 session.py                                                      with the module bpy
 
-Reads one JSON object a line on standard input, answers each by one line on standard output that begins with MARK (Blender
-prints lines of its own). No script of the file runs: -Y, and for the module use_scripts=False.
-"""
+It reads jobs from standard input, one JSON object a line, and answers each with a line on standard output that begins
+with MARK, since Blender prints other lines too. No script of the file runs, because of -Y and use_scripts=False."""
 
 import json
 import os
@@ -23,11 +22,11 @@ import audit
 import camera
 
 MARK = "@polyrecon "
-# Samples of one sequence; further ones have other seeds. Cycles lays out a table for a whole sequence, and where that is too
-# long for the processor's caches a sample takes up to a tenth longer (docs/lab/2026-11-27-loop-seconds.md).
+# Samples of one sequence; further ones have other seeds. Cycles lays out a table for a whole sequence, and where that
+# is too long for the processor's caches a sample takes up to a tenth longer (docs/lab/2026-11-27-loop-seconds.md).
 SEQUENCE = 1 << 8
-LONGEST_SEQUENCE = 1 << 13  # of Cycles; what follows is spread less well
-MOST_SEED = (1 << 31) - 1
+LONGEST_SEQUENCE = 1 << 13  # of Cycles; later samples are spread less well
+MAX_SEED = (1 << 31) - 1
 
 
 class Session:
@@ -35,16 +34,16 @@ class Session:
         self.scene = self.view_layer = self.mask_camera = None
 
     def open(self, path, frame, visibility, mask_camera):
-        """Opens the file (the first time) at a frame, sets it up, and tells what it calls for. Nothing is ever saved."""
+        """Opens the file, if it is not open, at a frame, sets it up, and returns what it is. Nothing is ever saved."""
         if self.scene is None:
             self.load(path, visibility)
         scene = self.scene
-        self.go_to(self.own_frame if frame is None else frame)
+        self.go_to(self.file_frame if frame is None else frame)
         if scene.camera is None:
             raise RuntimeError("the scene has no camera")
         if self.mask_camera:
-            self.mask_camera.use(None)  # of the frame before; another one may have another camera
-        reason = "regions were asked for"
+            self.mask_camera.use(None)  # Frames may have different cameras.
+        reason = "rectangles were requested"
         if mask_camera:
             reason = camera.why_not(scene, scene.camera, bpy.context.evaluated_depsgraph_get())
         self.mask_camera = None if reason else camera.MaskCamera(scene)
@@ -57,11 +56,11 @@ class Session:
             "version": bpy.app.version_string,
             "effects": self.effects,
             "switches": self.switches,
-            "own_passes": [name for _, name in self.user_passes if name != "use_pass_combined"],
+            "user_passes": [name for _, name in self.user_passes if name != "use_pass_combined"],
             "no_mask_camera": reason,
             "has_denoiser": bool(_cycles.with_openimagedenoise),
             "sequence": self.sequence,
-            "filter_reach": camera.filter_reach(scene),
+            "filter_overhang": camera.filter_overhang(scene),
         }
 
     def load(self, path, visibility):
@@ -69,7 +68,7 @@ class Session:
         scene = self.scene = bpy.context.scene
         if scene.render.engine != "CYCLES":
             raise RuntimeError(f"the scene's renderer is {scene.render.engine}, not Cycles")
-        self.own_frame, self.own_seed = scene.frame_current, scene.cycles.seed
+        self.file_frame, self.file_seed = scene.frame_current, scene.cycles.seed
         self.view_layer = next((layer for layer in scene.view_layers if layer.use), scene.view_layers[0])
         self.effects = audit.effects(scene, self.view_layer)
         self.switches = audit.switch_off(scene, self.view_layer)
@@ -79,14 +78,14 @@ class Session:
         scene.render.use_persistent_data = True
 
     def go_to(self, frame):
-        """Evaluates the scene at a frame. A seed that is animated would be set back by each render: then all samples are of one
-        sequence."""
+        """Evaluates the scene at a frame. If the seed is animated, each render resets it; then there is one sequence
+        only."""
         cycles = self.scene.cycles
-        cycles.seed = probe = self.own_seed ^ 0x2A5F31C7
+        cycles.seed = probe = self.file_seed ^ 0x2A5F31C7
         self.scene.frame_set(frame)
         self.sequence = SEQUENCE if cycles.seed == probe else None
         if self.sequence:
-            cycles.seed = self.own_seed
+            cycles.seed = self.file_seed
 
     def choose_output(self, render):
         settings = render.image_settings
@@ -95,7 +94,7 @@ class Session:
             settings.use_exr_interleave = True
         settings.file_format = "OPEN_EXR_MULTILAYER"
         settings.color_depth = "32"
-        settings.exr_codec = "NONE"  # read once, then deleted
+        settings.exr_codec = "NONE"  # The driver reads the file once and deletes it.
         render.use_file_extension = False
         render.use_overwrite = True
         render.use_placeholder = False
@@ -113,7 +112,7 @@ class Session:
         ]
 
     def choose_passes(self, visibility):
-        """The passes of every part: picture, features, seconds."""
+        """Switches on the passes of every part: picture, features, seconds."""
         for owner, name in self.user_passes:
             setattr(owner, name, False)
         layer = self.view_layer
@@ -128,14 +127,16 @@ class Session:
         ):
             if name and hasattr(owner, name):
                 setattr(owner, name, True)
-        self.every_part = self.passes_on()
+        self.part_passes = self.passes_on()
 
-    def render(self, target, first, samples, crop=None, mask=None, own_passes=False):
-        """Samples first .. first + samples - 1, all of one sequence, into an EXR. crop: [x0, y0, x1, y1], pixels from the top
-        left, end excluded; mask: see camera.py; own_passes: the user's passes too."""
+    def render(self, target, first, samples, crop=None, mask=None, user_passes=False):
+        """Renders samples first .. first + samples - 1, which are of one sequence, to an EXR file.
+
+        crop: [x0, y0, x1, y1] in pixels from the top left, end excluded. mask: see camera.py. user_passes: whether the
+        passes that the user switched on are rendered too."""
         scene = self.scene
         for owner, name in self.user_passes:
-            setattr(owner, name, own_passes or (owner, name) in self.every_part)
+            setattr(owner, name, user_passes or (owner, name) in self.part_passes)
         self.choose_samples(first, samples)
         self.choose_crop(crop)
         if self.mask_camera:
@@ -146,7 +147,7 @@ class Session:
         return {"seconds": time.monotonic() - begin}
 
     def denoise(self, source, target):
-        """Cycles' own denoiser on an EXR of picture and features."""
+        """Runs Cycles' denoiser on an EXR file of picture and features."""
         cycles = bpy.context.scene.cycles
         kept = cycles.use_denoising
         cycles.use_denoising, cycles.denoiser = True, "OPENIMAGEDENOISE"
@@ -161,7 +162,7 @@ class Session:
         cycles = self.scene.cycles
         if self.sequence:
             number, first = divmod(first, self.sequence)
-            cycles.seed = (self.own_seed + number) & MOST_SEED
+            cycles.seed = (self.file_seed + number) & MAX_SEED
         if hasattr(cycles, "use_sample_subset"):  # Blender 5
             cycles.samples = max(self.sequence or LONGEST_SEQUENCE, first + samples)
             cycles.use_sample_subset = True
@@ -178,7 +179,7 @@ class Session:
             scale = render.resolution_percentage / 100
             width, height = int(render.resolution_x * scale), int(render.resolution_y * scale)
             x0, y0, x1, y1 = crop
-            # A little inside the pixel, so that no rounding takes the one before.
+            # Borders lie inside a pixel, so that rounding does not select the one before it.
             render.border_min_x, render.border_max_x = (x0 + 0.1) / width, (x1 + 0.1) / width
             render.border_min_y, render.border_max_y = (height - y1 + 0.1) / height, (height - y0 + 0.1) / height
 
@@ -189,7 +190,7 @@ def main():
         job = json.loads(line)
         try:
             answer = getattr(session, job.pop("do"))(**job)
-        except Exception as error:  # told to the driver, which decides
+        except Exception as error:  # The driver decides what to do.
             traceback.print_exc()
             answer = {"error": f"{error}".strip().replace("\n", " ") or type(error).__name__}
         print(f"\n{MARK}{json.dumps(answer)}", flush=True)

@@ -55,7 +55,7 @@ class Cameras(SceneTest):
     def test_a_panoramic_camera_falls_back(self):
         renderer = BlenderRenderer(self.scene("panoramic"), "bpy")
         self.addCleanup(renderer.close)
-        self.assertEqual(renderer.begin(None).method, "rectangles, since the camera is of type PANO")
+        self.assertEqual(renderer.begin(None).method, "rectangles, because the camera is of type PANO")
 
 
 class Masks(SceneTest):

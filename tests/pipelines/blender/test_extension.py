@@ -134,7 +134,7 @@ class Extension(unittest.TestCase):
         self.assertFalse(bpy.ops.polyrecon.denoise.poll())  # one job at a time
         self.assertIn("bpy.ops.polyrecon.cancel()", self.panel())
         self.assertLess(self.finish(job), 0.5)
-        self.assertEqual((job.state, job.problem), ("done", ""))
+        self.assertEqual((job.state, job.error), ("done", ""))
         self.assertEqual(self.scene.render.image_settings.file_format, before)
         self.assertNotIn("bpy.ops.polyrecon.cancel()", shown := self.panel())
         self.assertIn("Denoise: done", shown)
@@ -159,7 +159,7 @@ class Extension(unittest.TestCase):
             stages.add(job.stage)
             self.assertTrue(0 <= job.fraction <= 1)
             time.sleep(0.05)
-        self.assertEqual((job.state, job.problem), ("done", ""))
+        self.assertEqual((job.state, job.error), ("done", ""))
         self.assertTrue(any("spp" in stage for stage in stages), stages)
         self.assertFalse([name for name, path in job.results.items() if not path.exists()])
         self.assertEqual(self.combined("clean_0001.exr").shape, (36, 64, 3))
@@ -169,10 +169,10 @@ class Extension(unittest.TestCase):
             return {path: path.stat().st_mtime_ns for path in (self.folder / "clean_0001.passes").glob("part_*.exr")}
 
         before = passes()
-        self.scene.polyrecon.spp, self.scene.polyrecon.go_on = 16, True
+        self.scene.polyrecon.spp, self.scene.polyrecon.resume = 16, True
         bpy.ops.polyrecon.adaptive()
         self.finish(self.jobs.current)
-        self.assertEqual((self.jobs.current.state, self.jobs.current.problem), ("done", ""))
+        self.assertEqual((self.jobs.current.state, self.jobs.current.error), ("done", ""))
         after = passes()
         self.assertEqual(before, {path: after[path] for path in before})  # nothing was rendered again
         self.assertGreater(len(after), len(before))
@@ -203,7 +203,7 @@ class Extension(unittest.TestCase):
         for message, prepare in (
             ("render the frame first", lambda: None),
             ("relative to the .blend", lambda: setattr(self.scene.polyrecon, "output", "//clean.exr")),
-            ("has to be an .exr", lambda: setattr(self.scene.polyrecon, "output", str(self.folder / "clean.png"))),
+            ("must be an .exr file", lambda: setattr(self.scene.polyrecon, "output", str(self.folder / "clean.png"))),
             ("no such program", lambda: setattr(self.preferences, "program", "/nowhere/polyrecon")),
         ):
             with self.subTest(message):
@@ -218,8 +218,8 @@ class Extension(unittest.TestCase):
         job = self.jobs.start("Denoise", [[str(find_polyrecon()), "denoise", "-i", "no.exr", "-o", "o.exr"]], {})
         self.finish(job)
         self.assertEqual(job.state, "failed")
-        self.assertIn("no.exr", job.problem)
-        self.assertIn(job.problem, self.panel())
+        self.assertIn("no.exr", job.error)
+        self.assertIn(job.error, self.panel())
 
     def test_preferences_tell_what_they_find(self):
         draw = sys.modules[MODULE + ".preferences"].draw
