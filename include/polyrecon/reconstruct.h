@@ -3,7 +3,7 @@
 #include <memory>
 #include <vector>
 
-#include "maps/error_map.h"
+#include "polyrecon/error_map.h"
 #include "polyrecon/frame.h"
 #include "polyrecon/params.h"
 #include "polyrecon/progress.h"

@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-#include "maps/error_map.h"
+#include "polyrecon/error_map.h"
 #include "polyrecon/image.h"
 #include "polyrecon/progress.h"
 

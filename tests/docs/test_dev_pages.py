@@ -44,6 +44,13 @@ class Architecture(unittest.TestCase):
             for folder in leaves:
                 del includes[folder]
 
+    def test_public_headers_include_no_private_ones(self):
+        headers = sorted((tree.ROOT / "include" / "polyrecon").glob("*.h"))
+        self.assertGreater(len(headers), 5)
+        for header in headers:
+            for included in re.findall(r"#include \"([^\"]+)\"", header.read_text(encoding="utf-8")):
+                self.assertTrue((tree.ROOT / "include" / included).is_file(), f"{header.name}: {included}")
+
     def test_figure_is_what_its_script_draws(self):
         script = tree.ROOT / "docs" / "dev" / "data_flow.py"
         drawn = subprocess.run([sys.executable, "-B", script], capture_output=True, text=True, check=True).stdout

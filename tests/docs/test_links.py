@@ -97,7 +97,9 @@ class TheCheckItself(unittest.TestCase):
         self.assertIn("no such file", fault_of_link(page, "../../etc"))
 
     def test_finds_paths_in_comments(self):
-        found = NAMED.findall("see include/polyrecon/error.h, `tests/run.sh`. build/dev/src/polyrecon and tests/docs/*.py")
+        found = NAMED.findall(
+            "see include/polyrecon/error.h, `tests/run.sh`. build/dev/src/polyrecon and tests/docs/*.py"
+        )
         self.assertEqual(["include/polyrecon/error.h", "tests/run.sh", "tests/docs/*.py"], found)
         self.assertEqual([(1, "// a/b.h")], list(tree.line_comments("// a/b.h\nint x;", "//")))
 
