@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
-"""Renders a POV-Ray scene, taking samples only where the reconstruction needs them, and writes the clean picture.
+"""Renders a POV-Ray scene, takes samples where the reconstruction needs them, and writes the clean picture.
 
 examples:
   adaptive.py scene.pov -o scene.exr --budget-spp 64 -- +W640 +H360
   adaptive.py scene.pov -o 'out/scene_####.exr' --frames 1-10 --budget-seconds 120 -- scene.ini +KFF10
   adaptive.py scene.pov -o scene.exr --target 0.001 -- scene.ini +Ltextures
-  adaptive.py scene.pov -o scene.exr --budget-spp 128 --resume -- +W640 +H360   # goes on, after an interruption or with more
+  adaptive.py scene.pov -o scene.exr --budget-spp 128 --resume -- +W640 +H360   # continues an earlier run
 
-What follows -- are POV-Ray's own options. The scene's files are not touched. Passes, merged picture, error map, sample maps,
-journal and report.html stay in --passes-dir."""
+The words after -- are options of POV-Ray. The scene's files are not changed. Passes, merged picture, error map, sample
+maps, journal and report.html stay in --passes-dir."""
 
 if not __package__:  # run as a script from a checkout
     import pathlib
@@ -33,26 +33,27 @@ def main(words=None):
 
 
 def _main(words):
-    ours, povrays = split_words(words)
-    options = _arguments(ours)
+    words, povray_options = split_words(words)
+    options = _arguments(words)
     if not options.scene.is_file():
         raise DriverError(ExitCode.MISSING, f"{options.scene}: no such scene")
     renderer = PovrayRenderer(
-        options.scene, povrays, options.povray, options.timeout, options.first_pass, options.camera
+        options.scene, povray_options, options.povray, options.timeout, options.first_pass, options.camera
     )
-    command.run_frames(options, renderer, {"renderer": "POV-Ray", "options": povrays, "camera": options.camera})
+    command.run_frames(options, renderer, {"renderer": "POV-Ray", "options": povray_options, "camera": options.camera})
 
 
 def _arguments(words):
     parser = argparse.ArgumentParser(
         prog="polyrecon-povray",
-        usage="%(prog)s SCENE.pov -o OUT.exr (--budget-spp N | --budget-seconds S | --target E) [options] [-- POV-Ray's options]",
+        usage="%(prog)s SCENE.pov -o OUT.exr (--budget-spp N | --budget-seconds S | --target E) [options] "
+        "[-- POV-Ray's options]",
         description=__doc__,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("scene", type=pathlib.Path, metavar="SCENE.pov")
+    parser.add_argument("scene", type=pathlib.Path, metavar="SCENE.pov", help="the scene; it is never changed")
     add_frame_arguments(parser)
-    command.add_loop_arguments(parser, 16, "subpixels of the first pass: 4, 16, 36, 64 (16)")
+    command.add_loop_arguments(parser, 16, "subpixels of the first pass: 4, 16, 36 or 64 (16)")
     add_povray_arguments(parser)
     options = parser.parse_args(words)
     command.check_budget(parser, options)

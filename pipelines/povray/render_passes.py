@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Renders a POV-Ray scene with what `polyrecon denoise` wants beside the picture: mean, variance and halves of supersampled
-renders, albedo, normal, visibility, depth, as far as the scene calls for them. The scene's files are not touched."""
+"""Renders a POV-Ray scene with the layers that `polyrecon denoise` uses: picture, albedo, normal, visibility and depth,
+as far as the scene needs them, each with mean, variance and halves. The scene's files are not changed."""
 
 if not __package__:  # run as a script from a checkout
     import pathlib
@@ -24,9 +24,9 @@ from .crops import cover
 from .scene import Scene
 from .subpixels import Estimate, estimate, join
 
-FIRST_GRID = 2  # subpixels a side of the first pass and of the feature passes
-NOISE_LIMIT = 0.005  # standard error of the first pass, relative to the brightness, that counts as noise
-NOISE_BLOCK = 8  # pixels a side: half of them have to be noisy, so that the edges of things do not count
+FIRST_GRID = 2  # subpixels per side of a pixel in the first pass and in the feature passes
+NOISE_LIMIT = 0.005  # standard error of the first pass, relative to the brightness, above which there is noise
+NOISE_BLOCK = 8  # pixels per side of a block; half of them must be noisy, so that edges do not count
 
 
 def main(words=None):
@@ -34,37 +34,37 @@ def main(words=None):
 
 
 def split_words(words):
-    """(our words, POV-Ray's): what follows the first -- is POV-Ray's."""
+    """(words of the driver, options of POV-Ray), which the first -- separates."""
     words = list(sys.argv[1:] if words is None else words)
     at = words.index("--") if "--" in words else len(words)
     return words[:at], words[at + 1 :]
 
 
 def _main(words):
-    ours, povrays = split_words(words)
-    options = _parser().parse_args(ours)
+    words, povray_options = split_words(words)
+    options = _parser().parse_args(words)
     say = (lambda *_: None) if options.quiet else (lambda text: print(text, flush=True))
-    with Scene(options.scene, povrays, options.povray, options.timeout) as scene:
+    with Scene(options.scene, povray_options, options.povray, options.timeout) as scene:
         say(f"{options.scene}: {scene.width} x {scene.height}, parsed in {scene.parse_seconds:.1f} s")
         begun = time.monotonic()
-        plan = passes.make_plan(scene, options.camera)
-        for decision in plan.decisions:
-            say(f"  {'yes' if decision.run else 'no ':3} {decision.effect}: {decision.reason}")
+        choice = passes.choose_passes(scene, options.camera)
+        for decision in choice.decisions:
+            say(f"  {'yes' if decision.run else 'no ':3} {decision.name}: {decision.reason}")
         say(f"  decided in {time.monotonic() - begun:.1f} s")
 
         begun = time.monotonic()
         beauty, samples = render_beauty(scene, options.subpixels, say)
         say(f"  beauty: {samples.mean():.1f} samples per pixel in {time.monotonic() - begun:.1f} s")
         begun = time.monotonic()
-        features = passes.render_features(scene, plan, FIRST_GRID)
+        features = passes.render_features(scene, choice, FIRST_GRID)
         say(f"  {len(features)} feature passes in {time.monotonic() - begun:.1f} s")
         layers = {"Combined": beauty, **features}
         exr.write(options.output, {**channels(layers), SAMPLE_COUNT: samples}, {"Software": "polyrecon, POV-Ray"})
 
 
 def render_beauty(scene, grid, say=lambda text: None):
-    """The picture: FIRST_GRID squared subpixels of every pixel, and grid squared more where these show noise.
-    Returns (Estimate, samples of each pixel)."""
+    """Renders FIRST_GRID^2 subpixels of every pixel, and grid^2 more where these show noise; returns (Estimate, samples
+    of each pixel)."""
     begun = time.monotonic()
     beauty = estimate(scene.render(FIRST_GRID), FIRST_GRID)
     samples = np.full(beauty.mean.shape[:2], FIRST_GRID**2, np.float32)
@@ -84,8 +84,9 @@ def render_beauty(scene, grid, say=lambda text: None):
 
 
 def noise(beauty):
-    """Which pixels lie in blocks whose median standard error is above NOISE_LIMIT, or beside such a block. The error is
-    that of the halves' difference: what changes evenly across a pixel is the same in both."""
+    """The pixels of blocks whose median standard error is above NOISE_LIMIT, and of their neighbouring blocks.
+
+    The error comes from the difference of the halves, which have an even change across the pixel in common."""
     error = np.sqrt(((beauty.a - beauty.b) ** 2).mean(-1)) / 2 / (beauty.mean.mean(-1) + 0.1)
     height, width = error.shape
     up = [-(-side // NOISE_BLOCK) for side in error.shape]
@@ -100,16 +101,19 @@ def noise(beauty):
 
 
 def without_variance(beauty, where):
-    """There the reconstruction keeps the pixels as they are. Where nothing is noisy the subpixels differ by edges and
-    highlights alone: chance does not tell them from fireflies, their variance is several times the error of a grid's mean,
-    and the features, taken from the same subpixels, err with the picture."""
+    """Sets the variance to 0 and the halves to the mean in these pixels, so that the reconstruction does not change
+    them.
+
+    Without noise, subpixels differ by edges and highlights alone. These cannot be distinguished from fireflies, their
+    variance is several times the error of a grid's mean, and the features have the same errors as the picture, as they
+    come from the same subpixels."""
     where = where[..., None]
     halves = (np.where(where, beauty.mean, half) for half in (beauty.a, beauty.b))
     return Estimate(beauty.mean, np.where(where, 0, beauty.variance), *halves)
 
 
 def channels(layers):
-    """{layer: Estimate} as channels, with the names that `polyrecon denoise` and `polyrecon merge` know."""
+    """{channel: plane} from {layer: Estimate}, with the names that `polyrecon` knows."""
     found = {}
     for name, layer in layers.items():
         suffixes = {"Denoising Normal": "XYZ", "Denoising Depth": "Z", "Visibility": "X"}.get(name, "RGB")
@@ -119,13 +123,13 @@ def channels(layers):
 
 
 def add_povray_arguments(parser):
-    """The options that both drivers have."""
+    """Adds the options that both drivers have."""
     parser.add_argument(
-        "--camera", metavar="X,Y,Z", type=_place, help="place of the camera, where the scene does not tell it"
+        "--camera", metavar="X,Y,Z", type=_place, help="place of the camera, if it is not found in the scene file"
     )
-    parser.add_argument("--povray", default="povray", metavar="PATH", help="the program (povray)")
+    parser.add_argument("--povray", default="povray", metavar="PATH", help="POV-Ray (default: `povray`)")
     parser.add_argument(
-        "--timeout", type=positive, metavar="SECONDS", help="longest time of one POV-Ray run (no limit)"
+        "--timeout", type=positive, metavar="SECONDS", help="limit of a single run of POV-Ray (default: none)"
     )
 
 
@@ -133,7 +137,7 @@ def _place(text):
     try:
         x, y, z = (float(word) for word in text.split(","))
     except ValueError:
-        raise argparse.ArgumentTypeError("three numbers with commas between") from None
+        raise argparse.ArgumentTypeError(f"{text}: must be three numbers with commas between") from None
     return f"{x!r},{y!r},{z!r}"
 
 
@@ -155,8 +159,8 @@ def _parser():
         "  render_passes.py scene.pov -o merged.exr --subpixels 8 -- scene.ini +Ltextures Declare=Night=1\n"
         "  polyrecon denoise -i merged.exr -o clean.exr",
     )
-    parser.add_argument("scene", metavar="SCENE.pov")
-    parser.add_argument("-o", "--output", required=True, metavar="FILE.exr")
+    parser.add_argument("scene", metavar="SCENE.pov", help="the scene; it is never changed")
+    parser.add_argument("-o", "--output", required=True, metavar="FILE.exr", help="EXR file to write")
     parser.add_argument("-q", "--quiet", action="store_true", help="print nothing but errors")
     add_povray_arguments(parser)
     parser.add_argument(
@@ -164,7 +168,7 @@ def _parser():
         type=_grid,
         default=4,
         metavar="N",
-        help=f"N x N more samples of each pixel where {FIRST_GRID} x {FIRST_GRID} show noise, 2 to 64 (4)",
+        help=f"N x N more samples of pixels in which {FIRST_GRID} x {FIRST_GRID} show noise, 2 to 64 (4)",
     )
     return parser
 

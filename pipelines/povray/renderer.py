@@ -1,9 +1,8 @@
-"""POV-Ray as a Renderer of the loop.
+"""POV-Ray as a Renderer of the adaptive loop.
 
-The samples of a pixel are subpixels of square grids, no grid twice in one pixel: the noise of a subpixel comes with its place
-and size. The first pass is one grid; its white fields, chessboard-wise, are the first half of the sequence, its black ones the
-second. Extra samples come as crops with other grids.
-"""
+The samples of a pixel are subpixels of square grids. The noise of a subpixel depends on its place and size alone, so no
+grid is used twice in one pixel. The first pass is one grid. The white fields of its chessboard of subpixels are the
+first half of the sequence, the black ones the second. Extra samples are crops with other grids."""
 
 import dataclasses
 import json
@@ -18,23 +17,27 @@ from ..loop.renderer import SAMPLE_COUNT, Audit, Renderer, Switch
 from . import passes
 from .crops import cover
 from .render_passes import FIRST_GRID, channels
-from .scene import AT_ONCE, Scene, Shot
+from .scene import CONCURRENT_RUNS, Scene, Shot
 from .subpixels import blocks
 
 LARGEST_GRID = 64
-MOST_OVER_MEAN = 2.0  # what a crop takes at most of what others left over, in its own mean count
+MAX_OVER_WANTED = 2.0  # limit of a crop's samples over those that its counts want, if other crops left some over
 GRIDS = "polyreconGrids"  # attribute of a part: [[x0, y0, x1, y1, n], ...] in JSON
 
 
 class PovrayRenderer(Renderer):
-    """path, options, povray, timeout: see Scene. first_pass: samples of a pixel in the uniform pass, an even number
-    squared. camera: its place, "x,y,z", or None."""
+    """Renders the frames of a scene.
+
+    path, options, povray, timeout: see Scene. first_pass: samples of a pixel in the uniform pass, the square of an even
+    number. camera: its place, "x,y,z", or None."""
 
     def __init__(self, path, options, povray, timeout, first_pass, camera=None):
         self.path, self.options, self.povray, self.timeout, self.camera = path, options, povray, timeout, camera
         self.grid = math.isqrt(first_pass)
         if self.grid**2 != first_pass or self.grid % 2 or not 2 <= self.grid <= LARGEST_GRID:
-            raise DriverError(ExitCode.USAGE, f"--first-pass {first_pass}: 4, 16, 36, 64: an even number squared")
+            raise DriverError(
+                ExitCode.USAGE, f"--first-pass {first_pass}: must be the square of an even number: 4, 16, 36, 64"
+            )
         self.scene = None
 
     def begin(self, frame):
@@ -42,16 +45,17 @@ class PovrayRenderer(Renderer):
         options = [*self.options, *([f"+SF{frame}", f"+EF{frame}"] if frame is not None else [])]
         self.scene = Scene(self.path, options, self.povray, self.timeout)
         self.name = self.scene.version
-        self.plan = passes.make_plan(self.scene, self.camera)
-        self.first = self.features = None  # subpixels of the first pass; channels of the feature passes
+        self.choice = passes.choose_passes(self.scene, self.camera)
+        self.first = None  # subpixels of the first pass
+        self.features = None  # channels of the feature passes
         self.seconds_per_sample = 0.0
         return Audit(
             width=self.scene.width,
             height=self.scene.height,
             beauty="Combined",
             switches=[Switch("antialiasing", "off", "the samples are subpixels")],
-            passes={decision.effect: decision.reason for decision in self.plan.decisions if decision.run},
-            notes=[f"no {decision.effect}: {decision.reason}" for decision in self.plan.decisions if not decision.run],
+            passes={decision.name: decision.reason for decision in self.choice.decisions if decision.run},
+            notes=[f"no {decision.name}: {decision.reason}" for decision in self.choice.decisions if not decision.run],
             method="crops with grids of subpixels",
         )
 
@@ -70,8 +74,8 @@ class PovrayRenderer(Renderer):
     def extra(self, first, counts, target):
         mean = np.zeros((*counts.shape, 3))
         taken = np.zeros(counts.shape, np.float32)
-        per_sample = self.seconds_per_sample or 1e-5  # unknown after a resume: of a simple scene
-        crops = cover(np.ceil(np.sqrt(counts)), self.scene.parse_seconds / AT_ONCE / per_sample)
+        per_sample = self.seconds_per_sample or 1e-5  # Unknown after a resume: that of a simple scene.
+        crops = cover(np.ceil(np.sqrt(counts)), self.scene.parse_seconds / CONCURRENT_RUNS / per_sample)
         shots = self._shots([crop for crop, _ in crops], counts, self._used_grids(target))
         for shot, image in zip(shots, self.scene.render_all(shots)):
             rows, columns = slice(shot.crop.y0, shot.crop.y1), slice(shot.crop.x0, shot.crop.x1)
@@ -81,9 +85,9 @@ class PovrayRenderer(Renderer):
         return int(taken.max())
 
     def complete(self, merged):
-        """The feature passes: of all parts the same, rendered when they are first asked for."""
+        """Adds the feature passes, which are rendered at the first call and the same for all parts."""
         if self.features is None:
-            self.features = channels(passes.render_features(self.scene, self.plan, FIRST_GRID))
+            self.features = channels(passes.render_features(self.scene, self.choice, FIRST_GRID))
         exr.write(merged, {**exr.read(merged), **self.features})
 
     def close(self):
@@ -91,21 +95,21 @@ class PovrayRenderer(Renderer):
             self.scene.close()
 
     def _shots(self, crops, counts, used):
-        """Each crop with a grid that is new to all of its pixels and, with what the crops before it left over, costs no more
-        than its counts ask for; where even the smallest such grid does, as many rows of the crop as are paid for."""
+        """Each crop with a grid that none of its pixels has had, and with no more samples than its counts want and
+        earlier crops left over. If even the smallest such grid has more, the crop loses rows."""
         shots, left = [], 0.0
         for crop in crops:
             wanted = float(counts[crop.y0 : crop.y1, crop.x0 : crop.x1].sum())
             area = crop.width * crop.height
-            most = min(wanted + left, MOST_OVER_MEAN * wanted) / area
+            most = min(wanted + left, MAX_OVER_WANTED * wanted) / area
             free = self._free_grids(crop, used)
             fitting = [n for n in free if n * n <= most]
             rows = crop.height if fitting else int(most * area) // (free[0] ** 2 * crop.width)
             if crop is crops[-1] and not shots:
-                rows = max(rows, 1)  # a pass is never empty
+                rows = max(rows, 1)  # A pass is never empty.
             if rows:
                 grid = max(fitting, default=free[0])
-                shots.append(Shot(scale=grid, crop=_neediest_rows(crop, counts, rows)))
+                shots.append(Shot(scale=grid, crop=_rows_that_want_most(crop, counts, rows)))
                 left -= grid**2 * rows * crop.width
             left += wanted
         return shots
@@ -115,7 +119,7 @@ class PovrayRenderer(Renderer):
         return [n for n in range(2, LARGEST_GRID + 1) if n not in taken]
 
     def _used_grids(self, target):
-        """[(box, n)] of the extra parts that are there already; `target`, if it is an unfinished one's, is done anew."""
+        """[(box, n)] of the extra parts in the folder, without `target`, which an interrupted run may have left."""
         used = []
         for path in target.parent.glob("*.exr"):
             if path != target:
@@ -129,8 +133,10 @@ class PovrayRenderer(Renderer):
 
 
 def field_order(n):
-    """Fields (y, x) of an n x n grid: all white ones of the chessboard, then all black ones, and next to each the one that
-    is half the grid away both ways, so that two numbers in a row are well spread."""
+    """The fields (y, x) of an n x n grid: the white ones of the chessboard, then the black ones.
+
+    Every other field is half a grid away from the one before it, in both directions, so that two in a row are well
+    spread."""
     order = []
     for colour in (0, 1):
         for y in range(n // 2):
@@ -140,8 +146,8 @@ def field_order(n):
     return order
 
 
-def _neediest_rows(crop, counts, rows):
-    """The part of a crop, so many rows high, that asks for most."""
+def _rows_that_want_most(crop, counts, rows):
+    """The part of a crop, of so many rows, whose counts are largest."""
     sums = np.concatenate([[0], counts[crop.y0 : crop.y1, crop.x0 : crop.x1].sum(1).cumsum()])
     first = crop.y0 + int((sums[rows:] - sums[:-rows]).argmax())
     return dataclasses.replace(crop, y0=first, y1=first + rows)

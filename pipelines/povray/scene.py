@@ -1,9 +1,8 @@
-"""One POV-Ray scene as it is rendered here: the user's file and options, never changed, and POV-Ray on it.
+"""A POV-Ray scene: the user's file and options, and the runs of POV-Ray on it.
 
-Every render has a wrapper of ours as its input, which #includes the user's scene and adds lines of its own at the end. What
-POV-Ray cannot take on a command line or in a string (quotes, a leading '-', spaces) never reaches it: it runs in the
-scene's folder and is given names in a work folder of ours, where the scene is a symbolic link.
-"""
+The input of every run is a wrapper file, which #includes the user's scene and adds lines at its end. POV-Ray runs in
+the scene's folder and gets names in a work folder, in which the scene is a symbolic link. So it never meets a name that
+it cannot read on a command line or in a string (quotes, a leading '-', spaces)."""
 
 import dataclasses
 import os
@@ -22,27 +21,26 @@ from ..common import process
 from ..common.errors import DriverError, ExitCode
 from .crops import Crop
 
-# POV-Ray's own configuration (/etc/povray/3.7/povray.conf) lets it write there.
+# POV-Ray's default configuration (/etc/povray/3.7/povray.conf) allows it to write there.
 WORK_PARENT = pathlib.Path("/tmp")
 WORK_PREFIX = "polyrecon-povray-"
-# Last word on the command line, after the user's: linear EXR without alpha, one ray a (sub)pixel, no window, no waiting, no old file.
+# Options after the user's, which overrule them: linear EXR without alpha, one ray a (sub)pixel, no window, no waiting,
+# no continuing of an older file.
 FORCED = ("+FE", "-UA", "-A", "-D", "-P", "-C", "Fatal_Console=on", "Render_Console=on")
-
-
-AT_ONCE = 4  # POV-Rays side by side,
-SMALL = 1 << 22  # unless their images have more subpixels than this (memory)
+# So many POV-Rays run concurrently if their images have fewer subpixels than this on average; memory is the limit.
+CONCURRENT_RUNS, SMALL_IMAGE = 4, 1 << 22
+ONE_PIXEL = Crop(0, 0, 1, 1)
 
 
 @dataclasses.dataclass(frozen=True)
 class Shot:
-    """One render: scale x scale subpixels of each pixel of the crop, or of the whole frame; `tail` is scene text to add,
-    `size` another (width, height) than the frame's."""
+    """A render of a scene."""
 
-    scale: int = 1
-    tail: str = ""
-    options: tuple = ()
-    crop: Optional[Crop] = None
-    size: Optional[tuple] = None
+    scale: int = 1  # scale x scale subpixels of each pixel
+    tail: str = ""  # scene text that is added at the end
+    options: tuple = ()  # further options of POV-Ray
+    crop: Optional[Crop] = None  # None: the whole frame
+    size: Optional[tuple] = None  # (width, height); None: the frame's
 
     def words(self, scene):
         width, height = self.size or (scene.width, scene.height)
@@ -58,10 +56,10 @@ class Shot:
 
 
 @dataclasses.dataclass(frozen=True)
-class _AsAsked(Shot):
-    """The first pixel, at the size that the user's options say."""
+class _FirstPixel(Shot):
+    """The first pixel of a frame whose size is not known yet: that of the user's options."""
 
-    crop: Crop = Crop(0, 0, 1, 1)
+    crop: Crop = ONE_PIXEL
 
     def words(self, scene):
         return ["+SC1", "+EC1", "+SR1", "+ER1"]
@@ -74,7 +72,7 @@ class _Run:
 
 
 class Scene:
-    """A scene file with the options that it is to be rendered with. Use it in a `with`: the work folder goes with it."""
+    """A scene file with the user's options. It is a context manager, which removes the work folder at its end."""
 
     def __init__(self, path, options=(), povray="povray", timeout=None):
         self.path = pathlib.Path(path).absolute()
@@ -82,9 +80,11 @@ class Scene:
             raise DriverError(ExitCode.MISSING, f"{path}: no such scene")
         self.program = shutil.which(povray)
         if not self.program:
-            raise DriverError(ExitCode.MISSING, f"{povray}: no such program (Debian: apt-get install povray; --povray)")
+            raise DriverError(
+                ExitCode.MISSING, f"{povray}: no such program: install POV-Ray (Debian: povray) or give --povray PATH"
+            )
         self.timeout = timeout
-        self.messages = ""  # what POV-Ray wrote in its last run
+        self.messages = ""  # of POV-Ray in its last run
         _remove_stale_work()
         self.work = pathlib.Path(tempfile.mkdtemp(prefix=f"{WORK_PREFIX}{os.getpid()}-", dir=WORK_PARENT))
         try:
@@ -92,7 +92,7 @@ class Scene:
             self.options = self._safe_options(options)
             begun = time.monotonic()
             self.width, self.height = self._resolution()
-            self.parse_seconds = time.monotonic() - begun  # what every render costs before its first pixel
+            self.parse_seconds = time.monotonic() - begun  # of every run, before its first pixel
         except BaseException:
             self.close()
             raise
@@ -107,17 +107,17 @@ class Scene:
         shutil.rmtree(self.work, ignore_errors=True)
 
     def render(self, scale=1, tail="", options=(), crop=None, size=None):
-        """One render: see Shot."""
+        """Renders a Shot with these values; returns its image."""
         return self.render_all([Shot(scale, tail, options, crop, size)])[0]
 
     def render_all(self, shots):
-        """Images of several shots: radiance (linear), float32 (scale * height, scale * width, 3), of the crop or the whole.
-        A POV-Ray that starts and ends sleeps over half a second, so some run side by side."""
-        at_once = AT_ONCE if sum(shot.subpixels(self) for shot in shots) < len(shots) * SMALL else 1
+        """Renders shots; returns their images: linear radiance, float32 (scale * height, scale * width, 3), of the crop
+        or the frame. POV-Ray sleeps over half a second when it starts and ends, so several runs are concurrent."""
+        concurrent = CONCURRENT_RUNS if sum(shot.subpixels(self) for shot in shots) < len(shots) * SMALL_IMAGE else 1
         images, running = [None] * len(shots), {}
         try:
             for number, shot in enumerate(shots):
-                if len(running) == at_once:
+                if len(running) == concurrent:
                     first = next(iter(running))
                     images[first] = self._image(shots[first], running.pop(first))
                 running[number] = self._start(number, shot)
@@ -130,17 +130,17 @@ class Scene:
         return images
 
     def debug(self, tail, marker):
-        """What `tail` printed by #debug on lines that begin with `marker`, from a render of one pixel; [] where POV-Ray
-        did not take the tail."""
+        """Renders one pixel with `tail`; returns the rest of the lines printed by #debug that begin with `marker`. It
+        is [] if POV-Ray rejects the tail."""
         try:
-            self.render(1, tail, ("Debug_Console=on",), Crop(0, 0, 1, 1))
+            self.render(1, tail, ("Debug_Console=on",), ONE_PIXEL)
         except DriverError:
             return []
         return [line[len(marker) :].strip() for line in self.messages.splitlines() if line.startswith(marker)]
 
     def _start(self, number, shot):
-        """Starts POV-Ray on a shot, in a folder of its own: it names its output as it likes, and its messages go to a
-        file."""
+        """Starts POV-Ray on a shot. The run has a folder, for its messages and its output, whose name POV-Ray
+        chooses."""
         folder = self.work / f"run{number}"
         shutil.rmtree(folder, ignore_errors=True)
         folder.mkdir()
@@ -157,7 +157,7 @@ class Scene:
             code = run.child.wait(self.timeout)
         except subprocess.TimeoutExpired:
             process.stop(run.child)
-            text = f"{self.path}: POV-Ray took over {self.timeout:g} s (--timeout)"
+            text = f"{self.path}: POV-Ray ran for more than {self.timeout:g} s (--timeout)"
             raise DriverError(ExitCode.RENDERER, text) from None
         except BaseException:
             process.stop(run.child)
@@ -173,28 +173,28 @@ class Scene:
         return Crop(0, 0, *(shot.size or (self.width, self.height)))
 
     def _only_output(self, folder):
-        """The one file that was written: POV-Ray puts the frame's number into the name where there is an animation."""
+        """The file that the run wrote. In an animation POV-Ray adds the frame's number to its name."""
         files = sorted(folder.glob("render*.exr"))
         if not files:
             raise DriverError(ExitCode.RENDERER, f"{self.path}: POV-Ray wrote no image")
         if len(files) > 1:
             raise DriverError(
-                ExitCode.USAGE, f"{self.path}: the options ask for {len(files)} frames: choose one by +SFn +EFn"
+                ExitCode.USAGE, f"{self.path}: the options select {len(files)} frames: select one with +SFn +EFn"
             )
         return files[0]
 
     def _why(self):
-        """The first error that POV-Ray printed, on one line; it wraps its messages at 80 columns."""
+        """The first error of POV-Ray's messages, which are wrapped at 80 columns, on one line."""
         unwrapped = re.sub(r"\n +(?=\S)", " ", self.messages)
         lines = [
             line.strip() for line in unwrapped.splitlines() if re.search(r"\b(?:[Ee]rror|[Pp]roblem|[Ff]ailed)\b", line)
         ]
-        text = " ".join(lines[:2]) or (self.messages.strip().splitlines() or ["it said nothing"])[-1]
+        text = " ".join(lines[:2]) or (self.messages.strip().splitlines() or ["no message"])[-1]
         return text.replace(f"{self.work}/scene.pov", self.path.name)
 
     def _safe_options(self, options):
-        """The user's options with paths that hold from the scene's folder: libraries (+L), .ini files and the caller's
-        folder become links in the work folder."""
+        """The user's options with paths that are valid in the scene's folder: libraries (+L), .ini files and the
+        current folder become links in the work folder."""
         (self.work / "caller").symlink_to(pathlib.Path.cwd())
         return [self._safe_option(word, number) for number, word in enumerate(options)]
 
@@ -206,7 +206,9 @@ class Scene:
         if ini and pathlib.Path(ini[1]).is_file():
             return self._link(ini[1], f"options{number}.ini") + (ini[2] or "")
         if not word.startswith(("+", "-")) and "=" not in word:
-            raise DriverError(ExitCode.MISSING, f"{word}: no such .ini file (what follows -- are POV-Ray's options)")
+            raise DriverError(
+                ExitCode.MISSING, f"{word}: no such .ini file (the words after -- are options of POV-Ray)"
+            )
         return word
 
     def _link(self, path, name):
@@ -214,20 +216,20 @@ class Scene:
         return str(self.work / name)
 
     def _resolution(self):
-        """Width and height that the options ask for, as POV-Ray itself understood them. This render of one pixel also
-        tells whether the scene can be parsed at all."""
-        run = self._start(0, _AsAsked())
-        self._image(_AsAsked(), run)
+        """The width and height of the options, as POV-Ray reads them, from a render of one pixel. It fails if POV-Ray
+        cannot parse the scene."""
+        run = self._start(0, _FirstPixel())
+        self._image(_FirstPixel(), run)
         version = re.search(r"POV-Ray (\d\S*)", self.messages) or re.search(r"Ray Tracer Version (\S+)", self.messages)
         self.version = f"POV-Ray {version[1]}" if version else "POV-Ray"
         found = re.search(r"Image resolution\W+(\d+) by (\d+)", self.messages)
         if not found:
-            raise DriverError(ExitCode.RENDERER, f"{self.path}: POV-Ray did not say the image's size")
+            raise DriverError(ExitCode.RENDERER, f"{self.path}: POV-Ray did not print the size of the image")
         return int(found[1]), int(found[2])
 
 
 def _remove_stale_work():
-    """Work folders of this user whose driver was killed outright."""
+    """Removes this user's work folders whose driver was killed."""
     for folder in WORK_PARENT.glob(f"{WORK_PREFIX}*-*"):
         process_number = folder.name[len(WORK_PREFIX) :].partition("-")[0]
         try:
@@ -240,7 +242,7 @@ def _remove_stale_work():
 
 
 def _read_rgb(path, scale, crop):
-    """The crop out of a file of the whole frame: POV-Ray leaves the rest empty."""
+    """The crop of a file of the whole frame. The file has no values outside of it."""
     file = oiio.ImageInput.open(os.fspath(path))
     if not file:
         raise DriverError(ExitCode.RENDERER, f"{path}: {oiio.geterror()}")

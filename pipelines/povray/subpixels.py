@@ -1,6 +1,6 @@
-"""From subpixels to pixels: mean, variance of the mean, two halves.
+"""Pixels from subpixels: mean, variance of the mean, two halves.
 
-POV-Ray's noise repeats from run to run, so the samples of a pixel are its subpixels: a grid of n x n in one render.
+POV-Ray's noise is the same in every run, so the samples of a pixel are its subpixels, a grid of n x n in one render.
 """
 
 import dataclasses
@@ -10,12 +10,12 @@ import numpy as np
 
 @dataclasses.dataclass
 class Estimate:
-    """Pixels from n x n subpixels, arrays (height, width, channels)."""
+    """Pixels from n x n subpixels: arrays (height, width, channels)."""
 
     mean: np.ndarray
-    variance: np.ndarray  # of the mean; zero where there is one subpixel
+    variance: np.ndarray  # of the mean; 0 if there is one subpixel
     a: np.ndarray  # mean of the white fields of the chessboard of subpixels
-    b: np.ndarray  # of the black ones
+    b: np.ndarray  # mean of the black fields
 
     def crop(self, rows, columns):
         return Estimate(*(planes[rows, columns] for planes in (self.mean, self.variance, self.a, self.b)))
@@ -32,14 +32,13 @@ def blocks(image, n):
 
 
 def estimate(image, n):
-    """Means, variances and halves of the pixels of an image of subpixels.
+    """The Estimate of an image of subpixels.
 
-    The grid is a stratified sample: what changes evenly across the pixel adds next to nothing to the error of the mean,
-    but all of its variance to the plain sample variance. So the variance of a subpixel is taken from the mixed differences
-    of four neighbours, E (y_00 - y_01 - y_10 + y_11)^2 / 4, which are 0 for whatever is linear across the pixel (Cochran,
+    The grid is a stratified sample. A linear change across the pixel adds hardly any error to the mean, but it would
+    add all of its variance to the sample variance of the subpixels. Therefore the variance of a subpixel comes from the
+    mixed differences of four neighbours, E (y_00 - y_01 - y_10 + y_11)^2 / 4, which are 0 for linear changes (Cochran,
     Sampling Techniques, 8.11: systematic sampling in two dimensions). The halves are the two colours of a chessboard:
-    each covers the whole pixel, and no row or column is in one half more than in the other.
-    """
+    each covers the whole pixel and has the same number of subpixels in every row and column."""
     subpixels = np.asarray(blocks(image, n), np.float64)
     mean = subpixels.mean((2, 3))
     if n == 1:
@@ -52,7 +51,7 @@ def estimate(image, n):
 
 
 def join(first, count, second, more):
-    """Two estimates of the same pixels from disjoint samples, `count` and `more` of each pixel, as one."""
+    """Joins two estimates of the same pixels from disjoint samples, `count` and `more` of each pixel."""
     total = count + more
     mean, a, b = ((count * getattr(first, k) + more * getattr(second, k)) / total for k in ("mean", "a", "b"))
     variance = (count**2 * first.variance + more**2 * second.variance) / total**2

@@ -25,8 +25,8 @@ def write(target, scenes):
 
 def _row(path):
     with Scene(path, [f"+W{WIDTH}", f"+H{HEIGHT}"]) as scene:
-        plan = passes.make_plan(scene, None)
-        images = {name: layer.mean for name, layer in passes.render_features(scene, plan, 1).items()}
+        choice = passes.choose_passes(scene)
+        images = {name: layer.mean for name, layer in passes.render_features(scene, choice, 1).items()}
         images["Combined"] = scene.render(1)
     white = np.ones((HEIGHT, WIDTH, 3))
     return np.concatenate([_shown(name, images[name]) if name in images else white for name in COLUMNS], axis=1)

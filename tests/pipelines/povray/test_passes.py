@@ -25,11 +25,11 @@ def truth(origin=(0, 0, -5), rays=RAY):
 class Passes(InFolder):
     def look(self, text, camera=None, **options):
         with Scene(self.scene(text), SIZE, **options) as scene:
-            plan = passes.make_plan(scene, camera)
-            return plan, {name: found.mean for name, found in passes.render_features(scene, plan, 1).items()}
+            choice = passes.choose_passes(scene, camera)
+            return choice, {name: found.mean for name, found in passes.render_features(scene, choice, 1).items()}
 
-    def decided(self, plan, effect):
-        return next(d for d in plan.decisions if d.effect == effect)
+    def decided(self, choice, name):
+        return next(d for d in choice.decisions if d.name == name)
 
     def check_ball(self, found):
         distance, normals, on_ball = truth()
@@ -43,9 +43,9 @@ class Passes(InFolder):
     def test_ball_before_a_wall(self):
         # Whatever gamma POV-Ray works in, the passes are the same.
         for gamma in (1.0, 2.2):
-            plan, found = self.look(HEAD % gamma + CAMERA + BALL + LAMP)
-            self.assertAlmostEqual(plan.gamma, gamma, delta=0.02)
-            self.assertIsNotNone(plan.depth.place)
+            choice, found = self.look(HEAD % gamma + CAMERA + BALL + LAMP)
+            self.assertAlmostEqual(choice.gamma, gamma, delta=0.02)
+            self.assertIsNotNone(choice.depth.place)
             on_ball = self.check_ball(found)
             colour = np.array([0.8, 0.4, 0.2]) ** gamma
             np.testing.assert_allclose(
@@ -58,8 +58,8 @@ class Passes(InFolder):
 
     def test_fog_where_the_camera_is_not_found(self):
         self.scene(CAMERA, "camera.inc")
-        plan, found = self.look(HEAD % 1 + '#include "camera.inc"\n' + BALL + LAMP)
-        self.assertIsNone(plan.depth.place)
+        choice, found = self.look(HEAD % 1 + '#include "camera.inc"\n' + BALL + LAMP)
+        self.assertIsNone(choice.depth.place)
         self.check_ball(found)
 
     def test_a_named_camera_after_one_that_is_not_there(self):
@@ -67,9 +67,9 @@ class Passes(InFolder):
             CAMERA.replace("camera {", "#declare C = camera {")
             + "#if (0) camera { location <9,9,9> } #end camera { C }\n"
         )
-        plan, found = self.look(HEAD % 1 + named + BALL + LAMP)
-        self.assertIn("not at <9", self.decided(plan, "depth by lamp").reason)
-        self.assertIn("-5.0", plan.depth.place)
+        choice, found = self.look(HEAD % 1 + named + BALL + LAMP)
+        self.assertIn("not at <9", self.decided(choice, "depth by lamp").reason)
+        self.assertIn("-5.0", choice.depth.place)
         self.check_ball(found)
 
     def test_fog_for_mirrors_and_glass(self):
@@ -78,34 +78,34 @@ class Passes(InFolder):
             .replace("rgb rgbf", "rgbf")
             .replace("diffuse 0.6", "diffuse 0 reflection 0.9", 1)
         )
-        plan, found = self.look(HEAD % 1 + CAMERA + glass + LAMP)
-        self.assertIn("fog sees them", self.decided(plan, "depth by lamp").reason)
+        choice, found = self.look(HEAD % 1 + CAMERA + glass + LAMP)
+        self.assertIn("fog measures them", self.decided(choice, "depth by lamp").reason)
         distance, _, on_ball = truth()
         self.assertLess(np.abs(found["Denoising Depth"][..., 0] / distance - 1)[on_ball].mean(), 0.02)
 
     def test_a_wrong_place_is_noticed(self):
-        plan, found = self.look(HEAD % 1 + CAMERA + BALL + LAMP, camera="3,1,-4")
-        self.assertIn("not at <3,1,-4>", self.decided(plan, "depth by lamp").reason)
+        choice, found = self.look(HEAD % 1 + CAMERA + BALL + LAMP, camera="3,1,-4")
+        self.assertIn("not at <3,1,-4>", self.decided(choice, "depth by lamp").reason)
         self.check_ball(found)
 
     def test_a_camera_inside_of_a_solid_has_no_fog(self):
         room = BALL.replace("plane { -z, -2 hollow", "box { -10, <10,10,2>")
         self.scene(CAMERA, "camera.inc")
         elsewhere = '#include "camera.inc"\n'
-        plan, found = self.look(HEAD % 1 + elsewhere + room + LAMP)
-        self.assertFalse(self.decided(plan, "depth").run)
+        choice, found = self.look(HEAD % 1 + elsewhere + room + LAMP)
+        self.assertFalse(self.decided(choice, "depth").run)
         self.assertNotIn("Denoising Depth", found)
-        plan, found = self.look(HEAD % 1 + elsewhere + room + LAMP, camera="0,0,-5")
-        self.assertIn("not checked", self.decided(plan, "depth").reason)
+        choice, found = self.look(HEAD % 1 + elsewhere + room + LAMP, camera="0,0,-5")
+        self.assertIn("not checked", self.decided(choice, "depth").reason)
         self.check_ball(found)
 
     def test_only_what_the_scene_calls_for(self):
         # One colour that shines by itself: nothing to learn from albedo, lamps or shadows.
         glow = "plane { -z, -2 hollow pigment { rgb 0.5 } finish { ambient 1 diffuse 0 } }\n"
-        plan, found = self.look(HEAD % 1 + CAMERA + glow + LAMP)
+        choice, found = self.look(HEAD % 1 + CAMERA + glow + LAMP)
         self.assertEqual(set(found), {"Denoising Depth"})
         # Light groups keep our lamps out: no normals, no lamp for the depth.
-        plan, found = self.look(HEAD % 1 + CAMERA + "light_group {" + LAMP + BALL + "global_lights off }\n")
-        self.assertFalse(self.decided(plan, "normal").run)
-        self.assertIsNone(plan.depth.place)
+        choice, found = self.look(HEAD % 1 + CAMERA + "light_group {" + LAMP + BALL + "global_lights off }\n")
+        self.assertFalse(self.decided(choice, "normal").run)
+        self.assertIsNone(choice.depth.place)
         self.assertIn("Visibility", found)

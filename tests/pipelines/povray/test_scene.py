@@ -41,7 +41,8 @@ class Scenes(InFolder):
         self.assertLess(abs(fine.mean() / part.mean() - 1), 0.02)
 
     def test_awkward_names_includes_and_options_from_elsewhere(self):
-        # HARD: a blank, quotes, a leading '-', '#', braces, UTF-8; in the scene's folder and name, in an .ini and a library.
+        # HARD: a blank, quotes, a leading '-', '#', braces, UTF-8; in the scene's folder and name, in an .ini and a
+        # library.
         folder = pathlib.Path("-d'i r\"#{}$(x) ünï")
         (folder / "sub").mkdir(parents=True)
         (folder / "sub" / "flat.inc").write_text(FLAT)

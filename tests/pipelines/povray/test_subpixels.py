@@ -7,8 +7,8 @@ from pipelines.povray.subpixels import estimate, join
 
 class Subpixels(unittest.TestCase):
     def test_white_noise_has_the_variance_that_is_told(self):
-        # 4800 pixels x 3 channels: the mean of squared errors is known to 2 sqrt(2 / 14400) = 2.4 % at 2 sigma, the mean of
-        # the told variances to less; 6 % is 5 sigma.
+        # 4800 pixels x 3 channels: the mean of squared errors is known to 2 sqrt(2 / 14400) = 2.4 % at 2 sigma, the
+        # mean of the told variances to less; 6 % is 5 sigma.
         for n in (2, 3, 4, 8):
             found = estimate(np.random.default_rng(n).normal(size=(60 * n, 80 * n, 3)), n)
             self.assertAlmostEqual(found.variance.mean() / (found.mean**2).mean(), 1, delta=0.06)
