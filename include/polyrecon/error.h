@@ -1,3 +1,4 @@
+// The exception that the library throws, with the exit code that the program makes of it.
 #pragma once
 
 #include <stdexcept>
@@ -5,7 +6,7 @@
 
 namespace polyrecon {
 
-/// Exit codes of the program; documented in README.md, never renumbered.
+/// Exit codes of the program, described in docs/reference/exit_codes.md. The numbers never change.
 enum class ExitCode {
   Done = 0,
   Internal = 1,
@@ -20,9 +21,9 @@ enum class ExitCode {
   Terminated = 143,
 };
 
-/// The one exception type of the project: a fault of input, output or use, never of the numbers (a numerical failure is
-/// data: it is counted, reported and falls back). The message is one line that names file, part and channel where they
-/// are known, and what to do.
+/// The one exception type of the library: wrong use, a faulty input, a failed output, too little memory, or a request
+/// to stop. A numerical failure is no exception: it is counted in Report, and the pixels concerned fall back to the
+/// input. what() is one line that names file, part and channel where they are known, and says what to do.
 class Error : public std::runtime_error {
  public:
   Error(ExitCode code, const std::string& message) : std::runtime_error(message), code_(code) {}
@@ -31,8 +32,5 @@ class Error : public std::runtime_error {
  private:
   ExitCode code_;
 };
-
-/// text up to its first line break: library messages go into one-line errors.
-inline std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
 
 }  // namespace polyrecon

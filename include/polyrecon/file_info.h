@@ -1,3 +1,4 @@
+// The headers of an image file, without its pixels: parts, channels, windows, attributes.
 #pragma once
 
 #include <cstddef>
@@ -9,58 +10,61 @@
 
 namespace polyrecon {
 
-/// What a file may claim before it is refused. Every number is compared with the header before anything of that size is
-/// allocated, here or in a library.
+/// Limits beyond which a file is refused. The header is compared with them before memory of that size is allocated.
 struct ReadLimits {
-  std::size_t max_pixels = std::size_t{1} << 28;  ///< Pixels of one part's data window: 16384 x 16384.
+  std::size_t max_pixels = std::size_t{1} << 28;  ///< Pixels in the data window of a part: 16384 x 16384.
   std::size_t max_channels = 4096;                ///< Channels of all parts together.
-  std::size_t max_parts = 1024;
-  std::size_t max_bytes = std::size_t{16} << 30;  ///< Decoded samples held at once.
+  std::size_t max_parts = 1024;                   ///< Parts of a file.
+  std::size_t max_bytes = std::size_t{16} << 30;  ///< Bytes of decoded samples in memory at one time.
 };
 
+/// How a file stores the samples of a channel: 32-bit unsigned integers, 16-bit or 32-bit floating point numbers.
 enum class SampleType { Uint, Half, Float };
 
+/// A channel of a part.
 struct ChannelInfo {
   std::string name;  ///< Whole name as in the file: "ViewLayer.Combined.R".
   SampleType type = SampleType::Float;
-  int x_sampling = 1, y_sampling = 1;
+  int x_sampling = 1, y_sampling = 1;  ///< Pixels per sample along a row and along a column.
 };
 
-/// A header attribute in readable form; value is empty where the type has no short text (previews, opaque types).
+/// An attribute of a header as text; value is empty if its type has no short text form (previews, opaque types).
 struct AttributeInfo {
   std::string name, type, value;
 };
 
+/// A part of a file; files of formats without parts have one.
 struct PartInfo {
   std::string name;  ///< Empty in most single-part files.
-  std::string view;  ///< Stereo view of the whole part, empty without one.
+  std::string view;  ///< Stereo view of the whole part; empty without one.
   Rect data_window, display_window;
   std::string compression;  ///< "zip", "dwaa", ...; "none".
   bool tiled = false, deep = false, mipmapped = false;
   std::vector<ChannelInfo> channels;  ///< In file order (sorted by name).
-  std::vector<std::string> views;     ///< The `multiView` attribute: views told apart by channel names.
+  std::vector<std::string> views;     ///< Attribute `multiView`: stereo views that channel names distinguish.
   std::vector<AttributeInfo> attributes;
 
-  /// Whether the pixels are a plain image: flat, one level, and every channel has one sample a pixel.
+  /// Whether read_frame can read the pixels: a flat image of one level with one sample per pixel in each channel.
   bool readable() const;
 };
 
-/// All that the headers of an image file say; no pixels.
+/// The headers of an image file.
 struct FileInfo {
   std::string path;
-  std::string format;  ///< "openexr", or OpenImageIO's name of another format ("pnm" for PFM).
-  std::uint64_t bytes = 0;
+  std::string format;       ///< "openexr", or OpenImageIO's name of another format ("pnm" for PFM).
+  std::uint64_t bytes = 0;  ///< Length of the file.
   std::vector<PartInfo> parts;
 };
 
+/// "uint", "half" or "float".
 const char* name_of(SampleType type);
 
-/// Reads the headers only. Throws Error{Missing} where there is no such file, and Error{BadInput} where it is empty or
-/// has no chunk written ("not yet rendered"), is cut ("incomplete"), is damaged, or claims more than limits or its own
-/// length allow.
+/// Reads the headers of a file. Throws Error{Missing} if there is no such file. Throws Error{BadInput} if the file is
+/// empty or has no chunk written ("not yet rendered"), is cut off ("incomplete"), is damaged, or if its header claims
+/// more than the limits or the file's length allow.
 FileInfo describe_file(const std::string& path, const ReadLimits& limits = {});
 
-/// An attribute of a part, nullptr where there is none.
+/// An attribute of a part; nullptr if there is none of this name.
 const AttributeInfo* find_attribute(const PartInfo& part, const std::string& name);
 
 }  // namespace polyrecon

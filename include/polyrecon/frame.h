@@ -1,3 +1,4 @@
+// A frame in memory: the passes of one view layer, as read_frame fills them and reconstruct takes them.
 #pragma once
 
 #include <cstddef>
@@ -8,14 +9,13 @@
 
 namespace polyrecon {
 
-/// A pass of a Monte Carlo render: per-pixel means, and what is known of their noise.
+/// A pass of a Monte Carlo render: the mean of each pixel's samples, and what is known of the noise of that mean.
 struct Pass {
-  std::string name;  ///< Layer name as in the file, without a channel: "ViewLayer.Combined".
-  Image mean;        ///< 1 or 3 channels.
-  Image variance;    ///< Variance of the mean, same shape; empty where unknown.
-  Image half_a;      ///< Means over two independent halves of the samples; both there or both empty.
-  Image half_b;
-  bool variance_is_estimated = false;  ///< From the mean (noise/variance.h), not told by the file.
+  std::string name;      ///< Name of the layer in the file, without a channel: "ViewLayer.Combined".
+  Image mean;            ///< 1 or 3 channels.
+  Image variance;        ///< Variance of the mean, same shape; empty if unknown.
+  Image half_a, half_b;  ///< Means over two independent halves of the samples, same shape; both empty if unknown.
+  bool variance_is_estimated = false;  ///< The variance was estimated from the mean: the file has none.
 
   bool has_halves() const { return !half_a.empty(); }
   bool noise_is_told() const { return !variance.empty() || has_halves(); }
@@ -23,37 +23,37 @@ struct Pass {
 
 enum class FeatureKind { Normal, Albedo, Depth, Visibility };
 
-/// A feature f of the local model (2): normal and albedo have 3 channels, depth and visibility 1.
+/// A pass that guides the reconstruction: f of equation (2). Normal and albedo have 3 channels, depth and visibility 1.
 struct Feature {
   FeatureKind kind = FeatureKind::Normal;
   Pass pass;
 };
 
-/// One view layer of one frame, as the reconstruction sees it: linear radiance, pixel (0, 0) at the upper left corner
-/// of the data window. All images have the same width and height.
+/// One view layer of one frame. All images have the same width and height; pixel (0, 0) is the upper left corner of the
+/// data window. Colours are linear radiance.
 struct Frame {
-  Rect data_window;               ///< Where the pixels stand in the file's coordinates.
+  Rect data_window;               ///< The frame's pixels in the coordinates of the file.
   Pass beauty;                    ///< y of equation (1), 3 channels.
   std::vector<Feature> features;  ///< f of equation (2).
-  std::vector<Pass> aovs;         ///< Further colour layers to be reconstructed with the beauty's windows, 3 channels.
-  Pass prior;                     ///< An already denoised beauty; prior.mean is empty where there is none.
-  Image alpha;                    ///< 1 channel; empty where there is none.
-  Image sample_count;             ///< Samples per pixel, 1 channel; empty where unknown.
-  Image motion;                   ///< 4 channels: columns and rows from a pixel to its point's place in the frame
-                                  ///< before (0, 1) and in the one after (2, 3); empty where unknown.
+  std::vector<Pass> aovs;         ///< Further colour layers, reconstructed with the beauty's windows; 3 channels.
+  Pass prior;                     ///< A denoised beauty from elsewhere, 3 channels; prior.mean is empty if unknown.
+  Image alpha;                    ///< 1 channel; empty if the render has none.
+  Image sample_count;             ///< Samples per pixel, 1 channel; empty if unknown.
+  Image motion;                   ///< Pixels from a point's place in this frame to its place in the frame before
+                                  ///< (channel 0: columns, 1: rows) and after (2: columns, 3: rows); empty if unknown.
 
   int width() const { return beauty.mean.width(); }
   int height() const { return beauty.mean.height(); }
 };
 
-/// The size of a frame as memory sees it, known before any pixel is read.
+/// The size of a frame, known before any pixel is read; memory needs are estimated from it.
 struct FrameShape {
   std::size_t pixels = 0;
-  int channels = 0;          ///< Of all passes in use with their variances (told or estimated) and halves.
-  int color_channels = 3;    ///< Of the beauty and the AOVs.
-  int feature_channels = 0;  ///< Of the features' means.
-  int prior_channels = 0;    ///< Of the prior, which waits beside the fits for its turn.
-  int beside = 0;            ///< Held beside it all along: neighbours in time, the next frame of a sequence.
+  int channels = 0;          ///< All passes in use, with their halves and variances, those to be estimated included.
+  int color_channels = 3;    ///< Beauty and AOVs.
+  int feature_channels = 0;  ///< Means of the features.
+  int prior_channels = 0;    ///< The prior, with halves and variance; it stays in memory during the fits.
+  int beside = 0;            ///< Other frames in memory at the same time: neighbours in time, the next of a sequence.
 };
 
 }  // namespace polyrecon

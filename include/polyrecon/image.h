@@ -1,3 +1,4 @@
+// Images and rectangles of pixels.
 #pragma once
 
 #include <cstddef>
@@ -5,7 +6,7 @@
 
 namespace polyrecon {
 
-/// Type of stored samples, chosen when the project is configured (POLYRECON_REAL). Sums are always double.
+/// Type of stored samples: float, or double if the library was built with -DPOLYRECON_REAL=double. Sums are double.
 using Real = POLYRECON_REAL;
 
 /// A rectangle of pixels: columns x0 .. x1 - 1, rows y0 .. y1 - 1.
@@ -25,11 +26,12 @@ struct Rect {
   }
 };
 
-/// A planar image: channels() planes, each height() rows of width() samples, rows without padding.
-/// A default-constructed Image is empty and stands for "this pass is not there".
+/// A planar image: channels() planes of height() rows of width() samples, without padding. A default-constructed image
+/// is empty and stands for a missing pass.
 class Image {
  public:
   Image() = default;
+  /// All sizes at least 0; every sample has the value fill.
   Image(int width, int height, int channels, Real fill = 0);
 
   int width() const { return width_; }
@@ -37,8 +39,9 @@ class Image {
   int channels() const { return channels_; }
   bool empty() const { return samples_.empty(); }
   Rect bounds() const { return {0, 0, width_, height_}; }
-  /// Number of pixels, and so the distance between two planes.
+  /// Number of pixels; also the number of samples from one plane to the next.
   std::size_t pixels() const { return static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_); }
+  /// Place of column x, row y in a plane.
   std::size_t index(int x, int y) const {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
   }
@@ -59,12 +62,13 @@ class Image {
   std::vector<Real> samples_;
 };
 
-/// The part of image inside r, which must lie within its bounds. An empty image stays empty.
+/// A copy of the part r, which must lie inside the image's bounds. The crop of an empty image is empty.
 Image crop(const Image& image, const Rect& r);
-/// The same of channels first to first + count - 1.
+/// The same with channels first to first + count - 1 only.
 Image crop(const Image& image, const Rect& r, int first, int count);
 
-/// Copies the part `from` of source to the place (x, y) of target; same number of channels.
+/// Copies the part `from` of source into target so that its upper left pixel lands on (x, y). Both have the same number
+/// of channels; the part must fit into target.
 void paste(const Image& source, const Rect& from, Image& target, int x, int y);
 
 }  // namespace polyrecon

@@ -1,3 +1,4 @@
+// The parameters of a reconstruction, with their defaults and presets. Distances are pixels unless stated otherwise.
 #pragma once
 
 #include <cstddef>
@@ -8,89 +9,101 @@
 
 namespace polyrecon {
 
+/// The patches whose difference gives a pixel its weight in a window.
 struct PatchParams {
-  int radius = 1;
-  Real most_around = std::numeric_limits<Real>::infinity();  ///< What a pixel around the middle one counts at most.
+  int radius = 1;                                            ///< 0..4.
+  Real most_around = std::numeric_limits<Real>::infinity();  ///< Largest difference that a pixel counts with, unless it
+                                                             ///< is the middle one of the patch.
 };
 
+/// The prefilter of noisy features: non-local means.
 struct PrefilterParams {
   int search_radius = 5;
   int patch_radius = 3;
   double bandwidth = 0.5;
 };
 
+/// What makes a pixel an outlier (a firefly), equation (10).
 struct OutlierParams {
-  int neighbourhood = 2;             ///< Radius of the neighbourhood that an outlier stands out of, pixels.
-  bool variance_is_measured = true;  ///< Otherwise the variance says nothing of single pixels and is not asked.
-  double height = 3;  ///< How far above the median it stands, in units of (upper end of the neighbourhood - median).
-  /// How far above the other half's pixel it stands, in units of the third largest difference of the halves around.
+  int neighbourhood = 2;             ///< Radius of the neighbourhood that the pixel is compared with.
+  bool variance_is_measured = true;  ///< Whether the variance describes single pixels; if not, reliability is ignored.
+  double height = 3;  ///< Least height above the median, in units of (upper end of the neighbourhood - median).
+  /// Least height above the same pixel of the other half, in units of the third largest difference between the halves
+  /// in the neighbourhood.
   double height_over_other_half = 8;
-  double reliability = 4;  ///< It is unreliable: its excess is below this many of its own standard deviations.
-  int density_radius = 9;  ///< Where outliers are common within this radius they are the light itself and stay.
-  double density = 0.01;   ///< Part of the pixels around that may be outliers, beside the pixel itself.
+  double reliability = 4;  ///< Largest height of an outlier in its own standard deviations; above, it is reliable.
+  int density_radius = 9;  ///< Radius within which outliers are counted.
+  double density = 0.01;   ///< Largest share of other outliers in that radius; where there are more, they are kept.
 };
 
+/// The choice between candidates by cross-validation.
 struct SelectParams {
-  double risk_sigma = 3;   ///< Gaussian over which cross-validated errors are averaged, pixels.
-  double map_sigma = 1.5;  ///< Gaussian by which the choice itself is smoothed.
+  double risk_sigma = 3;   ///< Standard deviation of the Gaussian that averages the estimated errors.
+  double map_sigma = 1.5;  ///< Standard deviation of the Gaussian that smooths the shares of the candidates.
 };
 
+/// How frames before and after are averaged into a frame.
 struct TemporalParams {
-  int radius = 0;                          ///< Frames before and after that may join; 0..8.
-  std::vector<double> scales{1, 2, 4, 8};  ///< Standard deviations of the Gaussians that look for a change, pixels.
-  double accept = 3;                       ///< Change, in units of what noise alone brings, that is not minded.
-  double softness = 2;                     ///< A neighbour's weight falls as exp(-(change - accept) / softness).
-  double max_weight = 4;                   ///< Most weight of an estimate beside the pixel's own.
+  int radius = 0;                          ///< Frames before and after that may take part, 0..8.
+  std::vector<double> scales{1, 2, 4, 8};  ///< Standard deviations of the Gaussians under which a change is looked for.
+  double accept = 3;      ///< Squared change, in units of its variance from noise, that does not lower a weight.
+  double softness = 2;    ///< Above that, a weight falls as exp(-(change - accept) / softness).
+  double max_weight = 4;  ///< Largest weight of a neighbour's pixel; the frame's pixel has weight 1.
 };
 
-/// Which steps may run, and who decides.
+/// The steps of the method that may run.
 struct Steps {
-  bool decide = true;  ///< A look at the frame leaves out what it does not call for; false: all that is allowed runs.
-  bool normal = true, albedo = true, depth = true, visibility = true;  ///< Feature passes that may take part.
-  bool prefilter = true;                                               ///< Of noisy feature passes.
-  bool outliers = true;  ///< Their removal, and the return of their light.
+  bool decide = true;  ///< Whether steps that the frame does not need are left out; if not, all allowed steps run.
+  bool normal = true, albedo = true, depth = true, visibility = true;  ///< Use of the feature passes.
+  bool prefilter = true;                                               ///< Prefilter of noisy feature passes.
+  bool outliers = true;  ///< Removal of fireflies, and redistribution of their energy.
 };
 
+/// Presets: Draft is the fastest, Best the slowest.
 enum class Quality { Draft, Standard, Best };
 
-/// Parts of the method that can be taken out, to measure what each is worth (docs/results/accuracy.md).
+/// Parts of the method that can be switched off to measure their effect (docs/results/accuracy.md).
 struct Parts {
-  bool cross_filter = true;      ///< A half is fitted with weights and features of the other one.
-  bool shrinkage = true;         ///< Columns enter with the factor of least error, not whole (order_selection.h).
-  bool variance_floor = true;    ///< noise/variance_floor.h
-  bool noise_bound = true;       ///< blend/noise_bound.h
-  bool raise_undershoot = true;  ///< blend/undershoot.h
-  bool restore_totals = true;    ///< The result's channels are brought to the sums of the input's.
+  bool cross_filter = true;      ///< A half is fitted with weights and features of the other half.
+  bool shrinkage = true;         ///< Each column enters a fit by the factor of least estimated error, not whole.
+  bool variance_floor = true;    ///< The variance of a pixel is at least what its neighbourhood suggests.
+  bool noise_bound = true;       ///< A result differs from the input by at most 5 standard deviations of its noise.
+  bool raise_undershoot = true;  ///< A result is not below every input within 2 pixels.
+  bool restore_totals = true;    ///< The sum of each channel of the result is that of the input.
 };
 
-/// Everything that steers a reconstruction; the only home of its defaults.
+/// All parameters of a reconstruction with the defaults of the preset Standard.
 struct Params {
-  int stages = 2;                            ///< Rounds of error estimation, equations (8) and (9); 1..4.
-  int levels = 3;                            ///< Resolutions worked: the frame, its half, its quarter; 1..5.
-  int radius = 10;                           ///< Of the windows, pixels; 1..20.
-  int stride = 4;                            ///< Distance of the window centres where windows agree, pixels; 1..radius.
-  PatchParams patch;                         ///< Of the patches that weigh a window; radius 0..4.
-  PatchParams estimated_patch{2, Real(10)};  ///< The same where the noise is estimated from the image, which knows no
-                                             ///< single pixels.
-  int max_order = 2;                         ///< Highest Taylor order offered to the selection, 0..4.
-  std::vector<Real> first_bandwidths{Real(0.7)};              ///< Stage 1. Rising, as the others.
-  std::vector<Real> later_bandwidths{Real(0.35), Real(0.7)};  ///< Later stages, weights from the noisy half.
-  std::vector<Real> guided_bandwidths{Real(0.5), Real(1)};    ///< Later stages, weights from the stage before.
-  double order_tolerance = 0.02;  ///< Orders are averaged whose estimated errors are within this of the least.
-  double coverage = 2;            ///< Sum of weights below which finer centres are added; 0: none.
-  PrefilterParams prefilter;      ///< Of noisy feature passes.
+  int stages = 2;                            ///< Rounds of error estimation, equations (8) and (9), 1..4.
+  int levels = 3;                            ///< Resolutions: the frame, its half, its quarter, ...; 1..5.
+  int radius = 10;                           ///< Radius of the windows, 1..20.
+  int stride = 4;                            ///< Distance between window centres, 1..radius.
+  PatchParams patch;                         ///< Patches if the variance of each pixel is known.
+  PatchParams estimated_patch{2, Real(10)};  ///< Patches if the variance is estimated from the image, which is less
+                                             ///< exact for single pixels.
+  int max_order = 2;                         ///< Highest Taylor order that a window may choose, 0..4.
+  // Bandwidths of equation (4), > 0, in rising order; each makes a candidate.
+  std::vector<Real> first_bandwidths{Real(0.7)};              ///< Stage 1; at least one.
+  std::vector<Real> later_bandwidths{Real(0.35), Real(0.7)};  ///< Later stages, weights from the noisy half; at least
+                                                              ///< one.
+  std::vector<Real> guided_bandwidths{Real(0.5), Real(1)};    ///< Later stages, weights from the previous result.
+  double order_tolerance =
+      0.02;             ///< Orders whose estimated errors are this close to the least, relative, are averaged.
+  double coverage = 2;  ///< Centres are added where the weights of all windows sum to less; 0: nowhere.
+  PrefilterParams prefilter;
   SelectParams selection;
-  double enough = 0;  ///< Pixels whose noise variance over (value^2 + 0.01) is below this stay as they are.
+  double enough = 0;  ///< Pixels keep the input if their noise variance / (value^2 + 0.01) is at most this; >= 0.
   Steps steps;
   Parts parts;
-  TemporalParams temporal;         ///< How neighbours in time join, where there are any.
-  bool reconstruct_alpha = false;  ///< Reconstruct alpha with the beauty's windows instead of keeping it.
-  std::size_t max_memory = std::size_t{4} << 30;  ///< Bytes; larger frames are worked in tiles.
+  TemporalParams temporal;
+  bool reconstruct_alpha = false;  ///< Whether alpha is reconstructed with the beauty's windows; if not, it is kept.
+  std::size_t max_memory = std::size_t{4} << 30;  ///< Bytes; a frame that needs more is worked in tiles.
 };
 
+/// The parameters of a preset.
 Params params_for(Quality quality);
 
-/// Throws Error{Usage} naming the first value out of its range.
+/// Throws Error{Usage} that names the first value out of its range.
 void validate(const Params& params);
 
 }  // namespace polyrecon

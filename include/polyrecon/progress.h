@@ -1,3 +1,4 @@
+// How long work reports its progress and is asked to stop.
 #pragma once
 
 #include <cstddef>
@@ -5,17 +6,18 @@
 
 namespace polyrecon {
 
-/// What a stage tells of its progress. Stages call it from any thread; an implementation must be thread-safe.
-/// The base class is silent and never cancels.
+/// Receives the progress of a computation and may cancel it. It is called from any thread, so an implementation must be
+/// thread-safe. The base class ignores progress and never cancels.
 class Progress {
  public:
   virtual ~Progress() = default;
-  /// A stage begins that will report `steps` steps in all.
+  /// A stage of the computation begins; it consists of this many steps.
   virtual void begin(std::string_view stage, std::size_t steps);
+  /// This many more steps of the current stage are done.
   virtual void advance(std::size_t steps);
-  /// The current stage is over.
+  /// The current stage ends.
   virtual void end();
-  /// True once the work should stop; throws nothing itself.
+  /// Whether to stop. The computation then throws Error{Interrupted}; this function itself must not throw.
   virtual bool cancelled() const;
 };
 

@@ -1,3 +1,4 @@
+// Reads one view layer of a render from a file: finds the layers, chooses what each is to the method, decodes them.
 #pragma once
 
 #include <functional>
@@ -10,70 +11,72 @@
 
 namespace polyrecon {
 
-/// What the variance layers of the input hold.
+/// What the variance layers of the input hold. Frames have the variance of the mean of a pixel's n samples.
 enum class VarianceKind {
-  Auto,         ///< As the renderer that uses such names defines it.
-  Mean,         ///< Variance of the pixel's mean.
-  Sample,       ///< Variance of one sample: divided by the sample count.
-  SecondMoment  ///< Mean square m2: (m2 - mean^2) / (n - 1).
+  Auto,         ///< Depends on the renderer, which is recognised by the layer's name.
+  Mean,         ///< Variance of the mean.
+  Sample,       ///< Variance of one sample v; the variance of the mean is v / n.
+  SecondMoment  ///< Mean of the squared samples m2; the variance of the mean is (m2 - mean^2) / (n - 1).
 };
 
-/// A role given by hand. layer is a layer's name (whole, or within the view layer), a single channel's whole name, or
-/// the path of another image file.
+/// A layer whose role the user gives.
 struct RoleMapping {
   Role role = Role::Other;
   Companion companion = Companion::Mean;
-  std::string layer;
+  std::string
+      layer;  ///< Name of a layer (whole, or within the view layer), whole name of a channel, or path of a file.
 };
 
-/// Reads "ROLE=LAYER". ROLE is beauty, prior, alpha, albedo, normal, depth, visibility, sample-count or motion, or a
+/// Parses "ROLE=LAYER". ROLE is beauty, prior, alpha, albedo, normal, depth, visibility, sample-count or motion, or a
 /// companion: variance, half-a, half-b (of the beauty), albedo-variance, normal-half-a, ... Throws Error{Usage}.
 RoleMapping parse_mapping(const std::string& text);
 
+/// What is read of a file, and how.
 struct ReadOptions {
-  std::vector<RoleMapping> map;
+  std::vector<RoleMapping> map;   ///< Roles that the user gives; all others are found by name.
   std::vector<std::string> aovs;  ///< Layers for Frame::aovs: whole names, or names within the view layer.
   std::string view_layer;         ///< Empty: the first one that has a beauty.
   std::string view;               ///< Stereo view; empty: the first one.
   VarianceKind variance_kind = VarianceKind::Auto;
-  double samples = 0;   ///< Samples per pixel where the file does not tell; 0: unknown.
-  bool motion = false;  ///< Read the motion vectors too.
+  double samples = 0;   ///< Samples per pixel of a file that does not say; 0: unknown.
+  bool motion = false;  ///< Whether to read the motion vectors.
   ReadLimits limits;
-  /// Called once the passes in use are known and before any pixel is read; may throw to refuse the frame.
+  /// Called when the passes in use are known and before any pixel is read. It may throw to refuse the frame.
   std::function<void(const std::string& path, const FrameShape&)> accept;
 };
 
-/// One layer in use.
+/// A layer in use.
 struct RoleChoice {
   Role role = Role::Other;
   Companion companion = Companion::Mean;
   std::string layer;  ///< Layer::name.
-  std::string why;
+  std::string why;    ///< How role and companion were found, as a phrase.
 };
 
-/// Where a frame came from; what write_result and `inspect` need.
+/// Where a frame came from: the files, their layers, and which of them are in use.
 struct FrameSource {
   std::string path;
-  std::vector<FileInfo> files;     ///< [0] is the file at path; further ones were mapped by hand or stand beside it.
-  std::vector<Layer> layers;       ///< Of all files.
-  std::string view_layer, view;    ///< Chosen ones.
-  std::vector<RoleChoice> chosen;  ///< Beauty first, then its companions, the features, the others.
-  std::string alpha_layer;         ///< Layer whose alpha (or only channel) is Frame::alpha; empty without one.
+  std::vector<FileInfo> files;     ///< [0] is the file at path; the others hold passes of the same frame.
+  std::vector<Layer> layers;       ///< All layers of all files.
+  std::string view_layer, view;    ///< The ones in use.
+  std::vector<RoleChoice> chosen;  ///< The layers in use: beauty, its companions, features, others.
+  std::string alpha_layer;         ///< The layer that Frame::alpha is read from; empty without one.
 };
 
+/// A frame that was read.
 struct ReadResult {
   Frame frame;
   FrameSource source;
-  std::vector<std::string> notes;  ///< One line each: what was dropped, assumed or unusual.
+  std::vector<std::string> notes;  ///< Messages of one line: what was dropped, assumed or unusual.
 };
 
-/// Reads one view layer of a render. Layers that play a role are read whole, so that a cut last chunk is noticed; NaN
-/// and Inf are kept (repairing them is a stage's work). Depth and visibility have one channel: a layer of more is
-/// averaged. Throws Error{Missing} where the file or a layer asked for is not there, Error{BadInput} where the file is
-/// damaged, has no beauty or its layers do not fit together, Error{OutOfMemory} beyond options.limits.max_bytes.
+/// Reads one view layer of a render. Layers in use are read completely, so that a missing last chunk is noticed. NaN
+/// and infinity are kept; reconstruct repairs them. A depth or visibility layer of several channels is averaged to one.
+/// Throws Error{Missing} if the file or a requested layer is missing, Error{BadInput} if the file is damaged, has no
+/// beauty, or its layers do not fit together, Error{OutOfMemory} if the pixels need more than options.limits.max_bytes.
 ReadResult read_frame(const std::string& path, const ReadOptions& options = {});
 
-/// Layers, choice of roles and notes only, without pixels; the same errors.
+/// The same without pixels: source and notes, with the frame empty. Throws as read_frame does.
 ReadResult read_frame_header(const std::string& path, const ReadOptions& options = {});
 
 }  // namespace polyrecon

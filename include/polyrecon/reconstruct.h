@@ -1,3 +1,4 @@
+// Reconstructs a frame: the main call of the library.
 #pragma once
 
 #include <memory>
@@ -11,40 +12,40 @@
 
 namespace polyrecon {
 
-/// What comes out of a frame; all images have the frame's width and height.
+/// The reconstruction of a frame. All images have the width and height of the frame.
 struct Result {
-  Image beauty;             ///< 3 channels, linear radiance.
+  Image beauty;             ///< yhat of equation (3): 3 channels, linear radiance.
   std::vector<Image> aovs;  ///< In the order of Frame::aovs, 3 channels each.
-  Image alpha;              ///< 1 channel; empty where the frame has none.
-  ErrorMap error;           ///< How wrong each pixel of beauty may still be.
-  Image order;              ///< 1 channel: the order k of equation (7) as blended from the windows that cover a pixel.
-  Report report;
+  Image alpha;              ///< 1 channel; empty if the frame has none.
+  ErrorMap error;           ///< Estimated error of beauty.
+  Image order;              ///< 1 channel: mean of the orders k, equation (7), of the windows that cover a pixel.
+  Report report;            ///< What was done, counted and measured.
 };
 
-/// The whole method on one frame: reads like the abstract of Moon et al. 2016. Takes the frame's features, halves and
-/// variances and releases them as it goes; means, names, alpha and sample count stay with the caller. Frames that need
-/// more memory than params.max_memory are worked in tiles, with the same result to the bit. Throws Error{BadInput}
-/// where the frame holds nothing to work on (no finite beauty pixel), Error{OutOfMemory} where not even the smallest
-/// tile fits, Error{Interrupted} when progress asks to stop.
+/// Reconstructs one frame by the method of Moon et al. 2016. To save memory it takes features, halves and variances out
+/// of the frame and frees them as soon as possible; means, names, alpha and sample count stay. A frame that needs more
+/// than params.max_memory is worked in tiles, with the same result to the bit. Throws Error{Usage} if a parameter is
+/// out of its range, Error{CheckFailed} if the beauty has no finite pixel, Error{OutOfMemory} if not even the smallest
+/// tile fits, and Error{Interrupted} when progress asks to stop.
 Result reconstruct(Frame& frame, const Params& params, Progress& progress);
 
-/// A frame as the frames before and after it need it (temporal/neighbour.h).
+/// What the frames before and after a frame need of it; made by prepare_neighbour.
 struct Neighbour;
 
-/// A neighbour and its place in time: `offset` frames after the frame in hand (before it where negative).
+/// A neighbour in time.
 struct TimedNeighbour {
-  int offset = 0;
+  int offset = 0;                    ///< Frames after the one that is reconstructed; negative: before it.
   const Neighbour* frame = nullptr;  ///< Must outlive the call.
 };
 
-/// The same with the help of frames before and after (temporal/join.h), as prepare_neighbour made them, sorted in any
-/// way, at most params.temporal.radius frames away. They count towards params.max_memory.
+/// The same with the help of frames before and after, which are averaged into the frame along its motion vectors. The
+/// neighbours have any order and are at most params.temporal.radius frames away. They count towards params.max_memory.
 Result reconstruct(Frame& frame, const std::vector<TimedNeighbour>& neighbours, const Params& params,
                    Progress& progress);
 
-/// A frame as its neighbours in time need it, which is the same for all of them. number: of the frame; two frames that
-/// meet must not have the same one, since noise of a frame without half buffers is split with random numbers of its
-/// own. Throws as reconstruct does.
+/// Prepares a frame for the reconstruction of its neighbours in time, once for all of them. number: the frame's number.
+/// Frames that are used together need different numbers: a frame without half buffers is split into halves with random
+/// numbers that depend on it. Throws as reconstruct does.
 std::shared_ptr<const Neighbour> prepare_neighbour(const Frame& frame, int number, const Params& params,
                                                    Progress& progress);
 

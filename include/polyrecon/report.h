@@ -1,3 +1,4 @@
+// What a reconstruction did: decisions, counts and times.
 #pragma once
 
 #include <array>
@@ -7,17 +8,17 @@
 
 namespace polyrecon {
 
-/// Work that a decision spares.
+/// The work that a decision saves: fits of pixels, columns of the fits, or the prefilter of a feature.
 enum class Spared { Nothing, Pixels, Columns, Prefilter };
 
-/// Whether an step of the pipeline is run on this frame, and why (or why not).
+/// Whether a step of the method was run on a frame, and why.
 struct Decision {
-  std::string step;
+  std::string step;  ///< As --steps names it.
   bool run = false;
   std::string reason;
   Spared spared = Spared::Nothing;
-  int channels = 0;          ///< Of the pass that the decision is about.
-  double saved_seconds = 0;  ///< About what the spared work would have taken on this machine (pipeline/savings.h).
+  int channels = 0;          ///< Channels of the pass that the decision is about.
+  double saved_seconds = 0;  ///< Estimate of the time that the saved work would have taken on this machine.
 };
 
 /// Wall-clock seconds of one stage of the pipeline.
@@ -26,32 +27,32 @@ struct StageTime {
   double seconds = 0;
 };
 
-/// What a reconstruction did. Everything here is counted or measured, nothing is assumed.
+/// What a reconstruction did. Apart from estimates that are called so, everything is counted or measured.
 struct Report {
-  int width = 0, height = 0;
+  int width = 0, height = 0;  ///< Pixels.
   std::vector<StageTime> stages;
   std::vector<Decision> decisions;
   std::string variance_source;  ///< "from the file", "from half buffers" or "estimated from the image".
 
-  std::size_t windows = 0;                         ///< Local fits made.
+  std::size_t windows = 0;                         ///< Fits of windows.
   std::array<std::size_t, 6> windows_per_order{};  ///< [0]: constant only; [k]: order k - 1 with features, k = 1..5.
-  std::size_t rank_deficient_windows = 0;       ///< Fits in which a column depends on others: counts for half at most.
-  std::size_t dropped_windows = 0;              ///< Fits that were not finite and left out.
-  std::size_t pixels_fallen_back_to_input = 0;  ///< Pixels that no finite fit covered.
-  std::size_t bound_pixels = 0;                 ///< Pixels kept within reach of their noise (blend/noise_bound.h).
-  std::size_t raised_pixels = 0;                ///< Pixels raised to the least input around them (blend/undershoot.h).
-  std::size_t repaired_pixels = 0;              ///< Non-finite input pixels replaced before the fit, all passes.
-  std::size_t negative_pixels = 0;              ///< Beauty pixels with a negative channel (kept as they are).
+  std::size_t rank_deficient_windows = 0;  ///< Fits in which a column depends on others and enters by half at most.
+  std::size_t dropped_windows = 0;         ///< Fits that were not finite and were left out.
+  std::size_t pixels_fallen_back_to_input = 0;  ///< Pixels that no finite fit covers.
+  std::size_t bound_pixels = 0;     ///< Pixels whose result was limited to 5 standard deviations of the input's noise.
+  std::size_t raised_pixels = 0;    ///< Pixels raised to the lowest input within 2 pixels.
+  std::size_t repaired_pixels = 0;  ///< Non-finite input pixels replaced before the fit, all passes.
+  std::size_t negative_pixels = 0;  ///< Beauty pixels with a negative channel, which are kept.
 
-  std::size_t neighbours = 0;   ///< Frames before and after that joined.
-  double neighbour_weight = 0;  ///< Mean weight of all of them beside the own pixel's 1.
+  std::size_t neighbours = 0;   ///< Frames before and after that were averaged into this one.
+  double neighbour_weight = 0;  ///< Mean over pixels of the neighbours' total weight; the frame itself has weight 1.
 
-  std::size_t outliers = 0;                ///< Pixels replaced by equation (10)'s median.
-  std::array<double, 3> outlier_energy{};  ///< Sum of e_o per channel, radiance x pixels.
-  std::array<double, 3> restored_gain{};   ///< Factor - 1 by which each channel was brought to the input's mean.
-  std::array<double, 3> energy_before{};   ///< Mean of the noisy beauty per channel.
-  std::array<double, 3> energy_after{};    ///< Mean of the result per channel.
-  double estimated_relative_mse = 0;       ///< Mean of the error map's relative MSE.
+  std::size_t outliers = 0;                ///< Fireflies: pixels replaced by the median of equation (10).
+  std::array<double, 3> outlier_energy{};  ///< Sum of e_o, equation (11), per channel, radiance x pixels.
+  std::array<double, 3> restored_gain{};   ///< Factor by which each channel was brought to the input's mean, minus 1.
+  std::array<double, 3> energy_before{};   ///< Mean of the noisy beauty per channel, radiance.
+  std::array<double, 3> energy_after{};    ///< Mean of the result per channel, radiance.
+  double estimated_relative_mse = 0;       ///< ErrorMap::mean_relative_mse.
 };
 
 }  // namespace polyrecon

@@ -1,3 +1,4 @@
+// Figures of an image against a converged reference: relative MSE and energy.
 #pragma once
 
 #include <cstddef>
@@ -6,20 +7,22 @@
 
 namespace polyrecon {
 
-/// How far an image is from a converged reference.
+/// The distance of an image x from a reference r.
 struct Score {
   double relative_mse = 0;  ///< Mean over pixels and channels of ((x - r)^2 - Var(r)) / (r^2 + 0.01).
-  double trimmed = 0;   ///< The same without the 0.1 % worst pixels: tells fireflies from blur. NaN below two pixels.
-  double energy = 0;    ///< mean(x) / mean(r) - 1; NaN where the reference is black.
-  std::size_t bad = 0;  ///< Pixels with a channel that is not finite; such samples count as 0 above.
+  double trimmed = 0;   ///< The same without the worst 0.1 % of the pixels, to tell fireflies from blur. NaN if there
+                        ///< is only one pixel.
+  double energy = 0;    ///< mean(x) / mean(r) - 1; NaN if the reference is black.
+  std::size_t bad = 0;  ///< Pixels with a sample that is not finite; such samples count as 0 in all figures.
 };
 
-/// reference_variance is the variance of the reference's own mean, so that a noisy reference puts no floor under the
-/// figure; empty: 0. All images have one shape. Throws Error{BadInput} where they do not.
+/// Compares an image with a reference. reference_variance: variance Var(r) of the reference's mean, or empty if that is
+/// 0; it is subtracted, so that the noise of the reference does not count as error. Throws Error{BadInput} if the
+/// images differ in shape.
 Score score(const Image& image, const Image& reference, const Image& reference_variance);
 
-/// Where the error is: per pixel the mean over channels of (x - r)^2 / (r^2 + 0.01), 1 channel. Not finite where a
-/// sample of the image is not.
+/// The error of each pixel: mean over channels of (x - r)^2 / (r^2 + 0.01), 1 channel, not finite where x is not. Both
+/// images must have the same shape.
 Image relative_error(const Image& image, const Image& reference);
 
 }  // namespace polyrecon

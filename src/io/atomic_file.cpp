@@ -19,6 +19,7 @@
 #include <random>
 #include <system_error>
 
+#include "core/first_line.h"
 #include "polyrecon/error.h"
 
 namespace polyrecon {

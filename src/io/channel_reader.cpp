@@ -12,6 +12,7 @@
 #include <new>
 #include <utility>
 
+#include "core/first_line.h"
 #include "io/plain_image_file.h"
 #include "polyrecon/error.h"
 

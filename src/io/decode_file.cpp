@@ -4,6 +4,7 @@
 #include <OpenEXR/ImfThreading.h>
 #include <fmt/format.h>
 
+#include "core/first_line.h"
 #include "io/exr/bands.h"
 #include "io/exr/file.h"
 #include "polyrecon/error.h"

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <memory>
 
+#include "core/first_line.h"
 #include "polyrecon/error.h"
 
 namespace polyrecon {

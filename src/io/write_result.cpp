@@ -24,6 +24,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "core/first_line.h"
 #include "io/atomic_file.h"
 #include "io/exr/bands.h"
 #include "io/exr/raw.h"

@@ -17,6 +17,7 @@ import unittest
 PROGRAM, BUILD, SAMPLES = (pathlib.Path(word).resolve() for word in sys.argv[1:4])
 MODULE = "polyrecon_pictures.so"
 CONSUMER = pathlib.Path(__file__).resolve().parent / "consumer"
+INCLUDE = pathlib.Path(__file__).resolve().parents[2] / "include"
 
 
 def run(*words):
@@ -47,6 +48,20 @@ class Install(Folder):
         self.assertGreater(
             float(re.search(r"relMSE (\S+)", run(PROGRAM, "compare", noisy, theirs)).group(1)), 1e-4, "nothing changed"
         )
+
+    def test_the_installed_headers_are_the_public_ones(self):
+        run("cmake", "--install", BUILD, "--prefix", self.folder, "--component", "library")
+        installed = {path.relative_to(self.folder / "include") for path in self.folder.glob("include/**/*.*")}
+        public = {path.relative_to(INCLUDE) for path in INCLUDE.glob("polyrecon/*.h")}
+        self.assertGreater(len(public), 10)
+        self.assertEqual(installed, public)
+        for header in public:
+            text = (INCLUDE / header).read_text()
+            self.assertRegex(
+                text, r"\A// \w[^\n]+\.\n", f"{header} does not begin with a sentence that says what it is for"
+            )
+            named = {pathlib.Path(name) for name in re.findall(r"\w+(?:/\w+)+\.h\b", text)}
+            self.assertLessEqual(named, public, f"{header} names headers that are not installed")
 
     def test_only_pictures_need_the_module_which_may_move_with_the_program(self):
         run("cmake", "--install", BUILD, "--prefix", self.folder / "first", "--component", "program")

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "maps/error_map.h"
+#include "polyrecon/error_map.h"
 #include "polyrecon/image.h"
 #include "polyrecon/sample_map.h"
 

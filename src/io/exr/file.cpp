@@ -15,6 +15,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "core/first_line.h"
 #include "core/parallel.h"
 #include "io/channel_reader.h"
 #include "io/exr/attributes.h"
