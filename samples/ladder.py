@@ -1,12 +1,11 @@
 #!/usr/bin/env python3
-"""More samples must always help: renders scenes at 4 to 1024 samples per pixel, denoises each step and prints how the
-error of the input and of the result falls (relMSE, relMSE without the 0.1 % worst pixels, FLIP) as Markdown tables.
+"""Measures how the error falls with the samples: renders scenes at 4 to 1024 samples per pixel, denoises each step and
+prints the errors of input and result (relMSE, relMSE without the 0.1 % worst pixels, FLIP) as Markdown tables.
 
-A step is 4 or 8 pieces of one sample sequence of its own, merged; the pictures are the middle half of the samples'
-(160 x 90 pixels), so that the shipped references serve. Needs a Python with bpy 5.0.1, numpy, OpenImageIO and
-flip-evaluator (pip), oiiotool, and polyrecon built. A quarter of an hour on two idle cores, nearly all of it renders;
-what lies in the folder of work already is not rendered again.
-"""
+A step is 4 or 8 pieces of one sample sequence, merged. The pictures are the middle half of the samples' (160 x 90
+pixels), so that the shipped references fit. This needs a Python with bpy 5.0.1, numpy, OpenImageIO and flip-evaluator
+(pip), oiiotool, and a build of polyrecon. It takes a quarter of an hour on two idle cores, nearly all of it for
+renders. Renders that are in the work folder already are used again."""
 
 import argparse
 import json
@@ -69,8 +68,8 @@ def rate(before, after):
 
 def ladder(tools, scene, options):
     reference = reference_of(tools, scene)
-    kinds = ("input", "ours", "rate of the input's", "rate of ours", "ours / input")
-    head = [scene, *[f"relMSE: {kind}" for kind in kinds], "trimmed: input", "ours", "FLIP: input", "ours"]
+    kinds = ("input", "result", "rate of the input", "rate of the result", "result / input")
+    head = [scene, *[f"relMSE: {kind}" for kind in kinds], "trimmed: input", "result", "FLIP: input", "result"]
     print("\n| " + " | ".join(head) + " |\n|---" + "|---:" * (len(head) - 1) + "|", flush=True)
     last = None
     for samples in STEPS:

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Renders the shipped samples anew: scenes/ -> parts -> `polyrecon merge` -> the files beside this script.
+"""Renders the shipped samples again: scenes/ -> parts -> `polyrecon merge` -> the files next to this script.
 
-Needs Blender 3.4 (Debian: apt-get install blender), a Python that has the Blender 5 module (pip install bpy==5.0.1),
-oiiotool, and polyrecon built. Under an hour on two cores, nearly all of it for the references.
-"""
+This needs Blender 3.4 (Debian: apt-get install blender), a Python that has the Blender 5 module (pip install
+bpy==5.0.1), oiiotool, and a build of polyrecon. It takes under an hour on two cores, nearly all of it for the
+references."""
 
 import argparse
 import pathlib
@@ -26,7 +26,7 @@ class Tools:
         self.work.mkdir(parents=True, exist_ok=True)
 
     def render(self, version, scene, name, parts=1, **options):
-        """Renders unless it is there already; returns the files."""
+        """Renders the parts that are not in the work folder; returns all files."""
         files = [self.work / (f"{name}_{i}.exr" if parts > 1 else f"{name}.exr") for i in range(parts)]
         if not all(file.exists() for file in files):
             named = {"--" + key.replace("_", "-"): value for key, value in options.items()}
@@ -36,7 +36,7 @@ class Tools:
 
     def merge(self, files, name, samples):
         target = self.work / name
-        # Each subset that Blender 5 writes claims the samples of the whole sequence.
+        # Blender 5 writes the number of samples of the whole sequence into each subset.
         each = samples // len(files)
         run([self.polyrecon, "merge", *map(str, files), "-o", str(target), "--samples", str(each)])
         return target
@@ -51,12 +51,12 @@ def channels(file):
     info = subprocess.run(["oiiotool", "--info", "-v", str(file)], check=True, capture_output=True, text=True).stdout
     line = next(line for line in info.splitlines() if "channel list:" in line)
     names = line.split(":", 1)[1].split(",")
-    return [name.strip().partition(" (")[0] for name in names]  # "NAME (half)" where types are mixed
+    return [name.strip().partition(" (")[0] for name in names]  # It is "NAME (half)" if types are mixed.
 
 
 def ship_halves(merged, target):
-    """Means and half buffers as half floats: their rounding, 5e-4 relative, is far below the noise at 16 samples. The
-    variances stay float, since half floats end at 6e-8."""
+    """Stores means and half buffers as half floats, whose rounding error, 5e-4, is far below the noise at 16 samples.
+    Variances stay floats, since the smallest half float is 6e-8."""
     kinds = []
     for name in channels(merged):
         layer = name.rpartition(".")[0]
@@ -66,7 +66,7 @@ def ship_halves(merged, target):
 
 
 def ship_reference(merged, target):
-    """The beauty and the variance of its mean, both float: the score subtracts that variance."""
+    """Stores the beauty and the variance of its mean as floats. Scores subtract that variance."""
     keep = [f"ViewLayer.Combined{kind}.{c}" for kind in ("", " Variance") for c in "RGB"]
     run(
         [
@@ -91,7 +91,7 @@ def reference(tools, version, scene, spp):
 
 
 def study(tools):
-    """Blender 5: eight subsets merged; four small ones as they left Blender; one with Blender's own denoiser."""
+    """Blender 5: eight subsets, merged; four small subsets as Blender writes them; a render denoised by Blender."""
     parts = tools.render(5, "study", "study_part", 8, passes="denoising,samples")
     ship_halves(tools.merge(parts, "study_16.exr", 16), HERE / "study_16.exr")
     for part in tools.render(
@@ -104,7 +104,7 @@ def study(tools):
 
 
 def glass(tools):
-    """Blender 3.4: eight subsets merged, with Shadow and Cryptomatte."""
+    """Blender 3.4: eight subsets, merged, with Shadow and Cryptomatte."""
     parts = tools.render(3, "glass", "glass_part", 8, passes="denoising,samples,shadow,cryptomatte")
     ship_halves(tools.merge(parts, "glass_16.exr", 16), HERE / "glass_16.exr")
     reference(tools, 3, "glass", 4096)

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Renders the animation of scenes/parade.py, 10 frames of 160 x 90, into out/sequence/: for each --spp N noisy frames
-`parade_N.####.exr` (8 subsets of one sequence, merged), with Blender's motion vectors, and references `ref.####.exr` of 256
-samples.
+"""Renders the animation of scenes/parade.py, 10 frames of 160 x 90 pixels, to out/sequence/.
 
-Needs a Python that has the Blender 5 module (pip install bpy==5.0.1) and polyrecon built; a second for 10 samples of a frame on
-two cores. What is there already is not rendered again. tests/bench/sequence.py measures on them.
-"""
+For each --spp N it writes noisy frames `parade_N.####.exr` (8 subsets of one sequence, merged) with Blender's motion
+vectors, and references `ref.####.exr` of 256 samples. tests/bench/sequence.py measures with them.
+
+This needs a Python that has the Blender 5 module (pip install bpy==5.0.1) and a build of polyrecon. Ten samples of a
+frame take a second on two cores. Renders that are in the work folder already are used again."""
 
 import argparse
 import pathlib

@@ -10,6 +10,10 @@ tests/pipelines/make_venv.sh
 echo "== clang-format"
 find src tests -name '*.cpp' -o -name '*.h' | xargs clang-format --dry-run -Werror
 
+echo "== ruff"
+build/venv/bin/ruff check
+build/venv/bin/ruff format --check
+
 echo "== build, warnings are errors"
 cmake --preset dev
 cmake --build --preset dev

@@ -18,7 +18,8 @@ UNIFORM_SHARE = 0.25
 # larger.
 MAX_DECISION_SHARE = 0.05
 
-# The error falls with n^-CONVERGENCE_RATE, n being the samples per pixel: convergence_rate of include/polyrecon/sample_map.h.
+# The error falls with n^-CONVERGENCE_RATE, n being the samples per pixel: convergence_rate of
+# include/polyrecon/sample_map.h.
 CONVERGENCE_RATE = 0.75
 
 # Seconds of the last merge, the last reconstruction and the report over the seconds of a decision, for each --quality.

@@ -71,7 +71,7 @@ def _room():
 
 
 def _ventilator():
-    """Five pitched blades on a hub, a fifth of a turn from one frame to the next but one, in a ring with a grille."""
+    """Five pitched blades on a hub, in a ring with a grille. They make a tenth of a turn per frame."""
     steel = kit.plain("Steel", (0.32, 0.33, 0.35), 0.35, 1.0)
     x, y, z = HUB
     kit.torus((x, y + 0.02, z), RADIUS, 0.04, steel, rotation=(90, 0, 0))
@@ -144,7 +144,7 @@ def _dust():
 
 
 def _even(obj):
-    """Keyframes joined by straight lines: even motion. Blender 5 keeps the curves in slots of layers."""
+    """Makes the motion between keyframes linear. Blender 5 keeps the curves in slots of layers."""
     action = obj.animation_data.action
     curves = getattr(action, "fcurves", None)
     if curves is None:

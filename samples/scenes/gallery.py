@@ -1,5 +1,5 @@
-"""A hall whose lamps hide behind baffles: the camera sees none of them and no light falls on the floor directly, so that
-every pixel's light has bounced at least once and comes in spikes."""
+"""A hall whose lamps are behind baffles: the camera sees none of them and no light falls on the floor directly. So the
+light of every pixel has bounced at least once, and the noise has spikes."""
 
 import kit
 

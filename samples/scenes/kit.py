@@ -1,4 +1,4 @@
-"""Small building blocks for the sample scenes; run inside Blender 3.4 to 5.0."""
+"""Building blocks of the sample scenes, for Blender 3.4 to 5.0."""
 
 import math
 
@@ -7,7 +7,7 @@ from mathutils import Vector
 
 
 def empty_scene():
-    """An empty scene with the Cycles renderer and no clamping: the samples stay unbiased."""
+    """An empty scene for Cycles, without clamping, so that samples are unbiased."""
     bpy.ops.wm.read_factory_settings(use_empty=True)
     scene = bpy.context.scene
     scene.render.engine = "CYCLES"
@@ -37,7 +37,7 @@ def plain(name, colour, roughness=0.5, metallic=0.0):
 
 
 def ramped(name, texture, settings, stops, roughness=0.5, coordinates="Object", scale=(1, 1, 1)):
-    """A material whose colour is a texture node run through a colour ramp: stops are (position, rgb)."""
+    """A material whose colour is a texture node through a colour ramp with stops (position, rgb)."""
     made, nodes, links, shader = material(name, roughness=roughness)
     place = nodes.new("ShaderNodeTexCoord")
     mapping = nodes.new("ShaderNodeMapping")
@@ -123,7 +123,7 @@ def _finish(obj, made, smooth=False):
 
 
 def box(low, high, made, turn=0.0, bevel=0.0):
-    """An axis-parallel box between two corners, turned about its own vertical axis by `turn` degrees."""
+    """An axis-parallel box between two corners, turned about its vertical axis by `turn` degrees."""
     low, high = Vector(low), Vector(high)
     bpy.ops.mesh.primitive_cube_add(size=1, location=(low + high) / 2, rotation=(0, 0, math.radians(turn)))
     obj = bpy.context.object
@@ -178,7 +178,7 @@ def cone(bottom, radius_bottom, radius_top, height, made, caps=True):
 
 
 def rock(centre, size, made, seed, rough=0.35):
-    """A boulder: an icosphere pushed in and out by two octaves of noise."""
+    """A boulder: an icosphere displaced by two octaves of noise."""
     from mathutils import noise
 
     bpy.ops.mesh.primitive_ico_sphere_add(subdivisions=5, radius=1, location=centre)
@@ -192,7 +192,7 @@ def rock(centre, size, made, seed, rough=0.35):
 
 
 def lamp(kind, energy, location, colour=(1, 1, 1), target=None, **settings):
-    """A lamp at a place, looking at `target`; `settings` are attributes of the lamp, like its size."""
+    """A lamp that points at `target`; `settings` are attributes of the lamp, such as its size."""
     data = bpy.data.lights.new(kind, kind)
     data.energy, data.color = energy, colour
     for key, value in settings.items():

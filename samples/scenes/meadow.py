@@ -1,5 +1,5 @@
-"""Grass and glossy, textured spheres in the sun under a blue sky, through a wide-open lens: noise and blur are strong in
-front of and behind the focus and hardly there in the rest."""
+"""Grass and glossy, textured spheres in the sun under a blue sky, through a wide-open lens. Noise and blur are strong
+in front of the focus and behind it, and hardly visible elsewhere."""
 
 import math
 import random
@@ -8,8 +8,8 @@ import bpy
 import kit
 from mathutils import Vector
 
-BLADES = 700  # of one patch
-PATCH = 1.0  # metres
+BLADES = 700  # blades of a patch
+PATCH = 1.0  # side of a patch in metres
 
 
 def build():
@@ -34,7 +34,7 @@ def build():
 
 
 def _grass(rng):
-    """One patch of blades, set down in rows with another turn and height each; thinner far away, where nobody can tell."""
+    """Copies of one patch of blades, in rows, with different turns and heights. They are sparse far away."""
     patches = [_patch(rng, colour) for colour in ((0.10, 0.22, 0.03), (0.16, 0.25, 0.05))]
     for row in range(14):
         y = -1.6 + row * PATCH * (0.8 if row < 8 else 1.3)
@@ -73,7 +73,7 @@ def _patch(rng, colour):
 
 
 def _leaf(colour):
-    """Glossy in front, and the sun shines through."""
+    """A glossy material that the sun shines through."""
     made, nodes, links, shader = kit.material("Leaf", colour, 0.4)
     through = nodes.new("ShaderNodeBsdfTranslucent")
     through.inputs["Color"].default_value = (colour[0] * 1.6, colour[1] * 1.6, colour[2], 1)

@@ -1,5 +1,5 @@
-"""Ten frames in two shots: a room lit by way of its ceiling, a camera that drives along, a ball and a box that move, a small
-lamp whose highlight wanders over the metal and the floor, and between frames 6 and 7 a cut to another camera."""
+"""Ten frames in two shots: a room with light from its ceiling, a moving camera, a moving ball and a moving box, a small
+lamp whose highlight moves over metal and floor, and a cut to another camera between frames 6 and 7."""
 
 import math
 
@@ -47,7 +47,7 @@ def _set():
 
 
 def _move(obj, start, end, turn=0):
-    """Straight and at constant speed over all frames."""
+    """Moves an object along a line at constant speed, over all frames."""
     for frame, place, angle in ((1, start, 0), (FRAMES, end, turn)):
         obj.location = place
         obj.keyframe_insert("location", frame=frame)

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
-"""Times `polyrecon denoise` against Open Image Denoise (Blender's Denoise node: HDR, albedo, normal, quality high) on one frame, in turns. Seconds are
-those of reading, denoising and writing: of the whole command here, of the compositor's run there, without Blender's start.
+"""Times `polyrecon denoise` against Open Image Denoise (Blender's Denoise node: HDR, albedo, normal, quality high) on
+one frame, in turns. Seconds are those of reading, denoising and writing: of the whole command here, of the compositor's
+run there, without Blender's start.
 
     tests/bench/scaling.py --sizes 1920x1080 --sample samples/glass_16.exr --write-frame frame.exr
     build/venv/bin/python tests/bench/against_oidn.py frame.exr            # needs a Python with bpy 5

@@ -3,9 +3,8 @@
 
 Frames are shipped samples tiled in mirror image: as an ordinary render (the passes of the fit without variance and
 halves), as a merge of parts (with both), and the same with passes that are only copied. Each run is a sequence, so that
-its peak memory has the next frame in it, which is read meanwhile. A frame larger than those of the fit checks the model.
-Frames work alone there; what their neighbours in time add is measured by --neighbours.
-"""
+its peak memory has the next frame in it, which is read meanwhile. A frame larger than those of the fit checks the
+model. Frames work alone there; what their neighbours in time add is measured by --neighbours."""
 
 import argparse
 import itertools
@@ -101,7 +100,8 @@ def inspect(program, path):
 
 
 def apart(function, *arguments):
-    """Calls it in a process of its own, so that this one stays small: the peak of a child that it starts begins with its own."""
+    """Calls it in a process of its own, so that this one stays small: the peak of a child that it starts begins with
+    its own."""
     process = multiprocessing.get_context("fork").Process(target=function, args=arguments)
     process.start()
     process.join()
@@ -148,13 +148,18 @@ def fit(rows, values):
 
 def fit_model(runs):
     qualities = [quality for _, quality, _ in RUNS]
-    one_hot = lambda r: [r["frame"].pixels * (r["quality"] == quality) for quality in qualities]
-    px = lambda r: r["frame"].pixels
-    memory_rows = [[1, *one_hot(r), px(r) * r["frame"].fit_channels, px(r) * r["frame"].channels] for r in runs]
+
+    def sizes(run):
+        """Pixels in the place of the run's quality and 0 in the others; values of the channels; values in the fit."""
+        frame = run["frame"]
+        of_quality = [frame.pixels * (run["quality"] == quality) for quality in qualities]
+        return of_quality, frame.pixels * frame.channels, frame.pixels * frame.fit_channels
+
+    memory_rows = [[1, *of_quality, fit_values, values] for of_quality, values, fit_values in map(sizes, runs)]
     memory = fit(memory_rows, [r["peak"] for r in runs])
     # Bound from above, so that the driver's margin is all there for what was not measured.
     memory *= max(r["peak"] / (memory @ row) for r, row in zip(runs, memory_rows))
-    seconds = fit([[1, *one_hot(r), px(r) * r["frame"].channels] for r in runs], [r["cpu"] for r in runs])
+    seconds = fit([[1, *of_quality, values] for of_quality, values, _ in map(sizes, runs)], [r["cpu"] for r in runs])
     count = len(qualities)
     return {
         "memory": {
@@ -176,7 +181,8 @@ def rounded(value):
 
 
 def side_by_side(program, shots, tasks, threads):
-    """So many tasks at once, each in a folder of its own: wall-clock seconds of all and processor seconds, per frame."""
+    """So many tasks at once, each in a folder of its own: wall-clock seconds of all and processor seconds, per
+    frame."""
     folders = [shots.get("merged", *SCALING_SIZE, name=f"task_{task}")[0] for task in range(tasks)]
     begun = time.monotonic()
     children = [subprocess.Popen(list(map(str, command(program, f, "standard", threads)))) for f in folders]
@@ -192,7 +198,8 @@ def side_by_side(program, shots, tasks, threads):
 
 
 def measure_scaling(program, shots):
-    """Prints a table of medians; returns the parallel part of Amdahl's law of one task, by the clock: the machine must be idle."""
+    """Prints a table of medians; returns the parallel part of Amdahl's law of one task, by the clock: the machine must
+    be idle."""
     scaling.row("tasks", "threads of each", "CPU s a frame", "wall s a frame")
     scaling.row("---:", "---:", "---:", "---:")
     ways = ((1, 1), (2, 1), (1, 2))

@@ -44,9 +44,8 @@ def main():
     parser.add_argument("--pixels", type=int, default=0, metavar="N", help="also print the N pixels that differ most")
     parser.add_argument("--steps", default="auto", help="of denoise")
     args = parser.parse_args()
-    print(
-        "| sample | largest | root mean square | over 1e-3 | over 1e-4 | sum of the error map |\n|---|---|---|---|---|---|"
-    )
+    print("| sample | largest | root mean square | over 1e-3 | over 1e-4 | sum of the error map |")
+    print("|---|---|---|---|---|---|")
     for sample in args.samples:
         with tempfile.TemporaryDirectory() as folder:
             folder = pathlib.Path(folder)

@@ -125,7 +125,7 @@ def denoise_command(args, frame, quality, clean):
     command = [args.program, "denoise", "-i", frame, "-o", clean, "--quality", quality]
     command += ["--progress", "none", "--quiet", "--threads", str(args.threads)]
     prior = prior_of(frame)
-    return command + ["--prior", prior] if prior.exists() else command
+    return [*command, "--prior", prior] if prior.exists() else command
 
 
 def prior_of(frame):

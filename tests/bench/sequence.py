@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""How much frames before and after help: denoises the animation of samples/make_sequence.py with several --frame-radius and
-prints relMSE of each frame and flicker, in thousandths, and the frame that fares worst beside the first radius. Needs numpy and OpenImageIO's
-Python module.
+"""How much frames before and after help: denoises the animation of samples/make_sequence.py with several --frame-radius
+and prints relMSE of each frame and flicker, in thousandths, and the frame that fares worst beside the first radius.
+Needs numpy and OpenImageIO's Python module.
 
 relMSE: mean of ((x - r)^2 - Var r) / (r^2 + 0.01), r the reference, Var r the variance of its mean.
-flicker: variance over the frames of a shot of the relative error (x - r) / sqrt(r^2 + 0.01), less what the reference's own
-noise adds, averaged over pixels and shots.
+flicker: variance over the frames of a shot of the relative error (x - r) / sqrt(r^2 + 0.01), less the variance that the
+reference's noise adds, averaged over pixels and shots.
 """
 
 import argparse
@@ -50,6 +50,10 @@ def denoise(options, spp, radius):
     return lambda frame: target / f"{frame:04d}.exr"
 
 
+def noisy(options, spp):
+    return lambda frame: options.work / f"parade_{spp}.{frame:04d}.exr"
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument(
@@ -62,7 +66,7 @@ def main():
     options = parser.parse_args()
     options.work = options.work.resolve()
     for spp in options.spp:
-        rows = [("input", *measure(options.work, lambda frame: options.work / f"parade_{spp}.{frame:04d}.exr"))]
+        rows = [("input", *measure(options.work, noisy(options, spp)))]
         for radius in options.radius:
             rows.append((f"radius {radius}", *measure(options.work, denoise(options, spp, radius))))
         print_table(spp, rows)

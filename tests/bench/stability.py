@@ -53,9 +53,8 @@ def draw_residuals(windows):
     figure, axes = plt.subplots(figsize=(7, 4))
     edges = np.logspace(0, 12, 25)
     place = np.digitize(windows["condition"], edges)
-    print(
-        "\n| solver | largest residual ratio, condition below 1e4 | below 1e8 | all | no number |\n|---|---:|---:|---:|---:|"
-    )
+    print("\n| solver | largest residual ratio, condition below 1e4 | below 1e8 | all | no number |")
+    print("|---|---:|---:|---:|---:|")
     for solver in SOLVERS:
         ratio = field(windows, solver)
         bins = [k for k in range(1, len(edges)) if (place == k).sum() > 5]
@@ -67,9 +66,12 @@ def draw_residuals(windows):
             label=LABELS.get(solver, solver),
         )
         largest = [np.nanmax(ratio[windows["condition"] < most]) for most in (1e4, 1e8, np.inf)]
-        print(
-            f"| {LABELS.get(solver, solver)} | {' | '.join(f'{value:.2g}' for value in largest)} | {(~np.isfinite(ratio)).mean():.1%} |"
-        )
+        cells = [
+            LABELS.get(solver, solver),
+            *(f"{value:.2g}" for value in largest),
+            f"{(~np.isfinite(ratio)).mean():.1%}",
+        ]
+        print(f"| {' | '.join(cells)} |")
     axes.axhline(LAPACK_LIMIT, color="grey", linestyle=":")
     axes.set(xscale="log", yscale="log", xlabel="condition number", ylabel="largest residual ratio")
     axes.legend()
@@ -96,16 +98,14 @@ def draw_columns(columns):
 
 
 def print_limits(limits):
-    print(
-        "\n| remainder | variation | error of the fits, geometric mean | columns below | largest overlap |\n|---:|---:|---:|---:|---:|"
-    )
+    print("\n| remainder | variation | error of the fits, geometric mean | columns below | largest overlap |")
+    print("|---:|---:|---:|---:|---:|")
     settings = list(dict.fromkeys(zip(limits["remainder"], limits["variation"])))
     rows = {s: limits[(limits["remainder"] == s[0]) & (limits["variation"] == s[1])] for s in settings}
     for setting in settings:
         ratio = np.exp(np.mean(np.log(rows[setting]["error"] / rows[REMAINDER, VARIATION]["error"])))
-        print(
-            f"| {setting[0]:g} | {setting[1]:g} | {ratio:.4f} | {rows[setting]['dropped'].mean():.1%} | {rows[setting]['overlap'].max():.2g} |"
-        )
+        dropped, overlap = rows[setting]["dropped"].mean(), rows[setting]["overlap"].max()
+        print(f"| {setting[0]:g} | {setting[1]:g} | {ratio:.4f} | {dropped:.1%} | {overlap:.2g} |")
 
 
 def main():

@@ -1,4 +1,4 @@
-"""Builds a small .blend file; run inside Blender: make_scene.py OUT.blend KIND. Tiny frames, diffuse objects and a lamp."""
+"""Runs inside Blender and builds a small .blend file: make_scene.py OUT.blend KIND."""
 
 import os
 import sys
@@ -9,7 +9,7 @@ HOSTILE = "import pathlib; pathlib.Path({mark!r}).touch()"
 
 
 def use_nodes(block):
-    if bpy.app.version < (5, 0):  # always on since
+    if bpy.app.version < (5, 0):  # Blender 5 always uses nodes.
         block.use_nodes = True
 
 
@@ -39,7 +39,7 @@ def base():
 
 
 def lens(scene):
-    """Everything that a perspective camera can do: shift, fit, pixel aspect, a wide polygonal aperture."""
+    """All features of a perspective camera: shift, fit, pixel aspect, a wide polygonal aperture."""
     camera = scene.camera.data
     camera.lens, camera.shift_x, camera.shift_y = 40, 0.08, -0.05
     camera.sensor_fit, camera.sensor_width, camera.sensor_height = "VERTICAL", 36, 20
@@ -105,9 +105,9 @@ def switched_on(scene):
 
 
 def hostile(scene):
-    """A file that tries to run code in every way that a .blend has; each would leave a file beside this one."""
+    """A file that tries to run code in every way of a .blend file; each would leave a file next to this one."""
     folder = os.path.dirname(os.path.abspath(sys.argv[-2]))
-    scene.cycles.samples, scene.cycles.use_denoising = 1, False  # a render that fails draws no lines
+    scene.cycles.samples, scene.cycles.use_denoising = 1, False  # Freestyle draws no lines after a failed render.
 
     def code(name):
         return HOSTILE.format(mark=os.path.join(folder, f"ran_{name}"))

@@ -1,4 +1,4 @@
-"""What the tests of the Blender drivers share."""
+"""The base of the tests of the Blender drivers."""
 
 import os
 import shutil
@@ -14,7 +14,7 @@ BLENDER_3 = shutil.which("blender")
 
 
 class SceneTest(unittest.TestCase):
-    """A folder for each test, and scenes made in it."""
+    """Has a folder for each test, and makes scenes in it."""
 
     def setUp(self):
         folder = tempfile.TemporaryDirectory()

@@ -1,4 +1,4 @@
-"""What is switched off cannot change the picture."""
+"""The settings that the audit switches off do not change the picture."""
 
 import unittest
 

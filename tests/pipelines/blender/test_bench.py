@@ -11,7 +11,7 @@ from tests.bench.blender import bench, report
 
 
 def rows(knob, seconds_of, fixed, target, tries=bench.TRIES):
-    """Tuning against a machine whose rendering takes seconds_of(knob)."""
+    """The rows of tuning runs on a machine whose rendering takes seconds_of(knob)."""
     found = []
     while len(found) < tries and not any(abs(row["seconds"] / target - 1) < bench.TOLERANCE for row in found):
         value = knob(found, target)
@@ -85,7 +85,7 @@ class Run(unittest.TestCase):
 
         with tempfile.TemporaryDirectory() as folder:
             own = pathlib.Path(folder) / "own.blend"
-            bpy.ops.wm.read_factory_settings()  # the cube, for EEVEE
+            bpy.ops.wm.read_factory_settings()  # a cube, rendered by EEVEE
             bpy.ops.wm.save_as_mainfile(filepath=str(own))
             before = own.read_bytes()
             code, said = self.call(

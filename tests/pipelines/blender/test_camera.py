@@ -1,4 +1,4 @@
-"""The mask camera makes the picture of Blender's own, and renders what the mask says."""
+"""The mask camera renders the same picture as Blender's camera, and only the pixels of the mask."""
 
 import time
 import unittest
@@ -18,7 +18,7 @@ SAMPLES = 16
 
 class Cameras(SceneTest):
     def passes(self, kind, samples):
-        """{channel: (own camera, mask camera)} of the same samples of every pixel."""
+        """{channel: (Blender's camera, mask camera)} of the same samples of every pixel."""
         renderer = BlenderRenderer(self.scene(kind), "bpy")
         try:
             audit = renderer.begin(None)
@@ -32,8 +32,8 @@ class Cameras(SceneTest):
         return {name: (own[name], masked[name]) for name in own if name in masked and "Render Seconds" not in name}
 
     def assert_same_picture(self, kind):
-        """Both cameras draw the same numbers, so every sample's path is the same up to rounding, which may send single paths
-        elsewhere: nearly all pixels agree closely, and the rest does not add up."""
+        """Both cameras draw the same numbers, so every sample's path is the same up to rounding, which may change
+        single paths: nearly all pixels agree closely, and the others differ by chance."""
         for name, (own, masked) in self.passes(kind, SAMPLES).items():
             scale = np.abs(own).mean() + 1e-6
             off = np.abs(own - masked) > 1e-3 * (np.abs(own) + scale)
@@ -69,7 +69,7 @@ class Masks(SceneTest):
         self.assertEqual(renderer.extra(8, counts, self.folder / "extra.exr"), 8)
         part = exr.read(self.folder / "extra.exr")
         np.testing.assert_array_equal(part[f"ViewLayer.{SAMPLE_COUNT}"], counts)
-        # A sample takes as long whatever the count of its pixel, whether it was rendered in one pass or in several.
+        # The time of a sample depends neither on its pixel's count nor on the number of passes.
         seconds = part[f"ViewLayer.{RENDER_SECONDS}"]
         a_sample = [np.median(seconds[counts == n] / n) for n in (1, 8)]
         self.assertLess(max(a_sample) / min(a_sample), 2)
@@ -88,20 +88,20 @@ class Masks(SceneTest):
         counts = np.ones(renderer.shape, int)
         counts[: counts.shape[0] // 2] = 1 << 20  # hours
         for delay in (0, 0.001, 0.01, 0.1):
-            pieces = renderer._render_ahead(0, masked_passes(counts))
-            next(pieces)
+            passes = renderer._render_ahead(0, masked_passes(counts))
+            next(passes)
             time.sleep(delay)
             with self.assertRaises(KeyboardInterrupt):
-                pieces.throw(KeyboardInterrupt())
+                passes.throw(KeyboardInterrupt())
             self.assertFalse(renderer.session.running)
-        renderer.uniform(0, 1, self.folder / "after.exr")  # and goes on
+        renderer.uniform(0, 1, self.folder / "after.exr")  # The renderer still works.
 
     def test_the_open_place_around_a_pixel(self):
         inside = np.zeros((3, 4), bool)
         inside[1, 2] = True
         mask = masks.subpixel_mask(inside, 0.25, 1)
         self.assertEqual(mask.shape, (20, 24))
-        self.assertEqual(bounding_box(mask), (11, 7, 17, 13))  # 4 subpixels and one more on each side
+        self.assertEqual(bounding_box(mask), (11, 7, 17, 13))  # 4 subpixels, and one on each side
         self.assertEqual(masks.subpixel_mask(inside, 0, 0).sum(), 16)
 
 

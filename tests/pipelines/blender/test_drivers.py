@@ -1,4 +1,4 @@
-"""adaptive.py as a user runs it, with both Blenders, on files and paths of every kind."""
+"""Runs adaptive.py with both Blenders, on files and paths of many kinds."""
 
 import hashlib
 import json
@@ -47,7 +47,7 @@ class Adaptive(SceneTest):
         self.assertTrue(all(np.isfinite(picture[f"ViewLayer.Combined.{c}"]).all() for c in "RGB"))
         self.assertIn("budget 16 samples per pixel: ", done.stdout)
         taken = [part["samples"] for part in journal_of(out.with_suffix(".passes"))["parts"]]
-        self.assertLess(sum(taken[:-1]), 16)  # case 31: no pass begins when the budget is spent
+        self.assertLess(sum(taken[:-1]), 16)  # case 31: no pass starts after the budget is spent
         counts = exr.read(out.with_suffix(".passes") / "merged.exr")["ViewLayer.Sample Count.X"]
         self.assertLessEqual(counts.mean(), 16 * 1.15)
         self.assertGreaterEqual(counts.min(), 4)
@@ -113,7 +113,9 @@ class Adaptive(SceneTest):
             [sys.executable, ROOT / "pipelines" / "blender" / "adaptive.py", *map(str, words)],
             stderr=subprocess.DEVNULL,
         )
-        while not (passes / "part_0a1.exr").exists():  # a journal is there; two more to come: Blender is the only child
+        while not (
+            passes / "part_0a1.exr"
+        ).exists():  # There is a journal, and two passes are missing; Blender is the only child.
             self.assertIsNone(killed.poll())
             time.sleep(0.005)
         blender = pathlib.Path(f"/proc/{killed.pid}/task/{killed.pid}/children").read_text().split()
@@ -121,7 +123,7 @@ class Adaptive(SceneTest):
         killed.wait()
         self.assertEqual(len(blender), 1)
         patience = time.monotonic() + 60
-        while running(blender[0]):  # it ends by itself: nobody is left to ask it for a pass
+        while running(blender[0]):  # Blender ends, since its driver is gone.
             self.assertLess(time.monotonic(), patience)
             time.sleep(0.02)
 
@@ -135,7 +137,7 @@ class Adaptive(SceneTest):
         self.assertEqual(len({part["first_sample"] for part in parts}), len(parts))
         counts = exr.read(passes / "merged.exr")["ViewLayer.Sample Count.X"]
         self.assertAlmostEqual(counts.mean(), sum(part["samples"] for part in parts), delta=1e-3 * counts.mean())
-        # The seconds of both runs together; no round begins after them, whatever else the machine does.
+        # The seconds count both runs. No round starts after them, however busy the machine is.
         self.assertGreater(after["seconds"], before["seconds"])
         self.assertTrue(all(entry["seconds"] < 8 for entry in after["rounds"] if entry["next_samples"]))
 
@@ -174,7 +176,7 @@ class Hostile(SceneTest):
     def test_case29_no_code_of_the_file_runs(self):
         for blender in ("bpy", BLENDER_3):
             scene = self.scene("hostile", blender=blender)
-            for mark in self.folder.glob("ran_*"):  # made while the file was built
+            for mark in self.folder.glob("ran_*"):  # from the build of the file
                 mark.unlink()
             out = self.folder / "out.exr"
             done = self.driver(
@@ -199,7 +201,7 @@ class Hostile(SceneTest):
             self.assertEqual(list(self.folder.glob("ran_*")), [], blender)
 
     def test_the_file_would_run_it_if_it_were_let(self):
-        """The test above can fail: Blender itself, told to trust the file, runs all of it."""
+        """The test above can fail: a Blender that trusts the file runs all of it."""
         trust = (
             "import sys, bpy; bpy.ops.wm.open_mainfile(filepath=sys.argv[1], use_scripts=True); bpy.ops.render.render()"
         )
@@ -216,10 +218,11 @@ class Hostile(SceneTest):
 
 
 class BadRenderers(SceneTest):
-    """Case 30: a renderer that dies, hangs, ends well without a file: 7, one line, nothing left running, resumable."""
+    """Case 30: a renderer dies, hangs, or writes no file. The exit code is 7, there is one line, no process is left,
+    and the frame can be resumed."""
 
     def failing(self, body, *words):
-        """Runs the loop with a Blender that does `body` in its second pass, then with a good one from the journal."""
+        """Runs the loop with a Blender that does `body` in its second pass, then resumes it with a good one."""
         scene = self.scene(blender=BLENDER_3)
         passes = self.folder / "p"
         session = self.folder / "blender"
@@ -271,7 +274,7 @@ for line in sys.stdin:
         self.assertIn("did not answer within 15 s", line)
         self.assertLess(time.monotonic() - begin, 200)
         with self.assertRaises(ProcessLookupError):
-            os.kill(int(open(mark).read()), 0)
+            os.kill(int(pathlib.Path(mark).read_text()), 0)
 
     def test_case30_it_writes_no_file(self):
         body = """        print('\\n@polyrecon {"seconds": 1}', flush=True); continue"""

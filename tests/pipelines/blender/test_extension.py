@@ -1,4 +1,4 @@
-"""The Blender extension, built, checked, installed and used by Blender 5 itself, without a window."""
+"""Blender 5 builds, checks, installs and uses the extension, without a window."""
 
 import json
 import os
@@ -13,20 +13,20 @@ _resources = tempfile.TemporaryDirectory(prefix="polyrecon_resources_")
 # bpy reads this when it is imported; the user's own settings stay untouched.
 os.environ["BLENDER_USER_RESOURCES"] = _resources.name
 
-import bpy
-import numpy as np
+import bpy  # noqa: E402
+import numpy as np  # noqa: E402
 
-from pipelines.common import exr
-from pipelines.common.polyrecon_cli import find_polyrecon
+from pipelines.common import exr  # noqa: E402
+from pipelines.common.polyrecon_cli import find_polyrecon  # noqa: E402
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 SOURCE = ROOT / "pipelines" / "blender" / "extension"
 MODULE = "bl_ext.user_default.polyrecon"
-PATIENCE = 240  # seconds for a job on a busy machine
+JOB_SECONDS = 240  # limit of a job, on a busy machine
 
 
 def extension_tool(*words):
-    """Blender's own tool behind `blender --command extension`."""
+    """Runs the tool of Blender behind `blender --command extension`."""
     tool = (
         pathlib.Path(bpy.utils.resource_path("LOCAL")) / "scripts" / "addons_core" / "bl_pkg" / "cli" / "blender_ext.py"
     )
@@ -68,8 +68,8 @@ class Extension(unittest.TestCase):
         self.scene.polyrecon.output = str(self.folder / "clean_####.exr")
 
     def finish(self, job):
-        """Polls as the timer does, which needs a window; returns the longest time that one look took."""
-        longest, end = 0.0, time.monotonic() + PATIENCE
+        """Polls like the timer, which needs a window; returns the longest time of a poll."""
+        longest, end = 0.0, time.monotonic() + JOB_SECONDS
         while True:
             begin = time.monotonic()
             running = job.poll()
@@ -84,7 +84,7 @@ class Extension(unittest.TestCase):
         return np.stack([found[f"ViewLayer.Combined.{c}"] for c in "RGB"], axis=-1)
 
     def drawn(self, draw):
-        """What draw(popup) puts into a layout of Blender's, as text: a layout can be asked without a window."""
+        """The layout that draw(popup) makes, as text. A popup has a layout without a window."""
         popup = bpy.context.window_manager.popmenu_begin__internal("test", icon="NONE")
         draw(popup)
         return str(popup.layout.introspect())
@@ -98,7 +98,7 @@ class Extension(unittest.TestCase):
         self.assertNotIn("warning", (checked.stdout + checked.stderr).lower())
 
     def test_frame_names_are_those_of_the_drivers(self):
-        """By the table that the tests of the drivers read."""
+        """The names are in the table that the tests of the drivers read."""
         frame_path = sys.modules[MODULE + ".settings"].frame_path
         table = json.loads((ROOT / "tests" / "inputs" / "frame_names.json").read_text(encoding="utf-8"))
         for row in table["names"]:
@@ -130,8 +130,8 @@ class Extension(unittest.TestCase):
         before = self.scene.render.image_settings.file_format
         self.assertEqual(bpy.ops.polyrecon.denoise(), {"FINISHED"})
         job = self.jobs.current
-        self.assertTrue(job.running)  # the operator came back while the program works
-        self.assertFalse(bpy.ops.polyrecon.denoise.poll())  # one job at a time
+        self.assertTrue(job.running)  # The operator does not wait for the program.
+        self.assertFalse(bpy.ops.polyrecon.denoise.poll())  # There is one job at a time.
         self.assertIn("bpy.ops.polyrecon.cancel()", self.panel())
         self.assertLess(self.finish(job), 0.5)
         self.assertEqual((job.state, job.error), ("done", ""))
@@ -147,7 +147,7 @@ class Extension(unittest.TestCase):
             ("ERROR", "clean_0001_error.png", "IMAGE"),
         ):
             self.assertEqual(bpy.ops.polyrecon.show(which=which), {"FINISHED"})
-            len(bpy.data.images[name].pixels)  # Blender reads a file when somebody looks
+            len(bpy.data.images[name].pixels)  # This makes Blender read the file.
             self.assertEqual(bpy.data.images[name].type, kind)
         self.assertGreater(bpy.data.images["clean_0001_error.png"].size[0], 0)
 
@@ -174,7 +174,7 @@ class Extension(unittest.TestCase):
         self.finish(self.jobs.current)
         self.assertEqual((self.jobs.current.state, self.jobs.current.error), ("done", ""))
         after = passes()
-        self.assertEqual(before, {path: after[path] for path in before})  # nothing was rendered again
+        self.assertEqual(before, {path: after[path] for path in before})  # Nothing is rendered again.
         self.assertGreater(len(after), len(before))
 
     def test_cancel_stops_the_loop_and_its_blender(self):
@@ -228,7 +228,7 @@ class Extension(unittest.TestCase):
         self.assertIn("PolyreconPreferences.python", shown)
 
     def test_command_line(self):
-        """What `blender -c polyrecon` calls; the Blender that is a module has no such switch."""
+        """`blender -c polyrecon` calls this function. Blender as a module has no such option."""
         run = sys.modules[MODULE + ".command_line"].run
         self.assertEqual(run(["--help"]), 0)
         self.assertEqual(run(["inspect", str(ROOT / "samples" / "study_small_0.exr")]), 0)

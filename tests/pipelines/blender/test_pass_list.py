@@ -9,9 +9,9 @@ def taken(counts, overhead):
     passes = rectangular_passes(counts, overhead)
     samples = np.zeros(counts.shape, int)
     covered = np.zeros(counts.shape, int)
-    for piece in passes:
-        x0, y0, x1, y1 = piece.box
-        samples[y0:y1, x0:x1] += piece.samples
+    for render_pass in passes:
+        x0, y0, x1, y1 = render_pass.box
+        samples[y0:y1, x0:x1] += render_pass.samples
         covered[y0:y1, x0:x1] += 1
     return passes, samples, covered
 
@@ -51,7 +51,7 @@ class RectangularPasses(unittest.TestCase):
 
 
 class MaskedPasses(unittest.TestCase):
-    def test_passes_lie_one_in_another_and_go_on_in_the_sequence(self):
+    def test_passes_lie_one_in_another_and_continue_the_sequence(self):
         counts = np.array([[0, 4, 4], [0, 0, 1]])
         passes = [(p.skip, p.samples, p.box, p.inside.tolist()) for p in masked_passes(counts)]
         self.assertEqual(
@@ -69,10 +69,10 @@ class MaskedPasses(unittest.TestCase):
         random = np.random.default_rng(8)
         counts = np.kron(random.choice([0, 0, 1, 4, 128], size=(18, 32)), np.ones((20, 20), int))
         taken = np.zeros_like(counts)
-        for piece in masked_passes(counts):
-            x0, y0, x1, y1 = piece.box
-            self.assertTrue((taken[y0:y1, x0:x1][piece.inside] == piece.skip).all())
-            taken[y0:y1, x0:x1] += piece.samples * piece.inside
+        for render_pass in masked_passes(counts):
+            x0, y0, x1, y1 = render_pass.box
+            self.assertTrue((taken[y0:y1, x0:x1][render_pass.inside] == render_pass.skip).all())
+            taken[y0:y1, x0:x1] += render_pass.samples * render_pass.inside
         np.testing.assert_array_equal(taken, counts)
 
 

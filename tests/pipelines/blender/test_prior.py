@@ -1,4 +1,4 @@
-"""--with-prior: the layers are there, and each comes from its half alone."""
+"""--with-prior adds its layers, and each comes from its half alone."""
 
 import json
 import unittest
@@ -28,7 +28,7 @@ class Prior(SceneTest):
         for half in "AB":
             self.assertLess(roughness(f"Prior {half}"), 0.7 * roughness(f"Combined {half}"))
 
-        # Only half B changes: prior A stays.
+        # Half B changes, and prior A does not.
         other = {name: plane[:, ::-1] if " B." in name else plane for name, plane in found.items()}
         exr.write(self.folder / "other.exr", other)
         with BlenderSession("bpy") as session:

@@ -1,4 +1,4 @@
-"""The scenes of the adaptive bench build in both Blenders, quickly, and twice the same."""
+"""The scenes of the adaptive bench build quickly in both Blenders, and are the same each time."""
 
 import pathlib
 import subprocess
@@ -14,7 +14,7 @@ from pipelines.common import exr
 RENDER = pathlib.Path(__file__).resolve().parents[3] / "samples" / "scenes" / "render.py"
 BLENDER_3 = ["blender", "-b", "-Y", "--factory-startup", "--python-exit-code", "7", "-P", str(RENDER), "--"]
 BLENDER_5 = [sys.executable, str(RENDER)]
-BUILD_SECONDS = 60  # a few, but on a busy machine
+BUILD_SECONDS = 60  # limit on a busy machine; usually a few
 
 
 def render(blender, scene, folder, name):
@@ -39,9 +39,9 @@ class Scenes(unittest.TestCase):
                 for picture in (new, old):
                     self.assertTrue(np.isfinite(picture).all())
                     self.assertGreater(picture.mean(), 0.01)
-                if scene == "meadow":  # the one that is built by thousands of random numbers
+                if scene == "meadow":  # It is built from thousands of random numbers.
                     again = render(BLENDER_5, scene, folder, "again")
-                    np.testing.assert_allclose(again, new, rtol=1e-4, atol=1e-5)  # Cycles itself rounds differently
+                    np.testing.assert_allclose(again, new, rtol=1e-4, atol=1e-5)  # Cycles rounds differently.
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""Samples have numbers: no two are the same, and a pass may take those of several sequences."""
+"""Samples have numbers: no two are the same, and a pass may take numbers of several sequences."""
 
 import unittest
 
@@ -50,7 +50,7 @@ class Sequences(SceneTest):
         renderer = self.renderer("seed_animated", "bpy")
         self.assertIsNone(renderer.opened["sequence"])
         still = self.picture(renderer, 0)
-        renderer.begin(2)  # where nothing but the seed is another
+        renderer.begin(2)  # Only the seed differs in this frame.
         self.assertGreater((self.picture(renderer, 0) != still).mean(), 0.5)
         renderer.begin(1)
         np.testing.assert_allclose(self.picture(renderer, 0), still, rtol=1e-4, atol=1e-5)

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""The loop's noisy mean over many seeds of a tiny frame against the uniform mean: prints z values, ends with 1 where they do not
-agree. 200 seeds take some minutes, so this is no part of ctest:
+"""Compares the loop's noisy mean over many seeds of a tiny frame with the uniform mean. Prints z values; the exit code
+is 1 if the means differ. 200 seeds take some minutes, so this is not a test of ctest:
 
     POLYRECON=build/release/src/polyrecon build/venv/bin/python3 tests/pipelines/blender/unbiased.py --seeds 200
 """
@@ -11,10 +11,9 @@ import subprocess
 import sys
 import tempfile
 
-sys.path[0] = str(pathlib.Path(__file__).resolve().parents[3])
-
 import numpy as np
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3]))
 from pipelines.blender.renderer import BlenderRenderer
 from pipelines.common import exr
 from pipelines.common.polyrecon_cli import Polyrecon
@@ -26,7 +25,7 @@ MAKE_SCENE = pathlib.Path(__file__).with_name("make_scene.py")
 
 
 class Seeded(BlenderRenderer):
-    """Shifts the sequence: `first` numbers of another run are other samples, as another seed's are."""
+    """Shifts the numbers of the samples, so that runs with another offset have other samples, as with another seed."""
 
     offset = 0
 
@@ -73,12 +72,14 @@ def main():
     print(f"{n} seeds, {np.mean(counts):.1f} samples per pixel, {np.min(counts):.0f} to {np.max(counts):.0f}")
     print(f"frame mean: adaptive {frames[0].mean():.6f}, uniform {frames[1].mean():.6f}: z = {whole:.2f}")
     print(
-        f"pixels: rms of z {np.sqrt((z**2).mean()):.3f} (1 expected), mean {z.mean():+.3f}, beyond 3: {(abs(z) > 3).mean():.4f} (0.0027 expected)"
+        f"pixels: rms of z {np.sqrt((z**2).mean()):.3f} (1 expected), mean {z.mean():+.3f}, "
+        f"beyond 3: {(abs(z) > 3).mean():.4f} (0.0027 expected)"
     )
     variance = [np.maximum(run.var(0), 1e-12) for run in (adapted, uniform)]
     ratios = [np.median(variance[0] / variance[1]), variance[0].mean() / variance[1].mean()]
     print(
-        f"variance of a pixel, adaptive / uniform: median {ratios[0]:.3f}; of their means, which single samples may rule, {ratios[1]:.3f}"
+        f"variance of a pixel, adaptive / uniform: median {ratios[0]:.3f}; "
+        f"of their means, which single samples may dominate: {ratios[1]:.3f}"
     )
     return int(abs(whole) > 3 or np.sqrt((z**2).mean()) > 1.1)
 

@@ -1,4 +1,4 @@
-"""Frame names and frame ranges by the table that the program's own tests read too."""
+"""Frame names and frame ranges follow the table that the tests of the program read too."""
 
 import argparse
 import json
@@ -106,7 +106,7 @@ class EachFrame(unittest.TestCase):
 
 class TheProgram(unittest.TestCase):
     def test_names_are_those_of_the_program(self):
-        """The program names the files that it misses."""
+        """The program prints the names of missing files."""
         with tempfile.TemporaryDirectory() as folder:
             for pattern in ("a.####.exr", "b_%04d.exr", "c#.exr", "d.%d.exr"):
                 words = ["denoise", "-i", f"{folder}/{pattern}", "-o", f"{folder}/o.####.exr", "--frames=7,12345"]

@@ -5,8 +5,8 @@ import numpy as np
 from pipelines.common.rectangles import area, bounding_box, cover, level
 
 SIZE = (180, 320)
-# Costs of the rectangles that the drivers of Blender and POV-Ray chose when each had a planner to itself, on the maps below:
-# {map: [(overhead, cost by Blender's planner of level rectangles, cost by POV-Ray's with four times the overhead)]}.
+# Costs of the rectangles of two earlier planners, of which Blender's driver had one and POV-Ray's the other, on these
+# maps: {map: [(overhead, cost of level rectangles, cost of covering rectangles with four times the overhead)]}.
 FORMER_COSTS = {
     "waves": [(1000, 360968, 7289092), (10000, 740841, 7569200)],
     "blobs": [(1000, 169639, 4543896), (10000, 407144, 4986656)],
@@ -44,7 +44,7 @@ def cover_cost(grid, boxes, overhead):
 
 
 def level_cost(counts, boxes, overhead):
-    """By the definition in level's docstring, pixel by pixel."""
+    """The cost by the definition in level's docstring, pixel by pixel."""
     cost = 0.0
     for box in boxes:
         found = part_of(counts, box)
@@ -118,7 +118,7 @@ class Level(unittest.TestCase):
 
 class NoWorseThanTwoPlanners(unittest.TestCase):
     def test_costs(self):
-        """Each map costs at most 3 % more than it did, and all together less."""
+        """A map costs at most 3 % more than with the earlier planners, and all maps together cost less."""
         former, shared = np.zeros(2), np.zeros(2)
         for name, counts in maps().items():
             grid = np.ceil(np.sqrt(counts))

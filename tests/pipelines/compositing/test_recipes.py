@@ -1,4 +1,4 @@
-"""The recipes of docs/guide/scripting.md and compositing.md, run as they stand there, and what they leave."""
+"""Runs the recipes of docs/guide/scripting.md and compositing.md as they are, and checks their results."""
 
 import os
 import pathlib
@@ -28,7 +28,7 @@ def same_bits(a, b):
 
 
 def blocks(page, language):
-    """The page's code blocks of a language."""
+    """The page's code blocks in a language."""
     return re.findall(rf"^```{language}\n(.*?)^```", (GUIDE / page).read_text(), re.M | re.S)
 
 
@@ -51,7 +51,7 @@ class Recipes(unittest.TestCase):
         run([PROGRAM, "merge", *parts, "-o", "groups.exr", "--quiet"], cls.folder)
         recipes = blocks("scripting.md", "sh") + blocks("compositing.md", "sh")
         (cls.folder / "recipes.sh").write_text("set -euo pipefail\n" + "".join(recipes))
-        # The programs by the names that the recipes use; oiiotool is Debian's, whatever else the PATH holds.
+        # The names of programs in the recipes; oiiotool is Debian's, even if the PATH has another one.
         (cls.folder / "bin").mkdir()
         for name, target in (("polyrecon", PROGRAM), ("oiiotool", "/usr/bin/oiiotool")):
             (cls.folder / "bin" / name).symlink_to(target)
@@ -117,7 +117,7 @@ class Recipes(unittest.TestCase):
         self.assertLess((np.abs(day + lamp - whole) / (whole + 0.01)).max(), 1e-3)
         np.testing.assert_allclose(layer(self.read("relit.exr")), 0.5 * day + 2 * lamp, rtol=2e-3, atol=1e-4)
 
-    # Blender 3.4 of the recipes, and Blender 5 as this Python's module.
+    # Blender 3.4 as in the recipes, and Blender 5 as the module of this Python.
 
     def layers(self, text):
         return [line.removeprefix("layer: ") for line in text.splitlines() if line.startswith("layer: ")]
@@ -126,7 +126,7 @@ class Recipes(unittest.TestCase):
         return run([sys.executable, COMPOSITING / "blender_comp.py", *words], self.folder)
 
     def check_layers(self, found, path):
-        """All layers of the file: Blender shows a beauty's alpha as a layer of its own."""
+        """All layers of the file. Blender lists the alpha of a beauty as a layer."""
         names = {name.rpartition(".")[0].removeprefix("ViewLayer.") for name in read(self.folder / path)}
         self.assertGreater(len(names), 5)
         self.assertEqual(set(found), names | {"Alpha"})

@@ -1,8 +1,8 @@
-"""A Slurm cluster of this machine alone: munged, slurmctld, one slurmd a node; ports, key and folders of its own.
+"""A Slurm cluster on this machine alone: munged, slurmctld, and a slurmd for each node, with their ports, key and
+folders.
 
-Each daemon is process 1 of its own process namespace: when it is killed, all that it started dies with it, like a
-machine that loses power, and nothing is ever left behind. Another Slurm on this machine is not touched.
-"""
+Each daemon is process 1 of a process namespace. When it is killed, all processes that it started die too, as on a
+machine that loses power. Another Slurm on this machine is not affected."""
 
 import os
 import pathlib
@@ -14,7 +14,8 @@ import tempfile
 import time
 
 START_SECONDS = 40
-# A node counts as dead after the one, a requeued task waits for the other, by default 300 and 120; not less than these.
+# Seconds until a node counts as dead, and until a requeued task starts: the least that Slurm allows. The defaults are
+# 300 and 120.
 DEAD_AFTER_SECONDS = 5
 CREDENTIAL_SECONDS = 5
 
@@ -61,13 +62,13 @@ def free_ports(count):
 
 
 def can_run():
-    """Whether this process may start the daemons: as root, in process namespaces of their own."""
+    """Whether this process may start the daemons: as root, in new process namespaces."""
     test = ["unshare", "--pid", "--fork", "--kill-child", "--mount-proc", "true"]
     return os.geteuid() == 0 and subprocess.run(test, capture_output=True).returncode == 0
 
 
 class Cluster:
-    """Use as a context. `environment` is what Slurm's commands need to reach it."""
+    """A context manager. Slurm's commands reach the cluster with its `environment`."""
 
     def __init__(self, nodes, megabytes):
         self.nodes, self.megabytes, self.daemons = nodes, megabytes, {}
@@ -98,7 +99,7 @@ class Cluster:
         self._start(node, ["slurmd", "-D", "-N", node, "-f", self.folder / "slurm.conf"])
 
     def kill(self, name):
-        """Kills a daemon and, by the namespace, every process that it started."""
+        """Kills a daemon and every process of its namespace."""
         unshare = self.daemons.pop(name)
         if unshare.poll() is not None:
             return
@@ -107,7 +108,7 @@ class Cluster:
         unshare.wait()
 
     def wait_idle(self):
-        self._wait(lambda: self.states() == {node: "idle" for node in self.nodes})
+        self._wait(lambda: self.states() == dict.fromkeys(self.nodes, "idle"))
 
     def run(self, *words):
         done = subprocess.run(words, env=self.environment, capture_output=True, text=True, timeout=60)
@@ -117,7 +118,7 @@ class Cluster:
         return dict(line.split() for line in self.run("sinfo", "-h", "-N", "-o", "%N %T").splitlines())
 
     def _configure(self):
-        self.folder.chmod(0o755)  # munged wants its socket where all can reach it
+        self.folder.chmod(0o755)  # Every user must reach the socket of munged.
         ports = free_ports(1 + len(self.nodes))
         host = socket.gethostname()
         text = CONFIGURATION.format(

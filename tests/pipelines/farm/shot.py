@@ -1,4 +1,4 @@
-"""A shot of tiny frames that differ from each other, made of a sample."""
+"""A shot of small frames that differ from each other, from a sample."""
 
 import os
 import pathlib
@@ -9,7 +9,7 @@ SAMPLES = pathlib.Path(os.environ["POLYRECON_SAMPLES"])
 
 
 def make_shot(folder, frames, height=36, width=64):
-    """Writes folder/shot.####.exr: windows of a real render that move on from frame to frame."""
+    """Writes folder/shot.####.exr: crops of a render that move from frame to frame."""
     channels = exr.read(SAMPLES / "study_small_0.exr")
     for k, frame in enumerate(frames):
         x, y = 2 * k % (160 - width), k % (90 - height)

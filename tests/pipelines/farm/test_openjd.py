@@ -59,7 +59,7 @@ class Template(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
         self.assertEqual(self.outputs(), [f"shot.{frame:04d}.exr" for frame in (1, 2, 3, 4, 5, 8)])
         self.assertIn("6 of 6 frames are finished", done.stdout)
-        # Chunks of at most two frames that follow each other: 1-2, 3-4, 5, 8 or such.
+        # Chunks have at most two consecutive frames, for example 1-2, 3-4, 5, 8.
         self.assertGreaterEqual(done.stdout.count("openjd_progress: 100.0"), 4)
         percents = [float(text) for text in re.findall(r"openjd_progress: ([0-9.]+)", done.stdout)]
         self.assertTrue(all(0 <= percent <= 100 for percent in percents))
@@ -88,7 +88,7 @@ class Template(unittest.TestCase):
         values = yaml.safe_load((bundle / "parameter_values.yaml").read_text())["parameterValues"]
         given = {value["name"]: value["value"] for value in values}
         self.assertEqual((given["Frames"], given["Quality"], given["Threads"]), ("1,3,5", "draft", 1))
-        # parameter_values.yaml is Deadline Cloud's; openjd takes the same values by name.
+        # parameter_values.yaml is for Deadline Cloud; openjd takes the same values by name.
         given.update(Polyrecon=POLYRECON, PolyreconFarm=FARM / "farm.py")
         done = run(
             OPENJD,

@@ -28,7 +28,7 @@ class Threads(unittest.TestCase):
         with self.assertRaises(DriverError) as caught:
             threads_for(9 * GB, [Node(4, 8 * GB), Node(64, 0)])
         self.assertEqual(caught.exception.code, ExitCode.MEMORY)
-        self.assertEqual(threads_for(9 * GB, [Node(64, 0)]), 1)  # the cluster does not know its memory
+        self.assertEqual(threads_for(9 * GB, [Node(64, 0)]), 1)  # The cluster does not report memory.
 
     def test_chunks_fill_the_time_and_the_array(self):
         self.assertEqual(chunk_for(60, 10, 1000, 1000), 10)
@@ -39,7 +39,7 @@ class Threads(unittest.TestCase):
 
 class Requirements(unittest.TestCase):
     def test_the_model_holds_for_a_real_run(self):
-        """Peak memory of this very build is not above what is asked for, and the model not far above the peak."""
+        """The peak memory of this build is not above the request, and the model is not far above the peak."""
         model = Model()
         sample = Path(os.environ["POLYRECON_SAMPLES"]) / "glass_16.exr"
         frame = frame_of(
@@ -47,22 +47,11 @@ class Requirements(unittest.TestCase):
         )
         self.assertEqual((frame.width, frame.height, frame.channels), (320, 180, 58))
         with tempfile.TemporaryDirectory() as folder:
-            for k in range(1, 7):  # one frame has all four neighbours, and another one after it
+            for k in range(1, 7):  # One frame has all four neighbours and a frame after them.
                 os.symlink(sample, f"{folder}/in.{k}.exr")
-            child = subprocess.Popen(
-                [
-                    POLYRECON,
-                    "denoise",
-                    "-i",
-                    f"{folder}/in.#.exr",
-                    "-o",
-                    f"{folder}/out.#.exr",
-                    "--frames",
-                    "1-6",
-                    "--quiet",
-                ]
-                + ["--quality", "draft", "--threads", "1"]
-            )
+            words = ["-i", f"{folder}/in.#.exr", "-o", f"{folder}/out.#.exr", "--frames", "1-6"]
+            words += ["--quality", "draft", "--threads", "1", "--quiet"]
+            child = subprocess.Popen([POLYRECON, "denoise", *words])
             _, status, usage = os.wait4(child.pid, 0)
             child.returncode = os.waitstatus_to_exitcode(status)
         self.assertEqual(child.returncode, 0)
@@ -111,6 +100,6 @@ class Commands(unittest.TestCase):
             done = self.farm("report", *words, "--frames", "1-2", "--polyrecon", POLYRECON)
             self.assertEqual(done.returncode, 4)
             self.assertIn("1 of 2 frames are finished\nnot finished: 2\n", done.stdout)
-            # Other settings: frame 1 is not what was asked for.
+            # With other settings frame 1 is not finished.
             done = self.farm("report", *words, "--frames", "1", "--polyrecon", POLYRECON, "--", "--quality", "best")
             self.assertEqual(done.returncode, 4)

@@ -30,7 +30,7 @@ def identities(folder):
 
 @unittest.skipUnless(can_run(), "a Slurm of one's own needs root and process namespaces")
 class Slurm(unittest.TestCase):
-    """One cluster of two nodes, one shot in a folder of an awkward name (case 33), for all tests here."""
+    """A cluster of two nodes and a shot in a folder with an awkward name (case 33), for all tests."""
 
     @classmethod
     def setUpClass(cls):
@@ -45,7 +45,7 @@ class Slurm(unittest.TestCase):
         )
 
     @classmethod
-    def enterClassContext(cls, context):  # unittest has it since Python 3.11
+    def enterClassContext(cls, context):  # noqa: N802 (for Python before 3.11)
         entered = context.__enter__()
         cls.addClassCleanup(context.__exit__, None, None, None)
         return entered
@@ -67,7 +67,7 @@ class Slurm(unittest.TestCase):
         )
 
     def finish(self, process):
-        """Returns (exit code, what it printed)."""
+        """Waits for the end; returns (exit code, output)."""
         try:
             output, errors = process.communicate(timeout=LIMIT_SECONDS)
         except subprocess.TimeoutExpired:
@@ -79,7 +79,7 @@ class Slurm(unittest.TestCase):
         return json.loads((self.out / "job" / "report.json").read_text())
 
     def kill_in_the_middle(self, running, node):
-        """Kills the node while it works on a chunk of which one frame is there and another one is not."""
+        """Kills the node while it works on a chunk with a finished and an unfinished frame; returns its frames."""
         end = time.monotonic() + LIMIT_SECONDS
         while time.monotonic() < end and running.poll() is None:
             for path in (self.out / "job/records").glob("[0-9]*.json"):
@@ -90,7 +90,7 @@ class Slurm(unittest.TestCase):
                     self.cluster.kill(node)
                     return record["frames"]
             time.sleep(0.005)
-        self.fail(f"{node} never worked: {self.cluster.run('squeue')} {self.finish(running)}")
+        raise self.failureException(f"{node} never worked: {self.cluster.run('squeue')} {self.finish(running)}")
 
     def test_case_13_two_nodes_on_one_frame(self):
         words = ["-i", self.folder / "in/shot.####.exr", "-o", self.out / "shot.####.exr", "--frames", "1-4"]
@@ -109,7 +109,7 @@ class Slurm(unittest.TestCase):
         cut = self.out / "shot.0003.exr"
         cut.write_bytes(cut.read_bytes()[:-1])
         before = identities(self.out)
-        broken = self.folder / "in/shot.0028.exr"  # out of reach of the frames that are whole
+        broken = self.folder / "in/shot.0028.exr"  # no neighbour of the complete frames
         broken.write_bytes((self.folder / "in/shot.0001.exr").read_bytes()[:-1])
         self.addCleanup(broken.unlink)
         words = ["-i", self.folder / "in/shot.####.exr", "-o", self.out / "shot.####.exr", "--frames", "1-24,27-28"]
@@ -161,6 +161,6 @@ class Slurm(unittest.TestCase):
         self.assertEqual((found["finished"], found["unfinished"]), (24, ""))
         self.assertEqual(found["attempts_without_end"], [f"node2: {lost}"])
         self.assertEqual(found["attempts"], 9)
-        # What the dead node had written is not written again.
+        # Frames that the dead node had written are not written again.
         self.assertLess(found["nodes"]["node1"]["frames"], 24)
         self.assertIn("24 of 24 frames are finished", output)

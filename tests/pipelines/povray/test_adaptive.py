@@ -35,12 +35,12 @@ class Adaptive(InFolder):
         killed.send_signal(signal.SIGTERM)
         self.assertEqual(killed.wait(20), 143)
         self.assertFalse(pathlib.Path("ball.exr").exists())
-        self.run_driver("--budget-spp", "48", code=2)  # passes of an earlier run are not overwritten unasked
+        self.run_driver("--budget-spp", "48", code=2)  # Passes of an earlier run are not overwritten without --resume.
         said = self.run_driver("--budget-spp", "48", "--resume").stdout
         self.assertIn("report:", said)
 
         journal = json.loads(pathlib.Path("ball.passes/journal.json").read_text())
-        # No more than one row of the last pass over the budget: a pass is never empty.
+        # A pass is never empty, so the last one may exceed the budget by a row.
         self.assertLess(sum(part["samples"] for part in journal["parts"]), 48 + 1)
         self.assertGreater(len(journal["rounds"]), 1)
         names = [part["file"] for part in journal["parts"]]
@@ -50,12 +50,12 @@ class Adaptive(InFolder):
         np.testing.assert_allclose(counts.mean(), sum(part["samples"] for part in journal["parts"]), rtol=1e-6)
         for layer in ("Combined Variance.R", "Denoising Normal Variance.X", "Denoising Depth.Z", "Visibility A.X"):
             self.assertIn(layer, merged)
-        # Samples went where the noise is: the penumbra on the wall.
+        # The penumbra on the wall has noise, and gets more samples.
         with Scene("ball.pov", SIZE) as scene:
             reference = estimate(scene.render(20), 20)
         noisy = reference.variance.mean(-1) > np.quantile(reference.variance.mean(-1), 0.9)
         self.assertGreater(counts[noisy].mean(), 1.3 * counts[~noisy].mean())
-        # Unbiased and better: the clean picture is nearer to the reference than the noisy one.
+        # The noisy picture is unbiased, and the clean one is nearer to the reference.
         errors = [
             np.mean(
                 (np.stack([found[f"Combined.{c}"] for c in "RGB"], -1) - reference.mean) ** 2
@@ -67,7 +67,7 @@ class Adaptive(InFolder):
         self.assertTrue(os.path.getsize("ball.passes/report.html") > 10000)
 
     def test_case34_a_scene_without_noise_ends_after_the_first_pass(self):
-        # The camera looks at an even wall: all subpixels are the same.
+        # The camera sees an even wall, so all subpixels are equal.
         wall = "plane { -z, -2 hollow pigment { rgb <0.5,0.25,0.125> } finish { ambient 1 diffuse 0 } }\n"
         self.scene(HEAD % 1 + CAMERA + wall, "ball.pov")
         said = self.run_driver("--budget-spp", "48").stdout

@@ -33,7 +33,7 @@ class Passes(InFolder):
 
     def check_ball(self, found):
         distance, normals, on_ball = truth()
-        # The silhouette's pixels may fall to either side.
+        # Pixels of the silhouette may belong to either object.
         inner = np.abs(np.gradient(distance)[0]) + np.abs(np.gradient(distance)[1]) < 0.3
         self.assertGreater(inner.mean(), 0.8)
         np.testing.assert_allclose(found["Denoising Normal"][inner], normals[inner], atol=0.01)
@@ -41,7 +41,7 @@ class Passes(InFolder):
         return on_ball & inner
 
     def test_ball_before_a_wall(self):
-        # Whatever gamma POV-Ray works in, the passes are the same.
+        # The passes do not depend on the working gamma of POV-Ray.
         for gamma in (1.0, 2.2):
             choice, found = self.look(HEAD % gamma + CAMERA + BALL + LAMP)
             self.assertAlmostEqual(choice.gamma, gamma, delta=0.02)
@@ -51,7 +51,7 @@ class Passes(InFolder):
             np.testing.assert_allclose(
                 found["Denoising Albedo"][on_ball], np.broadcast_to(colour, (on_ball.sum(), 3)), rtol=0.01
             )
-            # The ball's own shadow: lit by ambient light alone, though it faces the lamp.
+            # The ball's shadow on the wall has ambient light alone, though the wall faces the lamp.
             shadow = found["Visibility"][..., 0] < 0.9
             self.assertGreater((shadow & ~truth()[2]).sum(), 20)
             self.assertGreater(found["Visibility"][on_ball].min(), 0.99)
@@ -99,12 +99,12 @@ class Passes(InFolder):
         self.assertIn("not checked", self.decided(choice, "depth").reason)
         self.check_ball(found)
 
-    def test_only_what_the_scene_calls_for(self):
-        # One colour that shines by itself: nothing to learn from albedo, lamps or shadows.
+    def test_only_passes_that_the_scene_needs(self):
+        # A glowing wall of one colour: albedo, lamps and shadows show nothing.
         glow = "plane { -z, -2 hollow pigment { rgb 0.5 } finish { ambient 1 diffuse 0 } }\n"
         choice, found = self.look(HEAD % 1 + CAMERA + glow + LAMP)
         self.assertEqual(set(found), {"Denoising Depth"})
-        # Light groups keep our lamps out: no normals, no lamp for the depth.
+        # Added lamps do not light a light group: no normals, and no depth by a lamp.
         choice, found = self.look(HEAD % 1 + CAMERA + "light_group {" + LAMP + BALL + "global_lights off }\n")
         self.assertFalse(self.decided(choice, "normal").run)
         self.assertIsNone(choice.depth.place)

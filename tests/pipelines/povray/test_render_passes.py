@@ -43,7 +43,7 @@ class RenderPasses(InFolder):
         }
         self.assertEqual(set(merged), names | {"Sample Count.X"})
         self.assertTrue(all(np.isfinite(plane).all() and plane.shape == (48, 64) for plane in merged.values()))
-        # Some of the frame has no noise: the wall out of the ball's shadow.
+        # The wall outside the ball's shadow has no noise.
         self.assertEqual(set(np.unique(merged["Sample Count.X"])), {4, 20})
 
         roles = json.loads(Polyrecon().run("inspect", "--json", "merged.exr"))["roles"]
@@ -52,7 +52,7 @@ class RenderPasses(InFolder):
             for holds in ("mean", "variance of the mean", "half A", "half B"):
                 self.assertIn((role, holds), found)
 
-        # The reconstruction is nearer to 400 samples per pixel than the noisy mean is.
+        # The reconstruction is nearer to a render of 400 samples per pixel than the noisy mean.
         self.run_driver(scene, "-o", "reference.exr", "--subpixels", "20", "--", *SIZE)
         Polyrecon().run("denoise", "-i", "merged.exr", "-o", "clean.exr", "--quiet")
         errors = {image["image"]: image["relMSE"] for image in self.compare("merged.exr", "clean.exr")}

@@ -61,7 +61,7 @@ class PovrayBehindTheLoop(InFolder):
             self.assertTrue((part["Combined.R"][taken > 0] > 0).all())
             grids.append(taken[40, 50] ** 0.5)
             total += taken
-        self.assertEqual(len({*grids, 4.0}), 4)  # all different, and none is the first pass's
-        # The same target again, after an interruption: the same grids.
+        self.assertEqual(len({*grids, 4.0}), 4)  # All differ, also from the grid of the first pass.
+        # After an interruption the same target gets the same grids.
         renderer.extra(16, counts, target)
         self.assertEqual(exr.read(target)["Sample Count.X"][40, 50] ** 0.5, grids[-1])

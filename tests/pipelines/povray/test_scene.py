@@ -18,7 +18,7 @@ SLOW = FLAT + "#declare I = 0; #while (I < 1e9) #declare I = I + 1; #end\n"
 
 
 def work_folders(pid):
-    """What a driver of this process has in /tmp: other drivers may be at work there."""
+    """The work folders of this process in /tmp, where other drivers may have some too."""
     return list(pathlib.Path("/tmp").glob(f"polyrecon-povray-{pid}-*"))
 
 
@@ -41,8 +41,8 @@ class Scenes(InFolder):
         self.assertLess(abs(fine.mean() / part.mean() - 1), 0.02)
 
     def test_awkward_names_includes_and_options_from_elsewhere(self):
-        # HARD: a blank, quotes, a leading '-', '#', braces, UTF-8; in the scene's folder and name, in an .ini and a
-        # library.
+        # HARD has a blank, quotes, a leading '-', '#', braces and UTF-8. It is in the names of the scene, its folder,
+        # an .ini file and a library.
         folder = pathlib.Path("-d'i r\"#{}$(x) ünï")
         (folder / "sub").mkdir(parents=True)
         (folder / "sub" / "flat.inc").write_text(FLAT)

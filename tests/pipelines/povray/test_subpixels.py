@@ -6,9 +6,9 @@ from pipelines.povray.subpixels import estimate, join
 
 
 class Subpixels(unittest.TestCase):
-    def test_white_noise_has_the_variance_that_is_told(self):
-        # 4800 pixels x 3 channels: the mean of squared errors is known to 2 sqrt(2 / 14400) = 2.4 % at 2 sigma, the
-        # mean of the told variances to less; 6 % is 5 sigma.
+    def test_the_variance_of_white_noise(self):
+        # With 4800 pixels x 3 channels the mean of squared errors has an error of 2 sqrt(2 / 14400) = 2.4 % at 2 sigma,
+        # and the mean of the estimated variances a smaller one; 6 % is 5 sigma.
         for n in (2, 3, 4, 8):
             found = estimate(np.random.default_rng(n).normal(size=(60 * n, 80 * n, 3)), n)
             self.assertAlmostEqual(found.variance.mean() / (found.mean**2).mean(), 1, delta=0.06)
@@ -18,11 +18,11 @@ class Subpixels(unittest.TestCase):
         image = np.random.default_rng(1).normal(size=(240, 320, 3))
         found = estimate(image, 4)
         np.testing.assert_allclose((found.a + found.b) / 2, found.mean, atol=1e-12)
-        # Independent: the correlation of 14400 pairs is below 5 / sqrt(14400).
+        # The correlation of 14400 independent pairs is below 5 / sqrt(14400).
         self.assertLess(abs(np.corrcoef(found.a.ravel(), found.b.ravel())[0, 1]), 0.042)
 
     def test_halves_cover_the_pixel_alike(self):
-        # Whatever is linear across the pixel has the same mean in both halves.
+        # A linear change across the pixel has the same mean in both halves.
         y, x = np.mgrid[:48, :64] / 4
         for n in (2, 4, 8):
             found = estimate((3 * x - 2 * y)[..., None], n)
