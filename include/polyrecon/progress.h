@@ -21,4 +21,7 @@ class Progress {
   virtual bool cancelled() const;
 };
 
+/// For callers that want neither a report nor a way to cancel.
+Progress& silent_progress();
+
 }  // namespace polyrecon

@@ -16,6 +16,9 @@
 namespace polyrecon {
 namespace {
 
+/// Channels of the blend sums that have one value per window: relative bias 3, variance 3, order 1, weight 1.
+constexpr std::size_t constants = 8;
+
 /// Sums of equation (3) for one bandwidth, interleaved: a window touches all of them at each of its pixels.
 /// Channels: response | relative bias 3 | variance 3 | order 1 | weight.
 class BlendSums {
@@ -23,7 +26,7 @@ class BlendSums {
   /// Zero over the area.
   void begin(const Rect& area, int responses) {
     area_ = area;
-    channels_ = static_cast<std::size_t>(responses) + 8;
+    channels_ = static_cast<std::size_t>(responses) + constants;
     sums_.assign(area.area() * channels_, 0.0);
   }
 
@@ -48,7 +51,7 @@ struct BlendPlane {
   std::vector<Real> sums;
 
   BlendPlane(int w, int h, int responses)
-      : channels(static_cast<std::size_t>(responses) + 8),
+      : channels(static_cast<std::size_t>(responses) + constants),
         width(w),
         sums(static_cast<std::size_t>(w) * static_cast<std::size_t>(h) * channels, Real(0)) {}
   Real* at(int x, int y) {
@@ -173,8 +176,6 @@ POLYRECON_SIMD bool energies_of_fit(const Real* fit, std::size_t pitch, std::siz
   return finite;
 }
 
-constexpr std::size_t constants = 8;  ///< Channels of BlendSums that a window has one value of.
-
 POLYRECON_SIMD void add_pixels(const Window& window, const Real* weight, const Real* fit, std::size_t pitch,
                                std::size_t responses, const double* constant, BlendSums& sums) {
   for (std::size_t j = 0; j < static_cast<std::size_t>(window.count); ++j) {
@@ -298,9 +299,7 @@ BlendedFit normalise(BlendPlane& plane, const FitSource& source, const std::vect
   const int width = response.width(), height = response.height(), channels = response.channels();
   BlendedFit out{Image(width, height, channels), Image(width, height, 3), Image(width, height, 3),
                  Image(width, height, 1)};
-  Progress silent;
-  parallel_for(static_cast<std::size_t>(height), silent, [&](std::size_t row) {
-    const int y = static_cast<int>(row);
+  for_rows(height, [&](int y) {
     std::size_t uncovered = 0;
     for (int x = 0; x < width; ++x) {
       const Real* sums = plane.at(x, y);
@@ -350,6 +349,13 @@ std::vector<unsigned char> reached(const std::vector<unsigned char>& active, int
 }
 
 }  // namespace
+
+std::size_t blended_fit_channels(std::size_t color_channels) {
+  constexpr std::size_t squared_bias = 3, variance = 3, order = 1;
+  return color_channels + squared_bias + variance + order;
+}
+
+std::size_t blend_sums_channels(std::size_t color_channels) { return color_channels + constants; }
 
 int fit_halo(const FitParams& params) {
   // One radius from a pixel to the centres that cover it and one to the pixels of their windows. A centre of a finer

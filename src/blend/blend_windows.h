@@ -46,6 +46,15 @@ struct BlendedFit {
   Image order;         ///< Taylor order k, blended, 1 channel.
 };
 
+/// Channels of a BlendedFit.
+std::size_t blended_fit_channels(std::size_t color_channels);
+
+/// Channels of the sums that fit_and_blend holds for each bandwidth.
+std::size_t blend_sums_channels(std::size_t color_channels);
+
+/// Bytes per pixel of the masks that fit_and_blend holds: centres needed, centres of the lattice, centres done.
+constexpr std::size_t blend_mask_bytes = 3;
+
 /// Counted over all windows; plain sums, so the order of the threads does not matter.
 struct FitCounters {
   std::atomic<std::size_t> windows{0}, rank_deficient{0}, dropped{0}, uncovered_pixels{0};

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "blend/select.h"
+#include "core/color_layout.h"
 #include "core/parallel.h"
 #include "core/rect.h"
 
@@ -102,18 +103,19 @@ double strength_of(const HalfPair& pair, const Image& reach, const Candidate& re
 /// Adds what the pixel lost to energy; whether it lost anything.
 bool bind_pixel(const HalfPair& pair, const Image& reach, const std::array<double, 3>& strength, int x, int y,
                 Candidate& result, std::vector<double>& energy) {
+  const ColorLayout layout(pair.color[0].channels());
   bool bound = false;
   for (std::size_t color = 0; color < 3; ++color) {
     const auto first = static_cast<int>(color);
     const double part = 1 - strength[color] * (1 - part_within(pair, reach, result, x, y, first));
     if (part == 1) continue;
     bound = true;
-    for (std::size_t k = color; k < energy.size(); k += 3) {
-      const auto c = static_cast<int>(k);
+    for (int layer = 0; layer < layout.layers(); ++layer) {
+      const int c = ColorLayout::channel(layer, first);
       const double noisy = mean(pair.color, x, y, c), before = mean(result.half, x, y, c);
       for (Image& half : result.half)
         half.at(x, y, c) = static_cast<Real>(noisy + part * (static_cast<double>(half.at(x, y, c)) - noisy));
-      energy[k] += before - mean(result.half, x, y, c);
+      energy[static_cast<std::size_t>(c)] += before - mean(result.half, x, y, c);
     }
     result.squared_bias.at(x, y, first) *= static_cast<Real>(part * part);
   }
@@ -137,7 +139,7 @@ BoundEnergy bind_to_noise(const HalfPair& pair, const Image& reach, double max_l
   std::array<double, 3> strength{};
   for (int color = 0; color < 3; ++color)
     strength[static_cast<std::size_t>(color)] = strength_of(pair, reach, result, max_lost, color);
-  const auto colors = static_cast<std::size_t>(pair.color[0].channels() / 3 * 3);
+  const auto colors = static_cast<std::size_t>(ColorLayout(pair.color[0].channels()).layer_channels());
   std::vector<BoundEnergy> of_row(static_cast<std::size_t>(pair.height()), {0, std::vector<double>(colors, 0.0)});
   for_rows(pair.height(), [&](int y) {
     BoundEnergy& row = of_row[static_cast<std::size_t>(y)];

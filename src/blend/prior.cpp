@@ -9,6 +9,7 @@
 #include "blend/select.h"
 #include "blend/sharpen.h"
 #include "core/gaussian.h"
+#include "core/halves.h"
 #include "core/parallel.h"
 #include "core/repair.h"
 
@@ -84,8 +85,8 @@ Image toward(Image own, const Image& prior, Real share, const Image& belief) {
 }  // namespace
 
 CorrectedPrior correct_prior(Pass prior, const HalfPair& pair, const Image& own) {
-  Image out =
-      prior.has_halves() ? mean_of_halves({std::move(prior.half_a), std::move(prior.half_b)}) : std::move(prior.mean);
+  Image out = prior.has_halves() ? mean_of_halves({std::move(prior.half_a), std::move(prior.half_b)}, beauty_channels)
+                                 : std::move(prior.mean);
   for (int c = 0; c < beauty_channels; ++c) {
     const auto gain = static_cast<Real>(exposure_gain(out, pair, c));
     for (std::size_t i = 0; i < out.pixels(); ++i) {
@@ -118,7 +119,7 @@ Candidate add_prior(const HalfPair& pair, const CorrectedPrior& prior, const Ima
                     const SelectParams& params, std::size_t max_bytes) {
   const auto make = [&](const std::array<Image, 2>& beauty, const Rect& region) {
     const CorrectedPrior part{crop(prior.value, region), crop(prior.sharpening, region)};
-    const Image mean = mean_of_halves(beauty), error = crop(mse, region);
+    const Image mean = mean_of_halves(beauty, beauty_channels), error = crop(mse, region);
     std::vector<std::array<Image, 2>> corrected(shares.size());
     for (std::size_t k = 0; k < shares.size(); ++k) {
       const Image belief = belief_in(contradiction(mean, part, shares[k], error, pair.epsilon, params.risk_sigma));

@@ -14,6 +14,10 @@ struct CorrectedPrior {
   Image sharpening;  ///< What was added to make it as sharp as our own result, part of value.
 };
 
+/// Channels that the corrections by a prior hold, but for the tiles of select_correction: the corrected prior, and the
+/// beauty of both halves before and after.
+constexpr std::size_t prior_work_channels = 2 * 3 + 2 * 3 + 2 * 3;
+
 /// What a denoised layer of the file says of the beauty: the mean of its halves where it has them (their noise is
 /// averaged), else its mean. Each channel is brought to the sum of the noisy halves where that takes a factor of 1/2 to
 /// 2: noise hardly moves a sum over the frame, so what differs is the prior's exposure. Pixels that are not usable, and

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/gaussian.h"
+#include "core/halves.h"
 #include "core/near_best.h"
 #include "core/parallel.h"
 #include "core/real.h"
@@ -173,11 +174,7 @@ Candidate select(const HalfPair& pair, const Image& brightness, const std::vecto
       for (int x = 0; x < width; ++x) total.at(x, y, 0) += shares[k].at(x, y, 0);
     });
   }
-  const int channels = candidates[0].half[0].channels();
-  Candidate out{{Image(width, height, channels), Image(width, height, channels)},
-                Image(width, height, 3),
-                Image(width, height, 3),
-                Image(width, height, 1)};
+  Candidate out = make_candidate(width, height, candidates[0].half[0].channels());
   const auto value = [](Real v) { return v; };
   const auto root = [](Real v) { return std::sqrt(v); };  // Minkowski, as in BlendedFit
   for (std::size_t k = 0; k < candidates.size(); ++k) {
@@ -190,12 +187,13 @@ Candidate select(const HalfPair& pair, const Image& brightness, const std::vecto
   return out;
 }
 
-Image mean_of_halves(const std::array<Image, 2>& half) {
-  Image out(half[0].width(), half[0].height(), 3);
-  for (int c = 0; c < 3; ++c)
-    for (std::size_t i = 0; i < out.pixels(); ++i)
-      out.plane(c)[i] = Real(0.5) * (half[0].plane(c)[i] + half[1].plane(c)[i]);
-  return out;
+std::size_t select_channels(std::size_t candidates, std::size_t color_channels) {
+  constexpr std::size_t risks = 2, share = 1;  // per candidate: raw and smoothed
+  constexpr std::size_t inverse_brightness = 3, best = 2, total_share = 1;
+  // Moments with both passes of their blur, and the likelihood made of them; gone before the result is allocated.
+  constexpr std::size_t moments = 3 * 2, likelihood = 1;
+  return candidates * (risks + share) + inverse_brightness + best + total_share +
+         std::max(moments + likelihood, candidate_channels(color_channels));
 }
 
 std::array<Image, 2> select_correction(const HalfPair& pair, const std::array<Image, 2>& own,
@@ -212,17 +210,19 @@ std::array<Image, 2> select_correction(const HalfPair& pair, const std::array<Im
     std::vector<Candidate> candidates{{{crop(own[0], r), crop(own[1], r)}, {}, {}, {}}};
     for (std::array<Image, 2>& half : corrections.make(candidates[0].half, r))
       candidates.push_back({std::move(half), {}, {}, {}});
-    const Candidate best = select(part, mean_of_halves(candidates[0].half), candidates, params);
+    const Candidate best = select(part, mean_of_halves(candidates[0].half, 3), candidates, params);
     for (std::size_t h = 0; h < 2; ++h) paste(best.half[h], inside(tile), out[h], tile.core.x0, tile.core.y0);
   }
   return out;
 }
 
 std::size_t correction_bytes_per_pixel(int channels, std::size_t corrections) {
-  const auto halves = 2 * static_cast<std::size_t>(channels);
-  // Noisy halves, own and all corrections with their risks; brightness, the result with empty bias and variance, and
-  // what comes and goes.
-  return sizeof(Real) * (2 * halves + (corrections + 1) * (halves + 3) + halves + 24);
+  const auto colors = static_cast<std::size_t>(channels);
+  const std::size_t noisy_halves = 2 * colors, candidates = corrections + 1, candidate_halves = 2 * colors;
+  constexpr std::size_t brightness = 3;
+  // Images that `make` works with are gone before select runs, which needs more.
+  return sizeof(Real) *
+         (noisy_halves + candidates * candidate_halves + brightness + select_channels(candidates, colors));
 }
 
 }  // namespace polyrecon

@@ -5,19 +5,12 @@
 #include <functional>
 #include <vector>
 
+#include "core/candidate.h"
 #include "core/half_pair.h"
 #include "polyrecon/image.h"
 #include "polyrecon/params.h"
 
 namespace polyrecon {
-
-/// One way to reconstruct the frame: what each half came to, made from data the other half's judgement does not share.
-struct Candidate {
-  std::array<Image, 2> half;  ///< As HalfPair::color.
-  Image squared_bias;         ///< As the windows estimate it (5), 3 channels; empty if the candidate has none.
-  Image variance;             ///< Of the windows, equation (6), 3 channels; empty if the candidate has none.
-  Image order;                ///< Taylor order, 1 channel.
-};
 
 /// Pixels around a region that select looks at.
 int select_halo(const SelectParams& params);
@@ -37,8 +30,8 @@ int select_halo(const SelectParams& params);
 Candidate select(const HalfPair& pair, const Image& brightness, const std::vector<Candidate>& candidates,
                  const SelectParams& params);
 
-/// Beauty of the mean of two halves, 3 channels.
-Image mean_of_halves(const std::array<Image, 2>& half);
+/// Channels that select holds in addition to its arguments, its result included.
+std::size_t select_channels(std::size_t candidates, std::size_t color_channels);
 
 /// Further images made from a result.
 struct Corrections {

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cstddef>
 
+#include "core/color_layout.h"
 #include "core/parallel.h"
 #include "core/rect.h"
 
@@ -34,18 +35,18 @@ void raise(const Image& input, const Rect& around, int channel, Real by, int x, 
   const double beauty = sum_over(input, channel, around);
   if (beauty == 0) return;
   // Part of the beauty is 0 to 1 of it; a layer that is none (an albedo) may be any multiple of a dark corner.
-  for (int k = channel + 3; k < image.channels() / 3 * 3; k += 3)
+  for (int layer = 1; layer < ColorLayout(image.channels()).layers(); ++layer) {
+    const int k = ColorLayout::channel(layer, channel);
     image.at(x, y, k) +=
         static_cast<Real>(static_cast<double>(by) * std::clamp(sum_over(input, k, around) / beauty, 0.0, 1.0));
+  }
 }
 
 }  // namespace
 
 std::size_t raise_undershoot(const Image& input, Image& image) {
   std::atomic<std::size_t> raised{0};
-  Progress silent;
-  parallel_for(static_cast<std::size_t>(image.height()), silent, [&](std::size_t row) {
-    const int y = static_cast<int>(row);
+  for_rows(image.height(), [&](int y) {
     for (int x = 0; x < image.width(); ++x) {
       const Rect around = intersect(grow({x, y, x + 1, y + 1}, radius), image.bounds());
       bool any = false;

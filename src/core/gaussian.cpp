@@ -51,15 +51,12 @@ Image gaussian_blur(const Image& image, double sigma) {
   std::vector<double> taps;
   for (int k = 0; k <= gaussian_reach(sigma); ++k) taps.push_back(std::exp(-0.5 * k * k / (sigma * sigma)));
   Image between(image.width(), image.height(), image.channels()), out = between;
-  Progress silent;
-  const auto rows = static_cast<std::size_t>(image.height());
   const std::vector<Real> ones(static_cast<std::size_t>(image.width()), Real(1));
   const std::vector<double> weights = row_sums(ones.data(), taps, image.width());
   for (int c = 0; c < image.channels(); ++c) {
-    parallel_for(rows, silent, [&](std::size_t y) { blur_columns(image, taps, c, static_cast<int>(y), between); });
-    parallel_for(rows, silent, [&](std::size_t y) {
-      const int row = static_cast<int>(y);
-      divide(row_sums(between.row(c, row), taps, image.width()).data(), weights.data(), out.row(c, row), image.width());
+    for_rows(image.height(), [&](int y) { blur_columns(image, taps, c, y, between); });
+    for_rows(image.height(), [&](int y) {
+      divide(row_sums(between.row(c, y), taps, image.width()).data(), weights.data(), out.row(c, y), image.width());
     });
   }
   return out;

@@ -9,4 +9,9 @@ HalfPair crop(const HalfPair& pair, const Rect& r) {
           pair.epsilon};
 }
 
+std::size_t half_pair_channels(std::size_t color_channels, std::size_t feature_channels) {
+  constexpr std::size_t variance = 3;
+  return 2 * color_channels + variance + 2 * feature_channels;
+}
+
 }  // namespace polyrecon

@@ -9,9 +9,8 @@ namespace polyrecon {
 
 Image half_resolution(const Image& image) {
   Image out((image.width() + 1) / 2, (image.height() + 1) / 2, image.channels());
-  Progress silent;
-  parallel_for(static_cast<std::size_t>(out.height()), silent, [&](std::size_t row) {
-    const int y = static_cast<int>(row), y1 = std::min(2 * y + 1, image.height() - 1);
+  for_rows(out.height(), [&](int y) {
+    const int y1 = std::min(2 * y + 1, image.height() - 1);
     for (int c = 0; c < image.channels(); ++c)
       for (int x = 0; x < out.width(); ++x) {
         // At an odd border the one pixel or row that is there counts twice, which is its mean.
@@ -25,9 +24,7 @@ Image half_resolution(const Image& image) {
 
 Image double_resolution(const Image& image, int width, int height) {
   Image out(width, height, image.channels());
-  Progress silent;
-  parallel_for(static_cast<std::size_t>(height), silent, [&](std::size_t row) {
-    const int y = static_cast<int>(row);
+  for_rows(height, [&](int y) {
     // The centre of fine pixel y stands at coarse coordinate y/2 - 1/4: 3/4 of its own coarse pixel, 1/4 of the next
     // one.
     const int y0 = y / 2, y1 = std::clamp(y % 2 == 0 ? y0 - 1 : y0 + 1, 0, image.height() - 1);

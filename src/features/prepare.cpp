@@ -7,10 +7,13 @@
 #include <limits>
 #include <utility>
 
+#include "core/color_layout.h"
+#include "core/halves.h"
 #include "core/parallel.h"
 #include "core/repair.h"
 #include "noise/fission.h"
 #include "polyrecon/error.h"
+#include "regression/basis.h"
 
 namespace polyrecon {
 namespace {
@@ -65,8 +68,8 @@ double noise_at(const Pass& pass, int c, std::size_t i) {
   if (!pass.variance.empty() && usable(pass.variance.plane(c)[i]))
     return static_cast<double>(pass.variance.plane(c)[i]);
   if (!pass.has_halves()) return 0;
-  const double d = static_cast<double>(pass.half_a.plane(c)[i]) - static_cast<double>(pass.half_b.plane(c)[i]);
-  return std::isfinite(d) ? d * d / 4 : 0;
+  const double variance = variance_of_mean<double>(pass.half_a.plane(c)[i], pass.half_b.plane(c)[i]);
+  return std::isfinite(variance) ? variance : 0;
 }
 
 bool usable_value(const Feature& feature, Real value) {
@@ -246,7 +249,7 @@ Image feature_half_variance(Pass& pass, std::size_t& repaired) {
   for_rows_of(variance, [&](int c, int y) {
     const Real* b = pass.half_b.row(c, y);
     Real* values = variance.row(c, y);
-    for (int x = 0; x < variance.width(); ++x) values[x] = (values[x] - b[x]) * (values[x] - b[x]) / 2;
+    for (int x = 0; x < variance.width(); ++x) values[x] = 2 * variance_of_mean(values[x], b[x]);
   });
   repaired += repair_nonfinite(variance, repair_radius);
   return variance;
@@ -340,9 +343,9 @@ Preparation look_at(const Frame& frame, const Steps& steps) {
     const Feature& feature = frame.features[i];
     const FeatureLook& look = looks[i];
     Decision decision = decide_on_feature(look, feature, steps);
-    if (decision.run && channels + feature.pass.mean.channels() > max_feature_channels) {
+    if (decision.run && channels + feature.pass.mean.channels() > BasisLayout::max_features) {
       decision.run = false;
-      decision.reason = "the model is full: " + std::to_string(max_feature_channels) + " channels";
+      decision.reason = "the model is full: " + std::to_string(BasisLayout::max_features) + " channels";
     }
     out.decisions.push_back(decision);
     if (!decision.run) continue;
@@ -372,7 +375,7 @@ Prepared prepare(Frame& frame, const Preparation& preparation, const Image& vari
   out.negative_pixels = negative_pixels(frame.beauty.mean);
 
   const bool alpha = with_alpha && !frame.alpha.empty();
-  const int channels = 3 + 3 * static_cast<int>(frame.aovs.size()) + (alpha ? 1 : 0);
+  const int channels = ColorLayout(static_cast<int>(frame.aovs.size()), alpha).channels();
   for (Image& color : pair.color) color = Image(frame.width(), frame.height(), channels);
   int begin = 0;
   const auto append = [&](const std::array<Image, 2>& halves) {

@@ -43,6 +43,10 @@ struct Prepared {
   std::size_t negative_pixels = 0;  ///< Beauty pixels with a negative channel; kept as they are.
 };
 
+/// Channels that prepare holds for the feature pass in work in addition to the frame and the pair: its two halves, the
+/// same prefiltered, and its widened noise variance.
+constexpr std::size_t feature_in_preparation_channels = 3 * (2 + 2 + 1);
+
 /// Repairs, splits where the file holds no halves (noise/fission.h), transforms and cleans the features.
 /// variance: noise variance of the beauty's mean, 3 channels (noise/variance.h). Takes the halves and variances of
 /// the frame's passes and all of its features, and gives their memory back as it goes; the other means stay.

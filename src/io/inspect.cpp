@@ -4,14 +4,15 @@
 #include <cmath>
 #include <cstddef>
 
+#include "core/halves.h"
+#include "core/relmse.h"
 #include "io/channel_names.h"
+#include "polyrecon/error.h"
 #include "io/channel_reader.h"
 #include "polyrecon/error.h"
 
 namespace polyrecon {
 namespace {
-
-constexpr double kRelativeFloor = 0.01;  ///< Of the relative variance, as in the error map.
 
 /// Statistics of one layer while the bands of its part go by.
 struct LayerTally {
@@ -85,8 +86,8 @@ std::vector<LayerStatistics> statistics_of(const FrameSource& source) {
   return statistics;
 }
 
-/// Mean of variance / (mean^2 + 0.01) over all finite samples; from half buffers where there is no variance: the mean
-/// of A and B has the variance E[(A - B)^2] / 4.
+/// Mean of variance / relmse_denominator(mean) over all finite samples; the variance is that of the half buffers where
+/// the file holds none. -1 where the file tells no noise.
 double noise_level(const Pass& beauty) {
   if (beauty.variance.empty() && !beauty.has_halves()) return -1;
   double sum = 0;
@@ -94,9 +95,10 @@ double noise_level(const Pass& beauty) {
   for (int c = 0; c < beauty.mean.channels(); ++c)
     for (std::size_t i = 0; i < beauty.mean.pixels(); ++i) {
       const double mean = beauty.mean.plane(c)[i];
-      const double difference = beauty.has_halves() ? beauty.half_a.plane(c)[i] - beauty.half_b.plane(c)[i] : 0;
-      const double variance = beauty.variance.empty() ? difference * difference / 4 : beauty.variance.plane(c)[i];
-      const double relative = variance / (mean * mean + kRelativeFloor);
+      const double variance = beauty.variance.empty()
+                                  ? variance_of_mean<double>(beauty.half_a.plane(c)[i], beauty.half_b.plane(c)[i])
+                                  : static_cast<double>(beauty.variance.plane(c)[i]);
+      const double relative = variance / relmse_denominator(mean);
       if (!std::isfinite(relative)) continue;
       sum += relative;
       ++count;

@@ -5,14 +5,15 @@
 
 #include "blend/select.h"
 #include "core/gaussian.h"
+#include "core/halves.h"
 #include "core/parallel.h"
 #include "core/real.h"
+#include "core/relmse.h"
 
 namespace polyrecon {
 namespace {
 
-constexpr double relative_floor = 0.01;  // of relMSE, radiance squared
-constexpr double smoothing_sigma = 2;    // pixels over which what single pixels tell is averaged
+constexpr double smoothing_sigma = 2;  // pixels over which what single pixels tell is averaged
 
 /// One channel of the result, and what is known of its error there; variances over (yhat^2 + 0.01), averaged.
 struct ChannelErrors {
@@ -33,9 +34,9 @@ ChannelErrors errors_of_channel(const HalfPair& pair, const Image& variance, con
   for_rows(pair.height(), [&](int y) {
     for (int x = 0; x < pair.width(); ++x) {
       const double a = result.half[0].at(x, y, c), b = result.half[1].at(x, y, c), f = 0.5 * (a + b);
-      const double energy = f * f + relative_floor;
+      const double energy = relmse_denominator(f);
       out.energy.at(x, y, 0) = storable(energy);
-      out.variance.at(x, y, 0) = storable(0.25 * (a - b) * (a - b) / energy);
+      out.variance.at(x, y, 0) = storable(variance_of_mean(a, b) / energy);
       out.noise.at(x, y, 0) = storable(noise_of_mean(pair, variance, x, y, c) / energy);
     }
   });

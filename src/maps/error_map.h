@@ -1,10 +1,13 @@
 #pragma once
 
-#include "blend/select.h"
+#include "core/candidate.h"
 #include "core/half_pair.h"
 #include "polyrecon/error_map.h"
 
 namespace polyrecon {
+
+/// Channels of an ErrorMap with all its images.
+constexpr std::size_t error_map_channels = 3 + 1 + 1 + 1;
 
 /// The error map of a result, all terms over (yhat^2 + 0.01):
 ///     min(bias^2 + variance, noise)

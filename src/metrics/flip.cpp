@@ -123,9 +123,7 @@ Taps balanced(Taps line) {
 Image convolve(const Image& image, const Taps& line, bool along_x) {
   const int radius = static_cast<int>(line.size() / 2), w = image.width(), h = image.height();
   Image out(w, h, 1);
-  Progress silent;
-  parallel_for(static_cast<std::size_t>(h), silent, [&](std::size_t row) {
-    const int y = static_cast<int>(row);
+  for_rows(h, [&](int y) {
     std::vector<double> sum(static_cast<std::size_t>(w), 0.0);
     for (int t = -radius; t <= radius; ++t) {
       const double factor = line[static_cast<std::size_t>(t + radius)];
@@ -223,10 +221,9 @@ Seen look(const Image& rgb) {
 
 /// Raises each pixel of largest to the difference of a and b there.
 void raise_to_difference(Image& largest, const Seen& a, const Seen& b) {
-  Progress silent;
-  parallel_for(static_cast<std::size_t>(largest.height()), silent, [&](std::size_t y) {
+  for_rows(largest.height(), [&](int y) {
     for (int x = 0; x < largest.width(); ++x) {
-      const std::size_t i = largest.index(x, static_cast<int>(y));
+      const std::size_t i = largest.index(x, y);
       const auto color = [&](const Image& rgb) { return Color{rgb.plane(0)[i], rgb.plane(1)[i], rgb.plane(2)[i]}; };
       const double edges = std::abs(a.features.edges.plane(0)[i] - b.features.edges.plane(0)[i]);
       const double points = std::abs(a.features.points.plane(0)[i] - b.features.points.plane(0)[i]);

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <vector>
 
+#include "core/relmse.h"
 #include "polyrecon/error.h"
 
 namespace polyrecon {
@@ -25,7 +26,7 @@ Score score(const Image& image, const Image& reference, const Image& reference_v
       const double x = std::isfinite(sample) ? sample : 0.0;
       const double variance = reference_variance.empty() ? 0.0 : reference_variance.plane(c)[i];
       if (!std::isfinite(sample)) bad[i] = true;
-      error[i] += ((x - r) * (x - r) - variance) / (r * r + 1e-2) / image.channels();
+      error[i] += ((x - r) * (x - r) - variance) / relmse_denominator(r) / image.channels();
       sum += x;
       reference_sum += r;
     }
@@ -44,7 +45,7 @@ Image relative_error(const Image& image, const Image& reference) {
   for (int c = 0; c < image.channels(); ++c)
     for (std::size_t i = 0; i < out.pixels(); ++i) {
       const double x = image.plane(c)[i], r = reference.plane(c)[i];
-      out.plane(0)[i] += static_cast<Real>((x - r) * (x - r) / (r * r + 1e-2) / image.channels());
+      out.plane(0)[i] += static_cast<Real>(relative_squared_error(x, r) / image.channels());
     }
   return out;
 }

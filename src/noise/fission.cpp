@@ -26,9 +26,7 @@ double normal(std::uint64_t key) {
 
 std::array<Image, 2> split_halves(const Image& mean, const Image& variance, std::uint64_t stream) {
   std::array<Image, 2> halves{mean, mean};
-  Progress silent;
-  parallel_for(static_cast<std::size_t>(mean.height()), silent, [&](std::size_t row) {
-    const int y = static_cast<int>(row);
+  for_rows(mean.height(), [&](int y) {
     for (int c = 0; c < mean.channels(); ++c)
       for (int x = 0; x < mean.width(); ++x) {
         const double v = static_cast<double>(variance.at(x, y, c));

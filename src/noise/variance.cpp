@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/gaussian.h"
+#include "core/halves.h"
 #include "core/parallel.h"
 #include "core/real.h"
 #include "core/rect.h"
@@ -121,7 +122,7 @@ Image repaired_features(const Frame& frame) {
   int channels = 0;
   for (const Feature& feature : frame.features) {
     const Image& mean = feature.pass.mean;
-    if (channels + mean.channels() > max_feature_channels) continue;
+    if (channels + mean.channels() > BasisLayout::max_features) continue;
     channels += mean.channels();
     used.push_back(&mean);
   }
@@ -160,10 +161,8 @@ Real vote(const Image& fits, int x, int y, int c) {
 Image variance_from_halves(const Pass& beauty) {
   Image out = beauty.half_a;
   for (int c = 0; c < 3; ++c)
-    for (std::size_t i = 0; i < out.pixels(); ++i) {
-      const Real d = beauty.half_a.plane(c)[i] - beauty.half_b.plane(c)[i];
-      out.plane(c)[i] = d * d / 4;
-    }
+    for (std::size_t i = 0; i < out.pixels(); ++i)
+      out.plane(c)[i] = variance_of_mean(beauty.half_a.plane(c)[i], beauty.half_b.plane(c)[i]);
   repair_nonfinite(out, 2);
   return gaussian_blur(out, half_difference_sigma);
 }

@@ -21,11 +21,15 @@ inline Real median_of_5(Real a, Real b, Real c, Real d, Real e) {
   return e < low ? low : (e > high ? high : e);
 }
 
-/// Per column the median and the mean square root of five rows.
-POLYRECON_SIMD void columns_of_5(const Real* const* rows, Real* median, Real* mean_root, int n) {
+/// The median of five rows in each column.
+POLYRECON_SIMD void medians_of_columns(const Real* const* rows, Real* median, int n) {
+  for (int x = 0; x < n; ++x) median[x] = median_of_5(rows[0][x], rows[1][x], rows[2][x], rows[3][x], rows[4][x]);
+}
+
+/// The mean square root of five rows in each column.
+POLYRECON_SIMD void mean_roots_of_columns(const Real* const* rows, Real* mean_root, int n) {
   for (int x = 0; x < n; ++x) {
     const Real a = rows[0][x], b = rows[1][x], c = rows[2][x], d = rows[3][x], e = rows[4][x];
-    median[x] = median_of_5(a, b, c, d, e);
     mean_root[x] = (std::sqrt(a) + std::sqrt(b) + std::sqrt(c) + std::sqrt(d) + std::sqrt(e)) * Real(0.2);
   }
 }
@@ -62,14 +66,13 @@ void repeat_ends(std::vector<Real>& line) {
 
 Image medians_of_rows(const Image& image) {
   Image out(image.width(), image.height(), image.channels());
-  Progress silent;
-  parallel_for(static_cast<std::size_t>(out.height()), silent, [&](std::size_t row) {
+  for_rows(out.height(), [&](int y) {
     std::vector<Real> line(static_cast<std::size_t>(image.width() + 2 * radius));
     for (int c = 0; c < out.channels(); ++c) {
-      const Real* in = image.row(c, static_cast<int>(row));
+      const Real* in = image.row(c, y);
       std::copy(in, in + image.width(), line.begin() + radius);
       repeat_ends(line);
-      medians_along(line.data(), out.row(c, static_cast<int>(row)), image.width());
+      medians_along(line.data(), out.row(c, y), image.width());
     }
   });
   return out;
@@ -81,18 +84,17 @@ Image floor_variance(const Image& variance) {
   Image out(variance.width(), variance.height(), variance.channels());
   const Image row_medians = medians_of_rows(variance);
   const int width = variance.width();
-  Progress silent;
-  parallel_for(static_cast<std::size_t>(out.height()), silent, [&](std::size_t row) {
-    const int y = static_cast<int>(row);
+  for_rows(out.height(), [&](int y) {
     const auto columns = static_cast<std::size_t>(width);
     const std::size_t padded = columns + std::size_t{side} - 1;
-    std::vector<Real> medians(padded), mean_roots(padded), of_columns(columns), of_rows(columns), unused(columns);
+    std::vector<Real> medians(padded), mean_roots(padded), of_columns(columns), of_rows(columns);
     for (int c = 0; c < out.channels(); ++c) {
       const Real* rows[side];
       rows_around(row_medians, c, y, rows);
-      columns_of_5(rows, of_rows.data(), unused.data(), width);
+      medians_of_columns(rows, of_rows.data(), width);
       rows_around(variance, c, y, rows);
-      columns_of_5(rows, medians.data() + radius, mean_roots.data() + radius, width);
+      medians_of_columns(rows, medians.data() + radius, width);
+      mean_roots_of_columns(rows, mean_roots.data() + radius, width);
       repeat_ends(medians);
       repeat_ends(mean_roots);
       medians_along(medians.data(), of_columns.data(), width);

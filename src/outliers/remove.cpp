@@ -6,6 +6,7 @@
 #include <functional>
 #include <limits>
 
+#include "core/color_layout.h"
 #include "core/parallel.h"
 #include "core/rect.h"
 
@@ -185,7 +186,8 @@ bool rare(const Replacement& found, int width, int height, int x, int y, const O
 
 std::vector<Outlier> remove_outliers(HalfPair& pair, bool independent_halves, const OutlierParams& params,
                                      Progress& progress) {
-  const int width = pair.width(), height = pair.height(), channels = pair.color[0].channels() / 3 * 3;  // not alpha
+  const int width = pair.width(), height = pair.height();
+  const int channels = ColorLayout(pair.color[0].channels()).layer_channels();
   const std::array<Replacement, 2> found{find(pair, 0, independent_halves, params, progress),
                                          find(pair, 1, independent_halves, params, progress)};
   // Sources are read from the untouched images: an outlier may stand beside another.

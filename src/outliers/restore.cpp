@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/color_layout.h"
 #include "core/parallel.h"
 #include "core/rect.h"
 #include "core/repair.h"
@@ -180,7 +181,8 @@ void give_to_all(const std::vector<double>& energy, int color, const Image& part
     std::vector<double> parts(static_cast<std::size_t>(image.width()));
     std::transform(image.row(color, y), image.row(color, y) + image.width(), part.row(0, y), parts.begin(),
                    [&](Real yhat, Real kappa) { return sharing.of(yhat, kappa); });
-    for (int c = color; c < static_cast<int>(energy.size()); c += 3) {
+    for (int layer = 0; layer < ColorLayout(static_cast<int>(energy.size())).layers(); ++layer) {
+      const int c = ColorLayout::channel(layer, color);
       Real* out = image.row(c, y);
       for (int x = 0; x < image.width(); ++x)
         out[x] += static_cast<Real>(energy[static_cast<std::size_t>(c)] * parts[static_cast<std::size_t>(x)]);
@@ -203,12 +205,12 @@ void restore_energy(const std::vector<Outlier>& outliers, const Image& variance,
     areas[k] = restoration_area(outliers[k], sums, taking_part, max_gain, image.bounds());
   });
   const auto row = static_cast<std::size_t>(image.width()) + 1;
-  std::vector<double> of_all(static_cast<std::size_t>(image.channels() / 3 * 3), 0.0);
+  std::vector<double> of_all(static_cast<std::size_t>(ColorLayout(image.channels()).layer_channels()), 0.0);
   for (std::size_t c = 0; c < of_all.size(); ++c) {
-    const auto channel = static_cast<int>(c), color = channel % 3;
+    const auto channel = static_cast<int>(c), color = ColorLayout::beauty_channel(channel);
     std::vector<double> gain(row * (static_cast<std::size_t>(image.height()) + 1), 0.0);
     for (std::size_t k = 0; k < outliers.size(); ++k) {
-      const double energy = outliers[k].energy[c], sum = sums[c % 3].sum(areas[k]);
+      const double energy = outliers[k].energy[c], sum = sums[static_cast<std::size_t>(color)].sum(areas[k]);
       if (!(sum > 0))
         image.at(outliers[k].x, outliers[k].y, channel) += static_cast<Real>(energy);
       else if (areas[k] == image.bounds())
@@ -225,6 +227,13 @@ void restore_energy(const std::vector<Outlier>& outliers, const Image& variance,
   }
   if (std::all_of(of_all.begin(), of_all.end(), [](double energy) { return energy == 0; })) return;
   for (int color = 0; color < 3; ++color) give_to_all(of_all, color, part, image);
+}
+
+std::size_t restore_channels(std::size_t color_channels) {
+  constexpr std::size_t in_double = sizeof(double) / sizeof(Real);
+  constexpr std::size_t part = 1, box_sums = 4 * in_double, gain = in_double;
+  const std::size_t image = color_channels, shape = color_channels;
+  return image + shape + part + box_sums + gain;
 }
 
 std::vector<double> channel_sums(const Image& image) {

@@ -36,6 +36,9 @@ void restore_everywhere(const std::vector<double>& energy, const Image& variance
 std::array<double, 3> restore_totals(const std::vector<double>& totals, const Image& variance, double quiet,
                                      double max_gain, Image& image);
 
+/// Channels that restore_energy holds, the image that it works on included.
+std::size_t restore_channels(std::size_t color_channels);
+
 /// Sum of every channel over the usable pixels.
 std::vector<double> channel_sums(const Image& image);
 

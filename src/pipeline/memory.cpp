@@ -2,28 +2,59 @@
 
 #include <algorithm>
 
+#include "blend/prior.h"
+#include "core/candidate.h"
+#include "core/color_layout.h"
+#include "features/prepare.h"
+#include "maps/error_map.h"
+#include "polyrecon/error.h"
 #include "noise/variance.h"
+#include "outliers/restore.h"
 #include "pipeline/stage.h"
 #include "polyrecon/error.h"
+#include "temporal/neighbour.h"
 
 namespace polyrecon {
 namespace {
 
-constexpr std::size_t program_bytes = std::size_t{128} << 20;  // code, libraries, scratch of the threads
-constexpr std::size_t in_preparation = 12;                     // channels of the feature being cleaned
-constexpr double allocator = 1.08;  // what lies unused between images of unequal sizes: up to 6 % was seen
+constexpr double allocator = 1.08;  // unused memory between images of unequal sizes; tests/bench/scaling.py: up to 6 %
 
 std::size_t count(int channels) { return static_cast<std::size_t>(channels); }
 
-/// The pair of halves: colours, variance, features.
+int model_features(const FrameShape& shape) { return std::min(shape.feature_channels, BasisLayout::max_features); }
+
 std::size_t pair_channels(const FrameShape& shape) {
-  return 2 * count(shape.color_channels) + 3 + 2 * count(std::min(shape.feature_channels, max_feature_channels));
+  return half_pair_channels(count(shape.color_channels), count(model_features(shape)));
+}
+
+/// Channels held to the end of a reconstruction: images of the frame, the noise variance of the beauty and the distance
+/// that the noise bound allows.
+std::size_t kept_channels(const FrameShape& shape) {
+  constexpr std::size_t alpha = 1, sample_count = 1, noise_variance = 3, noise_bound = 3;
+  return count(shape.color_channels) + alpha + sample_count + count(shape.prior_channels) + noise_variance +
+         noise_bound + count(shape.beside);
+}
+
+/// Channels held while windows are fitted: the pair and the results of this stage and the one before, each with its
+/// coarser levels, which have 1/4 + 1/16 + ... < 1/3 of the pixels.
+std::size_t fitting_channels(const FrameShape& shape) {
+  return (pair_channels(shape) + 2 * candidate_channels(count(shape.color_channels))) * 4 / 3;
+}
+
+/// Channels held after the fits: the pair, the result with its error and order maps, and what the prior or the return
+/// of energy works with.
+std::size_t finishing_channels(const FrameShape& shape) {
+  const std::size_t colors = count(shape.color_channels);
+  constexpr std::size_t order_map = 1;
+  const std::size_t prior = shape.prior_channels > 0 ? prior_work_channels : 0;
+  return pair_channels(shape) + candidate_channels(colors) + error_map_channels + order_map +
+         std::max(prior, restore_channels(colors));
 }
 
 }  // namespace
 
 FrameShape shape_of(const Frame& frame) {
-  FrameShape shape{frame.beauty.mean.pixels(), 0, 3 + 3 * static_cast<int>(frame.aovs.size())};
+  FrameShape shape{frame.beauty.mean.pixels(), 0, ColorLayout(static_cast<int>(frame.aovs.size()), false).channels()};
   const auto add = [&](const Pass& pass) {
     for (const Image* image : {&pass.mean, &pass.variance, &pass.half_a, &pass.half_b})
       shape.channels += image->channels();
@@ -42,31 +73,28 @@ FrameShape shape_of(const Frame& frame) {
   return shape;
 }
 
-int neighbour_channels(const FrameShape& shape, int neighbours) {
-  return neighbours * (2 * shape.color_channels + 3 + 4);
+int neighbours_channels(const FrameShape& shape, int neighbours) {
+  return neighbours * static_cast<int>(neighbour_channels(count(shape.color_channels)));
 }
 
 int channels_ahead(const FrameShape& shape, const Params& params) {
-  return shape.channels + (params.temporal.radius > 0 ? neighbour_channels(shape, 2) : 0);
+  return shape.channels + (params.temporal.radius > 0 ? neighbours_channels(shape, 2) : 0);
 }
 
 MemoryNeeds memory_needs(const FrameShape& shape, const Params& params) {
-  const std::size_t plane = shape.pixels * sizeof(Real), noise = 3, reach = 3;
-  // The frame's means of colours, alpha and sample count stay to the end.
-  const std::size_t kept = count(shape.color_channels) + 2;
-  const std::size_t candidate = 2 * count(shape.color_channels) + 7;  // halves, error, variance, order
+  constexpr std::size_t noise_variance = 3;
   const auto with_gaps = [](std::size_t bytes) {
     return static_cast<std::size_t>(allocator * static_cast<double>(bytes));
   };
+  const auto image_bytes = [&](std::size_t channels) { return shape.pixels * channels * sizeof(Real); };
+  const std::size_t preparing =
+      count(shape.channels + shape.beside) + noise_variance + pair_channels(shape) + feature_in_preparation_channels;
+  const std::size_t holding = kept_channels(shape) + std::max(fitting_channels(shape), finishing_channels(shape));
   MemoryNeeds needs;
-  needs.prepare = with_gaps(
-      program_bytes + plane * (count(shape.channels + shape.beside) + noise + pair_channels(shape) + in_preparation));
-  // The pair and the results of this stage and the one before, with their coarser levels.
-  needs.held = with_gaps(program_bytes + plane * (kept + noise + reach + count(shape.prior_channels + shape.beside)) +
-                         plane * (pair_channels(shape) + 2 * candidate) * 4 / 3);
-  needs.tile = with_gaps(
-      std::min(smallest_tile_pixels(params), shape.pixels) *
-      stage_bytes_per_pixel(shape.color_channels, std::min(shape.feature_channels, max_feature_channels), params));
+  needs.prepare = with_gaps(program_bytes + image_bytes(preparing));
+  needs.held = with_gaps(program_bytes + image_bytes(holding));
+  needs.tile = with_gaps(std::min(smallest_tile_pixels(params), shape.pixels) *
+                         stage_bytes_per_pixel(shape.color_channels, model_features(shape), params));
   return needs;
 }
 

@@ -8,29 +8,35 @@
 
 namespace polyrecon {
 
+/// Bytes of the process without images: code, libraries, windows and sums of each thread.
+constexpr std::size_t program_bytes = std::size_t{128} << 20;
+
+/// The size of a frame that has been read.
 FrameShape shape_of(const Frame& frame);
 
-/// Channels held for so many neighbours in time: halves, variance and motion vectors of each.
-int neighbour_channels(const FrameShape& shape, int neighbours);
+/// Channels held for so many neighbours in time.
+int neighbours_channels(const FrameShape& shape, int neighbours);
 
-/// Channels held for the next frame of a sequence while one is worked: its passes, itself and one more as neighbours.
+/// Channels held for the next frame of a sequence while the current one is reconstructed: its passes, and where
+/// neighbours in time are used also two frames prepared as neighbours.
 int channels_ahead(const FrameShape& shape, const Params& params);
 
-/// Bytes that a reconstruction needs, counted from the images that live at once.
+/// Bytes that a reconstruction needs: program_bytes and the images that live at once, as each stage states them next to
+/// its own code, with an allowance for unused memory between images of unequal sizes.
 struct MemoryNeeds {
   std::size_t prepare = 0;  ///< While the passes are read and prepared.
-  std::size_t held = 0;     ///< While windows are fitted, beside the tile in work.
-  std::size_t tile = 0;     ///< Of the smallest tile that a stage can work.
+  std::size_t held = 0;     ///< From the first fit on, without the tile in work.
+  std::size_t tile = 0;     ///< For the smallest tile that a stage can work on.
 
   std::size_t least() const { return prepare > held + tile ? prepare : held + tile; }
 };
 
 MemoryNeeds memory_needs(const FrameShape& shape, const Params& params);
 
-/// Throws Error{OutOfMemory}, naming the frame and the limit that would do, where params.max_memory is not enough.
+/// Throws Error{OutOfMemory} where params.max_memory is not enough. The message names the frame and the least limit.
 void require_memory(const std::string& name, const FrameShape& shape, const Params& params);
 
-/// What the tiles of the stages may use together: params.max_memory less what is held beside them.
+/// Bytes left for the tile in work: params.max_memory less MemoryNeeds::held.
 std::size_t tile_memory(const FrameShape& shape, const Params& params);
 
 }  // namespace polyrecon

@@ -9,6 +9,8 @@
 #include "blend/prior.h"
 #include "blend/select.h"
 #include "blend/undershoot.h"
+#include "core/color_layout.h"
+#include "core/halves.h"
 #include "core/parallel.h"
 #include "core/rect.h"
 #include "features/prepare.h"
@@ -59,18 +61,6 @@ Candidate solve_level(const HalfPair& pair, int level, const Params& params, std
   return result;
 }
 
-Image noisy_mean(const HalfPair& pair) {
-  Image out = pair.color[0];
-  for_rows(out.height(), [&](int y) {
-    for (int c = 0; c < out.channels(); ++c) {
-      const Real* other = pair.color[1].row(c, y);
-      Real* mean = out.row(c, y);
-      for (int x = 0; x < out.width(); ++x) mean[x] = Real(0.5) * (mean[x] + other[x]);
-    }
-  });
-  return out;
-}
-
 /// The average of the halves; pixels without noise keep the input's exact value.
 Image average(const HalfPair& pair, const Candidate& solved) {
   Image out = solved.half[0];
@@ -86,7 +76,9 @@ Image average(const HalfPair& pair, const Candidate& solved) {
   return out;
 }
 
-Image channels_of(const Image& image, int first, int count) { return crop(image, image.bounds(), first, count); }
+Image layer_of(const Image& image, int layer) {
+  return crop(image, image.bounds(), ColorLayout::first_channel(layer), ColorLayout::primaries);
+}
 
 std::array<double, 3> energy_of(const Image& image) {
   const std::vector<double> sums = channel_sums(image);
@@ -189,7 +181,7 @@ Result reconstruct(Frame& frame, const std::vector<TimedNeighbour>& neighbours, 
   Params params = asked;
   if (!noise_is_measured(frame)) params.patch = params.estimated_patch;
   FrameShape shape = shape_of(frame);
-  shape.beside += neighbour_channels(shape, static_cast<int>(neighbours.size()));
+  shape.beside += neighbours_channels(shape, static_cast<int>(neighbours.size()));
   require_memory("layer '" + frame.beauty.name + "'", shape, params);
   Result result;
   Report& report = result.report;
@@ -250,18 +242,18 @@ Result reconstruct(Frame& frame, const std::vector<TimedNeighbour>& neighbours, 
     });
   Image image = timed(report, progress, "energy", 1, [&] {
     Image out = average(pair, solved);
-    if (params.parts.raise_undershoot) report.raised_pixels = raise_undershoot(noisy_mean(pair), out);
+    if (params.parts.raise_undershoot)
+      report.raised_pixels = raise_undershoot(mean_of_halves(pair.color, out.channels()), out);
     restore_energy(outliers, pair.variance, max_restored_gain, out);
     if (bound.pixels > 0) restore_everywhere(bound.energy, pair.variance, max_restored_gain, out);
     if (params.parts.restore_totals)
       report.restored_gain = restore_totals(totals, pair.variance, max_restored_gain, max_total_gain, out);
     return out;
   });
-  result.beauty = channels_of(image, 0, 3);
-  for (std::size_t k = 0; k < frame.aovs.size(); ++k)
-    result.aovs.push_back(channels_of(image, 3 * static_cast<int>(k + 1), 3));
-  result.alpha =
-      params.reconstruct_alpha && !frame.alpha.empty() ? channels_of(image, image.channels() - 1, 1) : frame.alpha;
+  const ColorLayout layout(image.channels());
+  result.beauty = layer_of(image, 0);
+  for (int layer = 1; layer < layout.layers(); ++layer) result.aovs.push_back(layer_of(image, layer));
+  result.alpha = layout.has_alpha() ? crop(image, image.bounds(), layout.alpha_channel(), 1) : frame.alpha;
   report.energy_after = energy_of(result.beauty);
   report.estimated_relative_mse = result.error.mean_relative_mse;
   return result;

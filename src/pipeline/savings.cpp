@@ -19,9 +19,8 @@ constexpr double seconds_per_channel = 0.05;
 double prefilter_seconds(const Frame& frame, const PrefilterParams& prefilter_params) {
   const Rect block = intersect({0, 0, 128, 32}, frame.beauty.mean.bounds());
   const Image part = crop(frame.beauty.mean, block);
-  Progress silent;
   const auto start = std::chrono::steady_clock::now();
-  prefilter({part, part}, Image(part.width(), part.height(), 3, Real(1)), prefilter_params, silent);
+  prefilter({part, part}, Image(part.width(), part.height(), 3, Real(1)), prefilter_params, silent_progress());
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return seconds / (3.0 * static_cast<double>(part.pixels()));
 }

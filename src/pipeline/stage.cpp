@@ -6,7 +6,9 @@
 #include "blend/blend_windows.h"
 #include "blend/select.h"
 #include "core/gaussian.h"
+#include "core/halves.h"
 #include "core/parallel.h"
+#include "core/relmse.h"
 #include "core/tiles.h"
 
 namespace polyrecon {
@@ -14,13 +16,11 @@ namespace {
 
 constexpr double residual_sigma = 1;  // pixels over which the squared difference of a stage's halves is averaged
 
-constexpr Real relative_floor = Real(0.01);  // of relMSE, radiance squared
-
 /// Whether some channel of the beauty carries more noise than is left alone (Params::enough).
 bool noise_matters(const HalfPair& pair, std::size_t i, Real enough) {
   for (int c = 0; c < 3; ++c) {
     const Real mean = Real(0.5) * (pair.color[0].plane(c)[i] + pair.color[1].plane(c)[i]);
-    if (Real(0.5) * pair.variance.plane(c)[i] > enough * (mean * mean + relative_floor)) return true;
+    if (Real(0.5) * pair.variance.plane(c)[i] > enough * relmse_denominator(mean)) return true;
   }
   return false;
 }
@@ -106,31 +106,16 @@ Candidate stage_of_tile(const HalfPair& pair, const Candidate* before, const Par
   add_candidates(pair, raw, before, noisy, raw_fit, cross_filter, counters, progress, candidates);
   Image brightness;
   if (before) {
-    brightness = mean_of_halves(before->half);
+    brightness = mean_of_halves(before->half, 3);
     const Image variance = residual_variance(*before);
     const Guide guided{{&brightness, &brightness}, &variance};
     add_candidates(pair, guided, before, noisy, fit_params(params, params.guided_bandwidths), cross_filter, counters,
                    progress, candidates);
   } else {
-    brightness = mean_of_halves(candidates.back().half);
+    brightness = mean_of_halves(candidates.back().half, 3);
   }
   candidates.push_back(take_as_it_is(pair));
   return select(pair, brightness, candidates, params.selection);
-}
-
-Candidate crop_candidate(const Candidate& candidate, const Rect& r) {
-  return {{crop(candidate.half[0], r), crop(candidate.half[1], r)},
-          crop(candidate.squared_bias, r),
-          crop(candidate.variance, r),
-          crop(candidate.order, r)};
-}
-
-void paste_candidate(const Candidate& part, const Tile& tile, Candidate& whole) {
-  const Rect &core = tile.core, from = inside(tile);
-  for (std::size_t h = 0; h < 2; ++h) paste(part.half[h], from, whole.half[h], core.x0, core.y0);
-  paste(part.squared_bias, from, whole.squared_bias, core.x0, core.y0);
-  paste(part.variance, from, whole.variance, core.x0, core.y0);
-  paste(part.order, from, whole.order, core.x0, core.y0);
 }
 
 }  // namespace
@@ -171,15 +156,17 @@ std::size_t smallest_tile_pixels(const Params& params) {
 std::size_t stage_bytes_per_pixel(int color_channels, int feature_channels, const Params& params) {
   const auto colors = static_cast<std::size_t>(color_channels);
   const std::size_t raw = std::max(params.first_bandwidths.size(), params.later_bandwidths.size());
-  const std::size_t candidates = raw + params.guided_bandwidths.size() + 1;
-  const std::size_t candidate = 2 * colors + 7, fit = colors + 7, sums = colors + 8;
-  const std::size_t inputs = 2 * colors + 3 + 2 * static_cast<std::size_t>(feature_channels) + candidate;
-  // The most that lives at once: the choice among all candidates with their risks and its result, or the last fits of
-  // the noisy halves with their sums, or those of the guide beside the candidates that are there.
-  const std::size_t choosing = candidates * (candidate + 3) + candidate + 13;
-  const std::size_t fitting = raw * (2 * fit + sums);
-  const std::size_t guided = raw * candidate + 6 + params.guided_bandwidths.size() * (2 * fit + sums);
-  return sizeof(Real) * (inputs + std::max({choosing, fitting, guided})) + 8;
+  const std::size_t guided = params.guided_bandwidths.size(), candidates = raw + guided + 1;
+  constexpr std::size_t brightness = 3, guide_variance = 3, noisy_mask_bytes = 1;
+  const std::size_t candidate = candidate_channels(colors);
+  const std::size_t inputs = half_pair_channels(colors, static_cast<std::size_t>(feature_channels)) + candidate;
+  // Per bandwidth: the fits of both halves and, while the second is made, its sums.
+  const std::size_t fits = 2 * blended_fit_channels(colors) + blend_sums_channels(colors);
+  const std::size_t fitting_raw = raw * fits;
+  const std::size_t fitting_guided = raw * candidate + brightness + guide_variance + guided * fits;
+  const std::size_t selecting = candidates * candidate + brightness + select_channels(candidates, colors);
+  const std::size_t work = std::max({fitting_raw, fitting_guided, selecting});
+  return sizeof(Real) * (inputs + work) + noisy_mask_bytes + blend_mask_bytes;
 }
 
 Candidate run_stage(const HalfPair& pair, const Candidate* before, const Params& params, std::size_t max_bytes,
@@ -189,17 +176,12 @@ Candidate run_stage(const HalfPair& pair, const Candidate* before, const Params&
       make_tiles({0, 0, pair.width(), pair.height()}, halo, 2 * block_size,
                  max_bytes / stage_bytes_per_pixel(pair.color[0].channels(), pair.features[0].channels(), params));
   if (tiles.size() == 1) return stage_of_tile(pair, before, params, counters, progress);
-  const int channels = pair.color[0].channels();
-  const auto image = [&](int n) { return Image(pair.width(), pair.height(), n); };
-  Candidate whole{{image(channels), image(channels)}, image(3), image(3), image(1)};
+  Candidate whole = make_candidate(pair.width(), pair.height(), pair.color[0].channels());
   for (const Tile& tile : tiles) {
     const HalfPair part = crop(pair, tile.padded);
-    if (before) {
-      const Candidate before_part = crop_candidate(*before, tile.padded);
-      paste_candidate(stage_of_tile(part, &before_part, params, counters, progress), tile, whole);
-    } else {
-      paste_candidate(stage_of_tile(part, nullptr, params, counters, progress), tile, whole);
-    }
+    const Candidate before_part = before ? crop(*before, tile.padded) : Candidate{};
+    const Candidate result = stage_of_tile(part, before ? &before_part : nullptr, params, counters, progress);
+    paste(result, inside(tile), whole, tile.core.x0, tile.core.y0);
   }
   return whole;
 }

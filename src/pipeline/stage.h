@@ -18,13 +18,14 @@ Candidate run_stage(const HalfPair& pair, const Candidate* before, const Params&
 /// Share of the pixels that run_stage fits no window for: they carry no noise, or too little to matter; 0..1.
 double skipped_share(const HalfPair& pair, const Params& params);
 
-/// Pixels around a tile that run_stage looks at.
+/// Pixels around a tile that the result inside it depends on.
 int stage_halo(const Params& params);
 
 /// Pixels of the smallest tile with its margins.
 std::size_t smallest_tile_pixels(const Params& params);
 
-/// Bytes that run_stage works with per pixel of a tile; color_channels: of the beauty and the AOVs.
+/// Bytes that run_stage holds per pixel of a tile, its parts of the pair and of the stage before included.
+/// color_channels: as in HalfPair::color.
 std::size_t stage_bytes_per_pixel(int color_channels, int feature_channels, const Params& params);
 
 /// The fits that the parameters ask for, with these bandwidths.

@@ -2,8 +2,6 @@
 
 #include <cassert>
 
-#include "core/half_pair.h"
-
 namespace polyrecon {
 
 /// The columns of the local model (2), in nested groups, so that every prefix of whole groups is a model of its own:
@@ -12,7 +10,7 @@ namespace polyrecon {
 class BasisLayout {
  public:
   static constexpr int max_order = 4;
-  static constexpr int max_features = max_feature_channels;
+  static constexpr int max_features = 16;
   static constexpr int max_columns = 1 + max_features + 14;  // 2 + 3 + 4 + 5 Taylor terms of orders 1 to 4
   static constexpr int max_models = max_order + 2;
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/relmse.h"
 #include "core/resample.h"
 #include "io/pictures/color.h"
 #include "io/pictures/false_color.h"
@@ -13,13 +14,12 @@ namespace {
 
 constexpr int widest = 640, parts = 4;
 
-/// Mean over the channels of (x - r)^2 / (r^2 + 0.01).
+/// Mean over the channels of relative_squared_error.
 Image relative_error(const Image& image, const Image& reference) {
   Image out(image.width(), image.height(), 1);
   for (int c = 0; c < 3; ++c)
     for (std::size_t i = 0; i < image.pixels(); ++i) {
-      const Real d = image.plane(c)[i] - reference.plane(c)[i], r = reference.plane(c)[i];
-      out.plane(0)[i] += d * d / (r * r + Real(0.01)) * Real(1.0 / 3);
+      out.plane(0)[i] += relative_squared_error(image.plane(c)[i], reference.plane(c)[i]) * Real(1.0 / 3);
     }
   return out;
 }

@@ -9,6 +9,7 @@
 #include "blend/blend_windows.h"
 #include "core/parallel.h"
 #include "core/rect.h"
+#include "core/relmse.h"
 #include "polyrecon/reconstruct.h"
 #include "sweep/pareto.h"
 
@@ -21,8 +22,7 @@ constexpr std::size_t least_tiles = 4;   // of a small frame; fewer say nothing 
 constexpr int tiles_per_thread = 8;      // more say little more
 // "draft, stages 2": the error that a single stage expects of itself is three times too high.
 constexpr std::size_t pilot_step = 2;
-constexpr double relative_floor = 0.01;  // of relMSE, radiance squared
-constexpr int phases = 4;                // of the blocks that are worked at once (blend/blend_windows.h)
+constexpr int phases = 4;  // of the blocks that are worked at once (blend/blend_windows.h)
 
 Pass crop(const Pass& pass, const Rect& r) {
   const auto part = [&](const Image& image) { return image.empty() ? Image() : polyrecon::crop(image, r); };
@@ -56,7 +56,7 @@ double noise_of(const Frame& frame, const Rect& r) {
                              : value - static_cast<double>(beauty.mean.at(std::max(x - 1, r.x0), y, 1));
         noise = d * d;
       }
-      const double relative = noise / (value * value + relative_floor);
+      const double relative = noise / relmse_denominator(value);
       if (std::isfinite(relative)) sum += std::min(relative, 1.0);
     }
   return sum / static_cast<double>(r.area());
@@ -95,10 +95,10 @@ Pilot run_pilot(const Frame& frame, Progress& progress) {
   const auto start = std::chrono::steady_clock::now();
   progress.begin("pilot", tiles.size());
   parallel_for(tiles.size(), progress, [&](std::size_t i) {
-    Progress silent;
     Frame part = crop(frame, tiles[i]);
     area[i] = static_cast<double>(tiles[i].area());
-    error[i] = area[i] * reconstruct(part, ladder()[pilot_step].params, silent).report.estimated_relative_mse;
+    error[i] =
+        area[i] * reconstruct(part, ladder()[pilot_step].params, silent_progress()).report.estimated_relative_mse;
   });
   progress.end();
   Pilot pilot;

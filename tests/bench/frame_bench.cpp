@@ -29,10 +29,9 @@ void fit_and_blend_frame(benchmark::State& state) {
                          &pair.variance, nullptr,        pair.epsilon};
   const std::vector<unsigned char> active(pair.variance.pixels(), 1);
   FitCounters counters;
-  Progress silent;
   for ([[maybe_unused]] const auto pass : state)
     benchmark::DoNotOptimize(
-        fit_and_blend(source, active, fit_params(params, params.first_bandwidths), counters, silent));
+        fit_and_blend(source, active, fit_params(params, params.first_bandwidths), counters, silent_progress()));
   state.counters["windows/s"] = benchmark::Counter(static_cast<double>(counters.windows), benchmark::Counter::kIsRate);
   count_pixels(state);
 }
@@ -46,9 +45,8 @@ BENCHMARK(fit_and_blend_frame)
 void prefilter_frame(benchmark::State& state) {
   const PrefilterParams params = params_for(static_cast<Quality>(state.range(0))).prefilter;
   const HalfPair pair = synthetic_pair(side, side);
-  Progress silent;
   for ([[maybe_unused]] const auto pass : state)
-    benchmark::DoNotOptimize(prefilter(pair.color, pair.variance, params, silent));
+    benchmark::DoNotOptimize(prefilter(pair.color, pair.variance, params, silent_progress()));
   count_pixels(state);
 }
 BENCHMARK(prefilter_frame)

@@ -41,8 +41,7 @@ void check(const char* render, const char* reference_path) {
   const Frame reference = polyrecon::read_frame(reference_path).frame;
   const Image known = frame.beauty.variance;
   frame.beauty.variance = frame.beauty.half_a = frame.beauty.half_b = Image();
-  polyrecon::Progress silent;
-  const Image estimate = polyrecon::noise_variance(frame, silent).variance;
+  const Image estimate = polyrecon::noise_variance(frame, polyrecon::silent_progress()).variance;
   const std::vector<double> truth = true_squares(frame, reference);
   std::vector<std::size_t> order(truth.size());
   std::iota(order.begin(), order.end(), std::size_t{0});

@@ -53,8 +53,7 @@ std::vector<unsigned char> everywhere(const Image& image) { return std::vector<u
 
 std::vector<BlendedFit> fit(const Pictures& p, const FitParams& params, bool first_stage = true) {
   FitCounters counters;
-  Progress silent;
-  return fit_and_blend(p.source(first_stage), everywhere(p.response), params, counters, silent);
+  return fit_and_blend(p.source(first_stage), everywhere(p.response), params, counters, silent_progress());
 }
 
 FitParams small_windows() {
@@ -292,9 +291,8 @@ TEST(FitAndBlend, PixelsThatDoNotMatterKeepTheResponse) {
   std::vector<unsigned char> active(p.response.pixels(), 0);
   active[p.response.index(5, 10)] = 1;
   FitCounters counters;
-  Progress silent;
   const FitParams params = small_windows();
-  const auto fits = fit_and_blend(p.source(true), active, params, counters, silent);
+  const auto fits = fit_and_blend(p.source(true), active, params, counters, silent_progress());
   EXPECT_NE(fits[0].value.at(5, 10, 0), p.response.at(5, 10, 0));
   EXPECT_EQ(fits[0].value.at(5, 10, 0), fit(p, params)[0].value.at(5, 10, 0));
   // No window further than 3 pixels from the active one is fitted; none reaches 3 pixels further than that.
@@ -305,9 +303,8 @@ TEST(FitAndBlend, PixelsThatDoNotMatterKeepTheResponse) {
 TEST(FitAndBlend, CountsEveryWindowOnce) {
   const Pictures p = make_pictures(20, 12, 6);
   FitCounters counters;
-  Progress silent;
   FitParams params = small_windows();
-  fit_and_blend(p.source(true), everywhere(p.response), params, counters, silent);
+  fit_and_blend(p.source(true), everywhere(p.response), params, counters, silent_progress());
   EXPECT_EQ(counters.windows.load(), 2u * 10u * 6u);
   std::size_t per_model = 0;
   for (const auto& count : counters.per_model) per_model += count;

@@ -7,6 +7,7 @@
 
 #include "blend/select.h"
 #include "core/gaussian.h"
+#include "core/halves.h"
 #include "support/images.h"
 #include "support/scene.h"
 
@@ -144,7 +145,7 @@ TEST(NoiseInPrior, IsOneForTheInputAndNothingForTheTruth) {
 /// The pair has lost its outliers, a prior that is the input has them still.
 TEST(NoiseInPrior, IsNotMovedByAnOutlier) {
   const Case c;
-  Image noisy = mean_of_halves(c.pair.color);
+  Image noisy = mean_of_halves(c.pair.color, 3);
   noisy.at(20, 30, 1) = 1e4;
   EXPECT_NEAR(noise_in_prior(noisy, c.pair, c.own), 1, 0.02);
 }

@@ -36,8 +36,7 @@ TEST(ParallelFor, StopsWhenAskedTo) {
 }
 
 TEST(ParallelFor, PassesABodysExceptionOn) {
-  Progress silent;
-  EXPECT_THROW(parallel_for(10, silent,
+  EXPECT_THROW(parallel_for(10, silent_progress(),
                             [](std::size_t i) {
                               if (i == 7) throw Error(ExitCode::BadInput, "seven");
                             }),

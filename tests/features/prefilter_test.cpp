@@ -13,8 +13,7 @@ namespace {
 constexpr int width = 48, height = 40;
 
 std::array<Image, 2> filtered(const std::array<Image, 2>& halves, const Image& variance) {
-  Progress silent;
-  return prefilter(halves, variance, PrefilterParams{}, silent);
+  return prefilter(halves, variance, PrefilterParams{}, silent_progress());
 }
 
 TEST(Prefilter, AConstantStays) {

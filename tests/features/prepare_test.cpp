@@ -21,9 +21,8 @@ constexpr int width = 32, height = 24;
 constexpr Real nan = std::numeric_limits<Real>::quiet_NaN();
 
 Prepared prepared(const Frame& frame, bool with_alpha = true) {
-  Progress silent;
   Frame taken = frame;
-  return prepare(taken, look_at(frame), frame.beauty.variance, PrefilterParams{}, with_alpha, silent);
+  return prepare(taken, look_at(frame), frame.beauty.variance, PrefilterParams{}, with_alpha, silent_progress());
 }
 
 /// The reason for which the only feature of the scene was dropped; empty if it was not.

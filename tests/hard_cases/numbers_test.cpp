@@ -410,18 +410,18 @@ TEST(Case15, HasTheSameBitsUnderTheLeastMemory) {
 /// A stage in tiles of any size; a strip of 5 rows keeps it quick and is wider than three tiles with their margins.
 TEST(Case23, HasTheSameBitsForAnyMemory) {
   const Scene scene = make_scene(900, 6, 0.3, 26);
-  Progress silent;
   for (const auto& [radius, stride] : {std::pair{4, 4}, std::pair{3, 3}, std::pair{9, 8}}) {
     Params params = quick();
     params.radius = radius;
     params.stride = stride;
     const Preparation look = look_at(scene.frame);
     Frame frame = scene.frame;
-    const HalfPair pair = prepare(frame, look, scene.frame.beauty.variance, PrefilterParams{}, false, silent).pair;
+    const HalfPair pair =
+        prepare(frame, look, scene.frame.beauty.variance, PrefilterParams{}, false, silent_progress()).pair;
     const auto work = [&](std::size_t bytes) {
       FitCounters counters;
-      const Candidate first = run_stage(pair, nullptr, params, bytes, counters, silent);
-      return run_stage(pair, &first, params, bytes, counters, silent);
+      const Candidate first = run_stage(pair, nullptr, params, bytes, counters, silent_progress());
+      return run_stage(pair, &first, params, bytes, counters, silent_progress());
     };
     const Candidate whole = work(std::size_t{1} << 40);
     for (const std::size_t pixels : {std::size_t{1}, std::size_t{2000}, std::size_t{400 * 400}}) {
@@ -558,8 +558,7 @@ TEST(Case26, EnergyOfAnySpikesComesBack) {
         }
     }
     const Image before = test::mean_of(pair.color[0], pair.color[1]);
-    Progress silent;
-    const auto outliers = remove_outliers(pair, true, OutlierParams{}, silent);
+    const auto outliers = remove_outliers(pair, true, OutlierParams{}, silent_progress());
     Image after = test::mean_of(pair.color[0], pair.color[1]);
     restore_energy(outliers, pair.variance, 0.02, after);
     EXPECT_TRUE(test::all_finite(after));

@@ -122,10 +122,9 @@ struct Answer {
 
 Answer answer(const Frame& frame, const Params& params, int threads) {
   return test::with_threads(threads, [&] {
-    Progress silent;
     try {
       Frame taken = frame;
-      return Answer{0, reconstruct(taken, params, silent)};
+      return Answer{0, reconstruct(taken, params, silent_progress())};
     } catch (const Error& error) {
       return Answer{static_cast<int>(error.code()), {}};
     }

@@ -43,8 +43,7 @@ SampleMapParams budget_of(double budget, int radius = 3) {
 }
 
 SampleMap run(const ErrorMap& error, const SampleMapParams& params, const Image& counts = {}, const Image& cost = {}) {
-  Progress silent;
-  return make_sample_map(error, counts, cost, params, silent);
+  return make_sample_map(error, counts, cost, params, silent_progress());
 }
 
 TEST(SampleMap, TwoPixelsAreFilledAsWorkedOutByHand) {

@@ -10,8 +10,6 @@
 namespace polyrecon {
 namespace {
 
-Progress silent;
-
 double mean(const Image& map) {
   double sum = 0;
   for (std::size_t i = 0; i < map.pixels(); ++i) sum += map.plane(0)[i];
@@ -44,7 +42,7 @@ Image image() {
 /// The numbers are those of the authors' own program: flip_evaluator 1.7 (Python),
 /// evaluate(reference, image, "HDR", applyMagma=False). It works in float.
 TEST(Flip, AgreesWithTheAuthorsProgram) {
-  const Image map = flip(image(), reference(), silent);
+  const Image map = flip(image(), reference(), silent_progress());
   ASSERT_EQ(map.channels(), 1);
   EXPECT_NEAR(mean(map), 0.106380, 1e-5);
   EXPECT_NEAR(map.at(0, 0, 0), 0.245276, 1e-4);
@@ -55,14 +53,14 @@ TEST(Flip, AgreesWithTheAuthorsProgram) {
 }
 
 TEST(Flip, IsZeroForEqualImagesAndOneAtMost) {
-  EXPECT_EQ(mean(flip(reference(), reference(), silent)), 0);
+  EXPECT_EQ(mean(flip(reference(), reference(), silent_progress())), 0);
   const Image black(16, 16, 3);
   Image green(16, 16, 3), blue(16, 16, 3);
   for (std::size_t i = 0; i < green.pixels(); ++i) green.plane(1)[i] = blue.plane(2)[i] = 1e6f;
-  const double most = mean(flip(green, blue, silent));  // the two colours farthest apart on a display
+  const double most = mean(flip(green, blue, silent_progress()));  // the two colours farthest apart on a display
   EXPECT_GT(most, 0.9);
   EXPECT_LE(most, 1);
-  EXPECT_EQ(mean(flip(black, black, silent)), 0);
+  EXPECT_EQ(mean(flip(black, black, silent_progress())), 0);
 }
 
 TEST(Flip, BadSamplesCountAsBlack) {
@@ -72,13 +70,13 @@ TEST(Flip, BadSamplesCountAsBlack) {
     bad.at(3, 4, c) = c == 0 ? nan : c == 1 ? infinite : Real{-1};
     black.at(3, 4, c) = 0;
   }
-  const Image a = flip(bad, reference(), silent), b = flip(black, reference(), silent);
+  const Image a = flip(bad, reference(), silent_progress()), b = flip(black, reference(), silent_progress());
   for (std::size_t i = 0; i < a.pixels(); ++i) ASSERT_EQ(a.plane(0)[i], b.plane(0)[i]);
 }
 
 TEST(Flip, RefusesOtherShapes) {
-  EXPECT_THROW(flip(Image(4, 4, 3), Image(5, 4, 3), silent), Error);
-  EXPECT_THROW(flip(Image(4, 4, 1), Image(4, 4, 1), silent), Error);
+  EXPECT_THROW(flip(Image(4, 4, 3), Image(5, 4, 3), silent_progress()), Error);
+  EXPECT_THROW(flip(Image(4, 4, 1), Image(4, 4, 1), silent_progress()), Error);
 }
 
 }  // namespace

@@ -25,10 +25,7 @@ double mean_ratio(const Image& estimate, const Image& truth) {
   return sum / (3.0 * static_cast<double>(truth.pixels()));
 }
 
-NoiseVariance variance_of(const Frame& frame) {
-  Progress silent;
-  return noise_variance(frame, silent);
-}
+NoiseVariance variance_of(const Frame& frame) { return noise_variance(frame, silent_progress()); }
 
 TEST(NoiseVariance, TakesWhatTheFileSays) {
   const Frame frame = test::make_scene(20, 20, 0.2, 1).frame;
@@ -181,8 +178,7 @@ TEST(NoiseVariance, OfBadAndTinyImagesIsFiniteAndNotNegative) {
 
 /// Of a frame whose features come without variance and halves, the variance that each is given; empty for none.
 std::vector<Image> feature_variances(Frame frame) {
-  Progress silent;
-  estimate_feature_variance(frame, silent);
+  estimate_feature_variance(frame, silent_progress());
   std::vector<Image> out;
   for (Feature& feature : frame.features) out.push_back(std::move(feature.pass.variance));
   return out;

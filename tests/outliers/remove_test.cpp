@@ -27,8 +27,7 @@ void put_spike(HalfPair& pair, std::size_t half, int x, int y, double value = 50
 }
 
 std::vector<Outlier> removed(HalfPair& pair, bool independent = true) {
-  Progress silent;
-  return remove_outliers(pair, independent, OutlierParams{}, silent);
+  return remove_outliers(pair, independent, OutlierParams{}, silent_progress());
 }
 
 /// Everything that was taken stands in the list: sum before = sum after + 2 x energy (energy is of the mean of the

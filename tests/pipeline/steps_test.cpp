@@ -38,10 +38,9 @@ struct Timed {
 Timed run(const test::Scene& scene, bool decide) {
   Params params = params_for(Quality::Standard);
   params.steps.decide = decide;
-  Progress silent;
   Frame frame = scene.frame;                // reconstruct takes its passes
   const std::clock_t start = std::clock();  // of the whole process: what else the machine does hardly shows
-  const Result result = reconstruct(frame, params, silent);
+  const Result result = reconstruct(frame, params, silent_progress());
   return {static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC, test::relative_mse(result.beauty, scene.truth),
           result.report};
 }
@@ -94,9 +93,8 @@ TEST(Steps, WhatIsNotAllowedDoesNotRun) {
   const test::Scene scene = test::make_scene(48, 32, 0.1, 3);
   Params params = params_for(Quality::Draft);
   params.steps.outliers = params.steps.normal = params.steps.prefilter = false;
-  Progress silent;
   Frame frame = scene.frame;
-  const Report report = reconstruct(frame, params, silent).report;
+  const Report report = reconstruct(frame, params, silent_progress()).report;
   for (const char* step : {"firefly removal", "feature normal", "feature albedo prefilter"}) {
     EXPECT_FALSE(decision(report, step).run) << step;
     EXPECT_EQ(decision(report, step).reason, "not asked for") << step;

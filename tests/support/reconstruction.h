@@ -18,9 +18,8 @@ inline Params quick() {
 }
 
 inline Result run(const Frame& frame, const Params& params = quick()) {
-  Progress silent;
   Frame taken = frame;
-  return reconstruct(taken, params, silent);
+  return reconstruct(taken, params, silent_progress());
 }
 
 inline bool finite(const Result& result) {

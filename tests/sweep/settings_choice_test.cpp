@@ -84,21 +84,20 @@ TEST(Plan, TheMeasuredStepsAreALadder) {
 
 TEST(Pilot, SeesAPartOfTheFrameAndTheWholeOfItsError) {
   Frame frame = test::make_scene(384, 256, 0.1, 3).frame;  // 24 tiles
-  Progress silent;
-  const Pilot pilot = run_pilot(frame, silent);
+  const Pilot pilot = run_pilot(frame, silent_progress());
   EXPECT_GT(pilot.share, 0.1);
   EXPECT_LT(pilot.share, 0.9);
   EXPECT_GT(pilot.seconds, 0);
   EXPECT_GT(pilot.spent, 0);
-  const double whole = reconstruct(frame, ladder()[2].params, silent).report.estimated_relative_mse;
+  const double whole = reconstruct(frame, ladder()[2].params, silent_progress()).report.estimated_relative_mse;
   EXPECT_GT(pilot.relative_mse, whole / 2);
   EXPECT_LT(pilot.relative_mse, whole * 2);
 }
 
 TEST(Pilot, WorksOnFramesSmallerThanATile) {
-  Progress silent;
-  EXPECT_DOUBLE_EQ(run_pilot(test::make_scene(20, 9, 0.1, 3).frame, silent).share, 1);
-  EXPECT_GT(run_pilot(test::make_scene(200, 9, 0.1, 3).frame, silent).relative_mse, 0);  // nothing but low tiles
+  EXPECT_DOUBLE_EQ(run_pilot(test::make_scene(20, 9, 0.1, 3).frame, silent_progress()).share, 1);
+  EXPECT_GT(run_pilot(test::make_scene(200, 9, 0.1, 3).frame, silent_progress()).relative_mse,
+            0);  // nothing but low tiles
 }
 
 }  // namespace

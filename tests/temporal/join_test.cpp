@@ -52,8 +52,7 @@ struct Sequence {
   JoinCounts join(int radius = 2) {
     TemporalParams params;
     params.radius = radius;
-    Progress silent;
-    return join_neighbours(motion, neighbours, params, pair, silent);
+    return join_neighbours(motion, neighbours, params, pair, silent_progress());
   }
 
   /// Mean squared error of both halves, where take(x, y).
@@ -259,10 +258,9 @@ TEST(Follow, HiddenPointsAreNotSeen) {
 TEST(PrepareNeighbour, SplitsEveryFrameWithNumbersOfItsOwn) {
   Frame frame = test::make_scene(40, 32, 0.2, 3).frame;
   frame.beauty.variance = frame.beauty.half_a = frame.beauty.half_b = Image();
-  Progress silent;
   const Params params;
   const auto difference = [&](int number) {
-    const Neighbour n = *prepare_neighbour(frame, number, params, silent);
+    const Neighbour n = *prepare_neighbour(frame, number, params, silent_progress());
     std::vector<double> out;
     for (std::size_t i = 0; i < n.pair.variance.pixels(); ++i)
       out.push_back(static_cast<double>(n.pair.color[0].plane(0)[i]) -
@@ -285,11 +283,11 @@ TEST(Reconstruct, NeighboursInTimeLowerTheError) {
   Params params;
   params.temporal.radius = 1;
   Progress silent;
-  const Neighbour before = *prepare_neighbour(test::make_scene(80, 64, 0.5, 2).frame, 1, params, silent);
-  const Neighbour after = *prepare_neighbour(test::make_scene(80, 64, 0.5, 3).frame, 3, params, silent);
+  const Neighbour before = *prepare_neighbour(test::make_scene(80, 64, 0.5, 2).frame, 1, params, silent_progress());
+  const Neighbour after = *prepare_neighbour(test::make_scene(80, 64, 0.5, 3).frame, 3, params, silent_progress());
   Frame once = scene.frame, again = scene.frame;
-  const Result alone = reconstruct(once, params, silent);
-  const Result joined = reconstruct(again, {{-1, &before}, {1, &after}}, params, silent);
+  const Result alone = reconstruct(once, params, silent_progress());
+  const Result joined = reconstruct(again, {{-1, &before}, {1, &after}}, params, silent_progress());
   EXPECT_EQ(joined.report.neighbours, 2u);
   EXPECT_LT(test::relative_mse(joined.beauty, scene.truth), 0.8 * test::relative_mse(alone.beauty, scene.truth));
   EXPECT_LT(joined.report.estimated_relative_mse, alone.report.estimated_relative_mse);

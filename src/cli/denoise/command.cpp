@@ -62,7 +62,7 @@ void run(DenoiseOptions o) {
   o.read.accept = [o](const std::string& path, FrameShape shape) {
     const Params params = params_of(o);
     if (is_sequence(o))
-      shape.beside = channels_ahead(shape, params) + neighbour_channels(shape, 2 * params.temporal.radius);
+      shape.beside = channels_ahead(shape, params) + neighbours_channels(shape, 2 * params.temporal.radius);
     require_memory(path, shape, params);
   };
   const auto progress = make_progress(o.quiet ? ProgressStyle::None : o.progress);

@@ -78,10 +78,10 @@ std::vector<Decision> steps_of(const InspectOptions& o, const Inspection& found)
   const auto& chosen = found.source.chosen;
   if (std::none_of(chosen.begin(), chosen.end(), [](const RoleChoice& c) { return c.role == Role::Beauty; })) return {};
   Frame frame = read_frame(o.input, o.read).frame;
-  Progress silent;
   require_usable(frame);
-  const double seconds = standard_seconds(run_pilot(frame, silent), measured_steps());
-  estimate_feature_variance(frame, silent);  // after the pilot, whose tiles have theirs estimated by themselves
+  const double seconds = standard_seconds(run_pilot(frame, silent_progress()), measured_steps());
+  estimate_feature_variance(frame,
+                            silent_progress());  // after the pilot, whose tiles have theirs estimated by themselves
   std::vector<Decision> decisions = look_at(frame).decisions;
   estimate_savings(frame, params_for(Quality::Standard).prefilter, 0, seconds, decisions);
   return decisions;

@@ -12,9 +12,8 @@ int main(int argc, char** argv) {
   if (argc != 3) return 2;
   try {
     polyrecon::ReadResult in = polyrecon::read_frame(argv[1]);
-    polyrecon::Progress silent;
-    const polyrecon::Result result =
-        polyrecon::reconstruct(in.frame, polyrecon::params_for(polyrecon::Quality::Standard), silent);
+    const polyrecon::Result result = polyrecon::reconstruct(
+        in.frame, polyrecon::params_for(polyrecon::Quality::Standard), polyrecon::silent_progress());
     polyrecon::write_result(in.source, {{in.frame.beauty.name, result.beauty, false}}, argv[2], {});
     return 0;
   } catch (const std::exception& e) {

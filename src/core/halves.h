@@ -1,0 +1,20 @@
+#pragma once
+
+#include <array>
+
+#include "core/image.h"
+
+namespace polyrecon {
+
+/// Variance of the mean of two independent halves A and B of a pixel's samples, as their difference shows it: since
+/// E[(A - B)^2] = Var(A) + Var(B) and the mean is (A + B) / 2, (A - B)^2 / 4 is an unbiased estimate with one degree of
+/// freedom. T is double or Real.
+template <typename T>
+T variance_of_mean(T a, T b) {
+  return (a - b) * (a - b) / 4;
+}
+
+/// (A + B) / 2 of the first `channels` channels.
+Image mean_of_halves(const std::array<Image, 2>& halves, int channels);
+
+}  // namespace polyrecon
