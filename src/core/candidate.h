@@ -3,8 +3,8 @@
 #include <array>
 #include <cstddef>
 
-#include "core/image.h"
 #include "core/rect.h"
+#include "polyrecon/image.h"
 
 namespace polyrecon {
 

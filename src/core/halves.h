@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "core/image.h"
+#include "polyrecon/image.h"
 
 namespace polyrecon {
 

@@ -282,7 +282,6 @@ TEST(Reconstruct, NeighboursInTimeLowerTheError) {
   const test::Scene scene = test::make_scene(80, 64, 0.5, 1);
   Params params;
   params.temporal.radius = 1;
-  Progress silent;
   const Neighbour before = *prepare_neighbour(test::make_scene(80, 64, 0.5, 2).frame, 1, params, silent_progress());
   const Neighbour after = *prepare_neighbour(test::make_scene(80, 64, 0.5, 3).frame, 3, params, silent_progress());
   Frame once = scene.frame, again = scene.frame;
