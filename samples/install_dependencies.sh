@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Installs the Debian packages that the build (and, with --tests, the tests) needs and that are not there yet.
+# Installs the missing Debian packages for the build and, with --tests, for the tests.
 set -euo pipefail
-# libopenimageio-dev's CMake files ask for the programs of openimageio-tools; the font is for captions of previews.
+# libopenimageio-dev's CMake files require the programs of openimageio-tools; previews draw captions with the font.
 packages=(g++ cmake ninja-build pkg-config libopenimageio-dev openimageio-tools libopenexr-dev libopencolorio-dev
   libcli11-dev libtbb-dev libeigen3-dev nlohmann-json3-dev libfmt-dev fonts-dejavu-core)
 [ "${1-}" != --tests ] || packages+=(libgtest-dev libgmock-dev libbenchmark-dev clang-format clang-tidy

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Builds polyrecon (installing what is missing) and shows it on the shipped samples: out/SAMPLE/ then holds the clean
-# picture, the error map, the sample map, the report, and comparison.png: input | result | reference | error.
-# out/samples.png has the three comparisons in one picture.
+# Installs missing packages, builds polyrecon and denoises the shipped samples. out/SAMPLE/ then holds the clean picture,
+# the error map, the sample map, the report, and comparison.png: input | result | reference | error. out/samples.png shows
+# the three comparisons in one picture.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -16,13 +16,13 @@ for sample in study glass lighthouse; do
   noisy=samples/${sample}_16.exr reference=samples/${sample}_ref.exr out=out/$sample
   mkdir -p "$out"
   echo
-  echo "== $sample: samples/README.md says what it shows"
+  echo "== $sample (described in samples/README.md)"
   "$polyrecon" denoise -i "$noisy" -o "$out/clean.exr" --error-map "$out/error.exr" \
     --sample-map "$out/samples.exr" --budget 16 --report "$out/report.json"
-  echo "before and after, against the reference:"
+  echo "input and result, compared with the reference:"
   "$polyrecon" compare "$noisy" "$out/clean.exr" "$reference"
   "$polyrecon" preview "$noisy" "$out/clean.exr" "$reference" "$out/error.exr" -o "$out/comparison.png"
 done
 oiiotool out/{study,glass,lighthouse}/comparison.png --mosaic 1x3 --ch R,G,B -o out/samples.png
 echo
-echo "The picture to look at: out/samples.png (docs/results/samples.jpg is this one)"
+echo "See out/samples.png (the same as docs/results/samples.jpg)"

@@ -18,7 +18,7 @@ def add(merged, layer, session):
     priors = {}
     for half in "AB":
         exr.write(source, _half(channels, layer, half), {f"cycles.{layer}.samples": "1"})
-        session.ask("denoise", source=str(source), target=str(target))
+        session.request("denoise", source=str(source), target=str(target))
         denoised = exr.read(target)
         priors.update({f"{layer}.Prior {half}.{c}": denoised[f"{layer}.Combined.{c}"] for c in "RGB"})
         source.unlink()

@@ -61,7 +61,7 @@ class BlenderRenderer(Renderer):
         return self.opened["height"], self.opened["width"]
 
     def _open(self):
-        self.opened = self.session.ask(
+        self.opened = self.session.request(
             "open",
             path=str(self.scene),
             frame=self.frame,

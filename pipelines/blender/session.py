@@ -59,7 +59,7 @@ class BlenderSession:
     def running(self):
         return self.child is not None
 
-    def ask(self, job, **arguments):
+    def request(self, job, **arguments):
         """Sends one job (a method of inside/session.py) and waits for its answer."""
         child, answers = self._process()
         try:
@@ -87,7 +87,7 @@ class BlenderSession:
         """Renders a pass; returns (path of the raw EXR, seconds inside Blender)."""
         raw = self.folder / "raw.exr"
         raw.unlink(missing_ok=True)
-        answer = self.ask("render", target=str(raw), **arguments)
+        answer = self.request("render", target=str(raw), **arguments)
         if not raw.exists():
             raise DriverError(ExitCode.RENDERER, "Blender rendered but wrote no file")
         return raw, answer["seconds"]

@@ -193,7 +193,7 @@ def submit(options):
 def is_over(job):
     """Whether all tasks of the job have ended; None if Slurm does not answer, as a busy controller sometimes does not.
 
-    Slurm forgets a job some minutes after its end: the job is over then, too."""
+    Slurm removes a job some minutes after its end; a job that it does not know is over."""
     code, output, errors = process.run(["squeue", "-h", "-j", job, "-o", "%T"], timeout=120)
     if code and "Invalid job id" not in errors:
         return None

@@ -1,4 +1,4 @@
-"""Crops of a frame: POV-Ray renders nothing smaller, and parses the scene anew for each."""
+"""Crops of a frame, the smallest things that POV-Ray renders. It parses the scene again for each of them."""
 
 import dataclasses
 

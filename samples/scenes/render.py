@@ -29,11 +29,13 @@ def arguments():
     parser.add_argument("--frames", help="FIRST-LAST")
     parser.add_argument("--seeds", action="store_true")
     parser.add_argument(
-        "--passes", default="", help="of: denoising, samples, light-groups, shadow, ao, cryptomatte, depth, vector"
+        "--passes",
+        default="",
+        help="comma-separated: denoising, samples, light-groups, shadow, ao, cryptomatte, depth, vector",
     )
     parser.add_argument("--depth", default="32", choices=("16", "32"), help="bits of a stored value")
     parser.add_argument("--codec", default="ZIP")
-    parser.add_argument("--denoise", action="store_true", help="also store Blender's own denoised picture (Blender 5)")
+    parser.add_argument("--denoise", action="store_true", help="also store the picture denoised by Blender (Blender 5)")
     parser.add_argument("--single-part", action="store_true", help="one part for all passes (Blender 5)")
     parser.add_argument("--middle", action="store_true", help="only the middle half of the width and of the height")
     parser.add_argument("--save-blend", help="write the scene here as a .blend file too")

@@ -1,4 +1,4 @@
-"""A small study: daylight falls through a window the camera does not see, a desk lamp adds its own warm light; most of
+"""A small study: daylight falls through a window the camera does not see, a desk lamp adds warm light; most of
 the picture is lit indirectly and mirrored in a polished floor. The two lights are light groups."""
 
 import random
@@ -15,7 +15,7 @@ def build():
     _carpet_and_chair()
     sun = kit.lamp("SUN", 16.0, (-6, 2.2, 5), (1.0, 0.86, 0.68), target=(0.2, 2.5, 0.4), angle=0.02)
     kit.sky((0.62, 0.72, 0.85), (0.30, 0.48, 0.85), 9.0)
-    for y in (1.1, 2.6):  # tells Cycles where the sky comes in
+    for y in (1.1, 2.6):  # shows Cycles where the sky is visible
         portal = kit.lamp("AREA", 0, (-2.1, y, 1.55), target=(0, y, 1.55), shape="RECTANGLE", size=1.5, size_y=1.0)
         portal.data.cycles.is_portal = True
     kit.light_groups({"daylight": [sun, scene.world], "lamp": [bulb]})

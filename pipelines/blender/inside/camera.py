@@ -99,12 +99,12 @@ def filter_overhang(scene):
 
 
 class MaskCamera:
-    """Switches the scene's camera between its own type and the masked one, in memory only."""
+    """Switches the scene's camera between its type and the masked one, in memory only."""
 
     def __init__(self, scene):
         _provide_oslquery()
         self.camera = scene.camera.data
-        self.own = {name: getattr(self.camera, name) for name in ("type", "shift_x", "shift_y")}
+        self.scene_settings = {name: getattr(self.camera, name) for name in ("type", "shift_x", "shift_y")}
         text = bpy.data.texts.get(TEXT_NAME) or bpy.data.texts.new(TEXT_NAME)  # An earlier frame may have made it.
         text.clear()
         text.write(SHADER % self._values(scene))
@@ -136,17 +136,17 @@ class MaskCamera:
         errors = []
         self.camera.type = "CUSTOM"
         compiled = osl.update_custom_camera_shader(self.camera, lambda kind, text: errors.append(text))
-        self.camera.type = self.own["type"]
+        self.camera.type = self.scene_settings["type"]
         if not compiled:
             raise RuntimeError(f"the camera shader does not compile: {errors}")
 
     def use(self, mask):
-        """Selects a mask, or with None the scene's own camera.
+        """Selects a mask, or with None the scene's camera.
 
         mask: {path, left, bottom, width, height}: an image whose first channel is over 0.5 where samples are taken, and
         the part of the frame (0..1, from the bottom left) that it covers."""
         # The shader's rays include the shift; a shift of the camera would be added to them.
-        for name, value in ({"type": "CUSTOM", "shift_x": 0, "shift_y": 0} if mask else self.own).items():
+        for name, value in ({"type": "CUSTOM", "shift_x": 0, "shift_y": 0} if mask else self.scene_settings).items():
             setattr(self.camera, name, value)
         if mask:
             for name, value in mask.items():

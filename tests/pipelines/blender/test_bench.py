@@ -80,20 +80,20 @@ class Run(unittest.TestCase):
             self.assertTrue((work / "meadow" / second["image"]).exists())
             self.assertNotEqual(second["relMSE"], first["relMSE"])
 
-    def test_a_file_of_ones_own_is_rendered_by_cycles_whatever_its_engine(self):
+    def test_a_blend_file_is_rendered_by_cycles_whatever_its_engine(self):
         import bpy
 
         with tempfile.TemporaryDirectory() as folder:
-            own = pathlib.Path(folder) / "own.blend"
+            file = pathlib.Path(folder) / "file.blend"
             bpy.ops.wm.read_factory_settings()  # a cube, rendered by EEVEE
-            bpy.ops.wm.save_as_mainfile(filepath=str(own))
-            before = own.read_bytes()
+            bpy.ops.wm.save_as_mainfile(filepath=str(file))
+            before = file.read_bytes()
             code, said = self.call(
-                own, "--size=24x16", "--seconds=0.5", "--methods=oidn", "--reference-spp=128", "--work", folder
+                file, "--size=24x16", "--seconds=0.5", "--methods=oidn", "--reference-spp=128", "--work", folder
             )
             self.assertEqual(code, 0, said)
-            self.assertIn("| own | 0.5 s |", said)
-            self.assertEqual(own.read_bytes(), before)
+            self.assertIn("| file | 0.5 s |", said)
+            self.assertEqual(file.read_bytes(), before)
 
     def test_wrong_use(self):
         for words in (

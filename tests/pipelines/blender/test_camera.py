@@ -23,22 +23,24 @@ class Cameras(SceneTest):
         try:
             audit = renderer.begin(None)
             self.assertEqual(audit.method, "masks by a camera shader")
-            files = self.folder / "own.exr", self.folder / "masked.exr"
+            files = self.folder / "unmasked.exr", self.folder / "masked.exr"
             renderer.uniform(0, samples, files[0])
             renderer.extra(0, np.full(renderer.shape, samples), files[1])
         finally:
             renderer.close()
-        own, masked = (exr.read(file) for file in files)
-        return {name: (own[name], masked[name]) for name in own if name in masked and "Render Seconds" not in name}
+        unmasked, masked = (exr.read(file) for file in files)
+        return {
+            name: (unmasked[name], masked[name]) for name in unmasked if name in masked and "Render Seconds" not in name
+        }
 
     def assert_same_picture(self, kind):
         """Both cameras draw the same numbers, so every sample's path is the same up to rounding, which may change
         single paths: nearly all pixels agree closely, and the others differ by chance."""
-        for name, (own, masked) in self.passes(kind, SAMPLES).items():
-            scale = np.abs(own).mean() + 1e-6
-            off = np.abs(own - masked) > 1e-3 * (np.abs(own) + scale)
+        for name, (unmasked, masked) in self.passes(kind, SAMPLES).items():
+            scale = np.abs(unmasked).mean() + 1e-6
+            off = np.abs(unmasked - masked) > 1e-3 * (np.abs(unmasked) + scale)
             self.assertLess(off.mean(), 0.03, f"{kind}: {name} differs in {off.mean():.1%} of the pixels")
-            self.assertLess(abs((own - masked).mean()) / scale, 2e-3, f"{kind}: {name}")
+            self.assertLess(abs((unmasked - masked).mean()) / scale, 2e-3, f"{kind}: {name}")
 
     def test_plain(self):
         self.assert_same_picture("plain")

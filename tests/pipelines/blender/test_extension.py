@@ -10,7 +10,7 @@ import time
 import unittest
 
 _resources = tempfile.TemporaryDirectory(prefix="polyrecon_resources_")
-# bpy reads this when it is imported; the user's own settings stay untouched.
+# bpy reads this when it is imported; the user's settings do not change.
 os.environ["BLENDER_USER_RESOURCES"] = _resources.name
 
 import bpy  # noqa: E402

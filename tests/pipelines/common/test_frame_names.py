@@ -110,9 +110,9 @@ class TheProgram(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             for pattern in ("a.####.exr", "b_%04d.exr", "c#.exr", "d.%d.exr"):
                 words = ["denoise", "-i", f"{folder}/{pattern}", "-o", f"{folder}/o.####.exr", "--frames=7,12345"]
-                planned = subprocess.run([os.environ["POLYRECON"], *words, "--dry-run"], capture_output=True, text=True)
+                done = subprocess.run([os.environ["POLYRECON"], *words, "--dry-run"], capture_output=True, text=True)
                 for frame in (7, 12345):
-                    self.assertIn(f"{folder}/{frame_path(pattern, frame)}: ", planned.stderr)
+                    self.assertIn(f"{folder}/{frame_path(pattern, frame)}: ", done.stderr)
 
 
 if __name__ == "__main__":

@@ -58,7 +58,7 @@ class Recipes(unittest.TestCase):
         path = f"{cls.folder}/bin:{os.environ['PATH']}"
         environment = dict(os.environ, PATH=path, COMPOSITING=str(COMPOSITING))
         (script,) = blocks("scripting.md", "python")
-        cls.told = run([sys.executable, "-c", script], cls.folder, environment)
+        cls.printed = run([sys.executable, "-c", script], cls.folder, environment)
         done = subprocess.run(
             ["bash", "recipes.sh"],
             cwd=cls.folder,
@@ -79,7 +79,7 @@ class Recipes(unittest.TestCase):
         self.assertIn("estimated relMSE", (self.folder / "report.txt").read_text())
 
     def test_a_script_in_python_reads_the_report(self):
-        self.assertRegex(self.told, r"^estimated relMSE: 0\.0\d+\n")
+        self.assertRegex(self.printed, r"^estimated relMSE: 0\.0\d+\n")
 
     def test_the_review_picture_is_the_beauty_in_srgb(self):
         clean = np.clip(layer(self.read("clean.exr"), "ViewLayer.Combined"), 0, 1)

@@ -28,7 +28,7 @@ def identities(folder):
     return {path.name: (path.stat().st_ino, path.stat().st_mtime_ns) for path in Path(folder).glob("shot.*.exr")}
 
 
-@unittest.skipUnless(can_run(), "a Slurm of one's own needs root and process namespaces")
+@unittest.skipUnless(can_run(), "starting Slurm needs root and process namespaces")
 class Slurm(unittest.TestCase):
     """A cluster of two nodes and a shot in a folder with an awkward name (case 33), for all tests."""
 
@@ -140,8 +140,8 @@ class Slurm(unittest.TestCase):
                 [POLYRECON, "inspect", "--json", self.folder / "in/shot.0001.exr"], capture_output=True
             ).stdout
         )
-        asked = Model().request_bytes(frame_of(inspection), "best") // MIB
-        self.assertIn(f"--mem={asked}M", array)
+        request = Model().request_bytes(frame_of(inspection), "best") // MIB
+        self.assertIn(f"--mem={request}M", array)
         self.assertFalse((self.out / "job").exists())
 
     def test_what_slurm_refuses_is_told_in_one_line(self):
