@@ -1,5 +1,4 @@
-"""The passes that render counts of samples: masked ones where the camera has a mask, else rectangles with one count
-each."""
+"""The passes that render counts of samples: with a camera that has a mask, or as rectangles with one count each."""
 
 import dataclasses
 
@@ -21,11 +20,11 @@ class Pass:
 
 
 def masked_passes(counts):
-    """Passes for counts[y, x], each over the boxes that hold its pixels.
+    """Passes for counts[y, x], each in boxes around its pixels.
 
-    The passes lie one in another: all pixels with samples take those of the lowest count; the pixels of higher counts
-    go on in the sequence up to the next count, and so on. A border between two counts thus has one rim, on one side, of
-    the samples that the two differ by. With a pass for each count it would have two rims, of all samples."""
+    The passes are nested: all pixels with samples take the lowest count. Pixels with a higher count continue in the
+    sequence up to the next count, and so on. So a border between two counts has a rim on one side, with as many samples
+    as the counts differ by. With a pass for each count it would have a rim on either side, with all samples."""
     passes, done = [], 0
     for count in np.unique(counts[counts > 0]).astype(int):
         inside, samples = counts >= count, int(count) - done

@@ -28,9 +28,10 @@ OVERHEAD_SECONDS = 0.045  # fixed seconds of a pass, until they are measured
 class BlenderRenderer(Renderer):
     """Renders the frames of a .blend file.
 
-    method: the way of extra samples: 'osl' (a camera with a mask, Blender 5 or later), 'regions' (rectangles), or
-    'auto'. visibility: the pass for that feature: 'shadow', 'ambient-occlusion' or None. with_prior: whether
-    complete_last adds priors (prior.py)."""
+    method       The way of extra samples: 'osl' (a camera with a mask, Blender 5 or later), 'regions' (rectangles), or
+                 'auto'.
+    visibility   The pass for that feature: 'shadow', 'ambient-occlusion' or None.
+    with_prior   Whether complete_last adds priors (prior.py)."""
 
     def __init__(self, scene, blender=None, method="auto", visibility=None, timeout=3600.0, with_prior=False):
         self.scene = pathlib.Path(scene).absolute()

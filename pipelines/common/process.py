@@ -40,7 +40,7 @@ def run(words, timeout=None, **options):
 def run_side_by_side(commands, timeout=None, **options):
     """Runs several commands concurrently; returns what `run` returns for each, in their order.
 
-    The output of each command must fit into a pipe."""
+    A command that prints more than a pipe holds waits until the commands before it have ended."""
     children = []
     try:
         for words in commands:
