@@ -63,7 +63,7 @@ class Adaptive(SceneTest):
         self.assertNotIn("http", page)
 
     def test_blender_3_with_rectangles(self):
-        self.check(self.scene(blender=BLENDER_3), ["--blender", BLENDER_3], "rectangles, since Blender before 5.0")
+        self.check(self.scene(blender=BLENDER_3), ["--blender", BLENDER_3], "rectangles, because Blender before 5.0")
 
     def test_case33_awkward_paths_and_frames(self):
         scene = self.scene("moving", "-a 'b' \"{c}\" #ä日.blend")
@@ -141,13 +141,13 @@ class Adaptive(SceneTest):
         self.assertGreater(after["seconds"], before["seconds"])
         self.assertTrue(all(entry["seconds"] < 8 for entry in after["rounds"] if entry["next_samples"]))
 
-    def test_wrong_use_is_told_before_any_work(self):
+    def test_wrong_use_is_an_error_before_any_work(self):
         scene = self.folder / "none.blend"
         for words, code, line in (
             ([scene, "-o", "o.exr", "--budget-spp", 16], 4, "none.blend: no such file"),
             ([scene, "-o", "o.exr"], 2, "required"),
             ([scene, "-o", "o.exr", "--budget-spp", 4], 2, "less than --first-pass"),
-            ([scene, "-o", "o.exr", "--budget-spp", -4], 2, "not above 0"),
+            ([scene, "-o", "o.exr", "--budget-spp", -4], 2, "must be a number above 0"),
         ):
             done = self.driver("adaptive.py", *words)
             self.assertEqual(done.returncode, code, done.stderr)
