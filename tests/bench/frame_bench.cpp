@@ -21,7 +21,7 @@ void count_pixels(benchmark::State& state) {
   state.SetItemsProcessed(state.iterations() * side * side);
 }
 
-/// Argument: the quality. Stage 1, one half.
+/// Stage 1 of one half. Argument: the quality.
 void fit_and_blend_frame(benchmark::State& state) {
   const Params params = params_for(static_cast<Quality>(state.range(0)));
   const HalfPair pair = synthetic_pair(side, side);
@@ -60,7 +60,7 @@ void select_frame(benchmark::State& state) {
   const HalfPair pair = synthetic_pair(side, side);
   std::vector<Candidate> candidates;
   for (int k = 0; k < state.range(0); ++k) {
-    const double sigma = 0.5 * (k + 1);  // blurs of different widths: none is the best everywhere
+    const double sigma = 0.5 * (k + 1);  // blurs of different widths, none of which is best everywhere
     candidates.push_back({{gaussian_blur(pair.color[0], sigma), gaussian_blur(pair.color[1], sigma)},
                           pair.variance,
                           pair.variance,
@@ -73,7 +73,7 @@ void select_frame(benchmark::State& state) {
 }
 BENCHMARK(select_frame)->ArgName("candidates")->Arg(2)->Arg(4)->Unit(benchmark::kMillisecond);
 
-/// Argument: ten times the standard deviation; three channels.
+/// Three channels. Argument: ten times the standard deviation.
 void gaussian_blur_frame(benchmark::State& state) {
   const HalfPair pair = synthetic_pair(side, side);
   const double sigma = static_cast<double>(state.range(0)) / 10;

@@ -4,15 +4,15 @@
 
 #include "core/simd.h"
 
-// What the core can do at best, for the roofline of docs/results/performance.md: sums and products in registers, and
-// loads and stores from each level of memory.
+// Peak performance of one core for the roofline of docs/results/performance.md: multiply-add in registers, and
+// bandwidth of each level of memory.
 
 namespace polyrecon::bench {
 namespace {
 
-constexpr int chains = 12;  ///< Vectors in work: enough to fill the pipelines, few enough for the registers.
+constexpr int chains = 12;  ///< Independent vectors: enough to fill the pipelines, few enough for the registers.
 
-/// Products and sums fused where the processor can, as in the loops of the fits (this file is compiled like theirs).
+/// Multiply-add, fused if the processor can, as in the fits: CMakeLists.txt gives this file the same options.
 template <typename T>
 POLYRECON_SIMD void multiply_and_add(T* values, T factor, T summand, int rounds) {
   using Vector [[gnu::vector_size(64)]] = T;
@@ -45,7 +45,7 @@ POLYRECON_SIMD void triad(float* a, const float* b, const float* c, std::size_t 
   for (std::size_t j = 0; j < n; ++j) a[j] = b[j] + 0.5F * c[j];
 }
 
-/// Argument: KiB of the three arrays together.
+/// Argument: size of the three arrays together, KiB.
 void bandwidth(benchmark::State& state) {
   const std::size_t n = static_cast<std::size_t>(state.range(0)) * 1024 / (3 * sizeof(float));
   std::vector<float> a(n, 0), b(n, 1), c(n, 2);

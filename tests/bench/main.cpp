@@ -2,7 +2,7 @@
 
 #include "core/parallel.h"
 
-/// One thread only: what a core does is comparable between machines and hardly depends on what else runs.
+/// Benchmarks run on one thread, so that results of different machines compare and depend little on their load.
 int main(int argc, char** argv) {
   polyrecon::set_thread_limit(1);
   benchmark::Initialize(&argc, argv);

@@ -13,7 +13,7 @@
 namespace polyrecon::bench {
 namespace {
 
-/// Of a window of the default radius.
+/// Pixels of a window of the default radius.
 int window_pixels() {
   const int side = 2 * Params{}.radius + 1;
   return side * side;
@@ -24,15 +24,15 @@ void count_windows(benchmark::State& state, std::size_t windows) {
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(windows));
 }
 
-/// For the roofline: floating point operations of the method, and bytes that its loops load and store, each a window.
-/// They come from the first two levels of the cache: a window of 14 columns takes 80 KiB.
+/// Counts floating-point operations, and bytes that loops load and store, for the roofline; both are per window. The
+/// bytes are in the first two levels of the cache, as a window of 14 columns has 80 KiB.
 void count_work(benchmark::State& state, std::size_t windows, double flops, double bytes) {
   const double all = static_cast<double>(state.iterations()) * static_cast<double>(windows);
   state.counters["flop"] = benchmark::Counter(flops * all, benchmark::Counter::kIsRate);
   state.counters["bytes"] = benchmark::Counter(bytes * all, benchmark::Counter::kIsRate);
 }
 
-/// Argument: the stride of the centres.
+/// Argument: distance between centres.
 void patch_distances(benchmark::State& state) {
   const Params params;
   const HalfPair pair = synthetic_pair(2 * block_size, 2 * block_size);
@@ -47,13 +47,13 @@ void patch_distances(benchmark::State& state) {
       distances.window_of(centers.x[k], centers.y[k], {cut_exponent}, window);
   }
   count_windows(state, centers.x.size());
-  // add_differences: 13 operations on 7 samples of a pixel, for each pixel of the patch.
+  // add_differences has 13 operations on 7 samples for each pixel of the patch.
   const double differences = window_pixels() * (2 * params.patch.radius + 1) * (2 * params.patch.radius + 1);
   count_work(state, centers.x.size(), 13 * differences, 7 * sizeof(Real) * differences);
 }
 BENCHMARK(patch_distances)->ArgName("stride")->Arg(1)->Arg(4)->Unit(benchmark::kMicrosecond);
 
-/// A window with its weights, as the fit sees it.
+/// A window with its weights.
 struct Problem {
   Window window;
   std::vector<Real> weight;
@@ -63,18 +63,18 @@ Problem problem_of(const BasisLayout& layout) {
   const Params params;
   Problem problem{full_window(synthetic_pair(block_size, block_size), layout, params.radius), {}};
   problem.weight.resize(static_cast<std::size_t>(problem.window.stride));
-  // Wide enough that no pixel is cut, so that all of the window's columns are independent.
+  // The bandwidth is so wide that no pixel is cut off; then all columns are independent.
   kernel_weights(problem.window, Real(4), problem.weight.data());
   return problem;
 }
 
 bool is_whole(benchmark::State& state, const Problem& problem, const NestedFactor& factor) {
   const bool whole = problem.window.count == window_pixels() && factor.rank == factor.columns;
-  if (!whole) state.SkipWithError("the synthetic window is smaller or of less rank than it is meant to be");
+  if (!whole) state.SkipWithError("the synthetic window has too few pixels or too low a rank");
   return whole;
 }
 
-/// Argument: the Taylor order; 2 gives 14 columns, 4 gives 23.
+/// Argument: the Taylor order; order 2 has 14 columns, order 4 has 23.
 void factorise_window(benchmark::State& state) {
   const BasisLayout layout(feature_channels, static_cast<int>(state.range(0)));
   const Problem problem = problem_of(layout);
@@ -86,8 +86,8 @@ void factorise_window(benchmark::State& state) {
   if (!is_whole(state, problem, factor)) return;
   state.counters["columns"] = layout.columns();
   count_windows(state, 1);
-  // The triangle of the Gram matrix, two tiles of rows with one of columns at a time; q, a tile of columns at a time
-  // from those up to them.
+  // The triangle of the Gram matrix is computed by two tiles of rows and one tile of columns at a time. q is computed a
+  // tile of columns at a time, from the columns up to there.
   const double n = problem.window.padded, k = layout.columns(), pairs = k * (k - 1) / 2, lanes = vector_lanes;
   const double tiles = std::ceil(k / lanes);
   double gram = 0, q = 0;
@@ -97,7 +97,7 @@ void factorise_window(benchmark::State& state) {
 }
 BENCHMARK(factorise_window)->ArgName("order")->Arg(2)->Arg(4)->Unit(benchmark::kMicrosecond);
 
-/// Argument as above.
+/// Argument: the Taylor order.
 void project_beauty_window(benchmark::State& state) {
   const BasisLayout layout(feature_channels, static_cast<int>(state.range(0)));
   const Problem problem = problem_of(layout);
@@ -113,8 +113,8 @@ void project_beauty_window(benchmark::State& state) {
   }
   state.counters["columns"] = layout.columns();
   count_windows(state, 1);
-  // Nine channels times the weights, three of them twice; nine sums for each column, a tile of columns at a time,
-  // three of them of the columns' squares.
+  // Nine channels are multiplied by the weights, three of them twice. Each column has nine sums, three of them over its
+  // squares, computed a tile of columns at a time.
   const double n = problem.window.padded, k = layout.columns();
   const double weighing = n * (9 * (2 * sizeof(Real) + sizeof(double)) + 3 * (sizeof(Real) + 2 * sizeof(double)));
   const double summing = n * std::ceil(k / vector_lanes) * (vector_lanes * sizeof(Real) + 9 * sizeof(double));

@@ -1,10 +1,10 @@
-/// How well the windows met on real renders are conditioned, and what the limits of regression/least_squares.h do to
-/// them: stability FOLDER RENDER REFERENCE [RENDER REFERENCE]... writes into FOLDER
-///   windows.csv  one row a window: its condition number and the residual ratio of each solver
-///   columns.csv  one row a column: what is left of it, and how far it is from orthogonal to those before it
-///   limits.csv   one row a setting of the limits: the error of the windows' fits against the reference
-/// The windows are those of stage 1, every 8th pixel both ways, with the bandwidths of both stages.
-/// tests/bench/stability.py runs it and draws.
+// Measures how well the windows of real renders are conditioned, and the effect of the limits in
+// regression/least_squares.h: stability FOLDER RENDER REFERENCE [RENDER REFERENCE]... writes into FOLDER
+//   windows.csv  one row per window: its condition number and the residual ratio of each solver
+//   columns.csv  one row per column: its remainder, and its largest inner product with the columns before it
+//   limits.csv   one row per setting of the limits: the error of the fits against the reference
+// The windows are those of stage 1 around every 8th pixel in both directions, with the bandwidths of both stages.
+// tests/bench/stability.py runs this program and draws the figures of docs/dev/stability.md.
 #include <Eigen/Dense>
 #include <cstdio>
 #include <exception>
@@ -35,7 +35,7 @@ constexpr int step = 8;
 constexpr double eps = std::numeric_limits<Real>::epsilon();
 const Params params;
 
-/// A window with its weights, and S X and S y as exact numbers.
+/// A window with its weights, and S X and S y in double.
 struct Weighed {
   Window window;
   std::vector<Real> weight;
@@ -52,7 +52,7 @@ MatrixXd columns_of(const std::vector<Real>& values, int columns, const Window& 
   return m;
 }
 
-/// Calls use(window) for windows all over the image, each half, each bandwidth.
+/// Calls use(window) for windows all over the image, for each half and each bandwidth.
 void each_window(const HalfPair& pair, const std::function<void(Weighed&)>& use) {
   const BasisLayout layout(pair.features[0].channels(), params.max_order);
   Weighed w;
@@ -79,7 +79,7 @@ void each_window(const HalfPair& pair, const std::function<void(Weighed&)>& use)
   }
 }
 
-/// Largest over smallest singular value of S X with columns of length 1.
+/// Largest over smallest singular value of S X with its columns scaled to length 1.
 double condition_of(const MatrixXd& sx) {
   MatrixXd scaled = sx;
   for (int a = 0; a < sx.cols(); ++a) scaled.col(a) /= std::max(sx.col(a).norm(), std::numeric_limits<double>::min());
@@ -87,13 +87,13 @@ double condition_of(const MatrixXd& sx) {
   return scaled.rows() < scaled.cols() ? HUGE_VAL : values(0) / values(values.size() - 1);
 }
 
-/// LAPACK's ratio for a least squares solution (xQRT17): below 30 is as good as the arithmetic allows.
+/// LAPACK's ratio for a least squares solution (xQRT17). A value below 30 is as good as the arithmetic allows.
 double residual_ratio(const Weighed& w, const MatrixXd& sx, const VectorXd& residual) {
   const double scale = sx.norm() * w.sy.norm() * static_cast<double>(sx.rows()) * eps;
   return scale > 0 ? (sx.transpose() * residual).norm() / scale : 0;
 }
 
-/// The problem that factorise solves, with the rows of its penalties.
+/// The problem that factorise solves, with rows for the penalties.
 test::Penalised problem_of(const Weighed& w, const DependenceLimits& limits) {
   const auto columns = static_cast<int>(w.sx.cols());
   return test::penalised(test::rows_of(w.window.design, columns, w.window), w.s.cwiseAbs2(), limits,
@@ -125,7 +125,7 @@ double householder(const Weighed& w) {
   return residual_ratio(w, w.sx, w.sy - w.sx * c);
 }
 
-/// Largest inner product of a column of Q, with the rows of the penalties, with those before it.
+/// For each column of Q, penalty rows included, the largest inner product with a column before it.
 VectorXd overlaps(const Weighed& w, const NestedFactor& factor, const DependenceLimits& limits) {
   const MatrixXd q = w.s.asDiagonal() * test::q_of(factor, w.window), tail = problem_of(w, limits).tail;
   const MatrixXd gram = q.transpose() * q + tail.transpose() * tail;
@@ -134,7 +134,7 @@ VectorXd overlaps(const Weighed& w, const NestedFactor& factor, const Dependence
   return out;
 }
 
-/// fit of the three channels as stage 1 takes it, pixels x 3.
+/// The fit of stage 1, pixels x 3 channels.
 MatrixXd fit_of(Weighed& w, NestedFactor& factor) {
   std::array<ColumnStatistics, 3> channels;
   double* z[3] = {channels[0].z.data(), channels[1].z.data(), channels[2].z.data()};
@@ -154,7 +154,7 @@ MatrixXd fit_of(Weighed& w, NestedFactor& factor) {
   return test::q_of(factor, w.window) * coefficients;
 }
 
-/// Sums over the windows under one setting of the limits.
+/// Sums over all windows for one setting of the limits.
 struct LimitSums {
   DependenceLimits limits;
   double error = 0, weight = 0, overlap = 0;

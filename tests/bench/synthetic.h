@@ -9,19 +9,19 @@
 
 namespace polyrecon::bench {
 
-constexpr int feature_channels = 8;  ///< Normal, albedo, depth and visibility: what a full set of passes has.
+constexpr int feature_channels = 8;  ///< Normal, albedo, depth and visibility.
 
-/// A noisy frame of the given size: smooth light with edges times a checkered texture, relative noise of 20 %, features
-/// with a little noise of their own. The same for the same size in every run.
+/// A noisy frame of the given size: smooth light with edges times a checkered texture, with 20 % relative noise and
+/// slightly noisy features. Every run makes the same frame.
 HalfPair synthetic_pair(int width, int height);
 
-/// Pixels of the image at every stride-th column and row of block.
+/// Pixels at every stride-th column and row of block.
 struct Centers {
   std::vector<int> x, y;
 };
 Centers lattice(const Rect& block, int stride);
 
-/// The whole window of the given radius around the middle of pair, none of its pixels left out.
+/// The window of the given radius around the middle of pair, with all its pixels.
 Window full_window(const HalfPair& pair, const BasisLayout& layout, int radius);
 
 }  // namespace polyrecon::bench

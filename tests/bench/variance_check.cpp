@@ -1,8 +1,8 @@
-/// How good the noise variance is that polyrecon estimates where a file has none: variance_check RENDER REFERENCE ...
-/// For each pair, pixels are sorted by the estimate and cut into ten equal parts. Printed for each part: the mean of
-/// the estimate and of the file's own variance (where it has one) over the mean of the true squared error,
-/// (render - reference)^2 - variance of the reference. All are means over the part, so that the noise of the truth, one
-/// squared sample a pixel, averages out.
+// Compares the noise variance that is estimated from an image with the true one: variance_check RENDER REFERENCE ...
+// The pixels of a render are sorted by the estimate and divided into ten equal parts. For each part the program prints
+// the mean of the estimate, and the mean of the file's variance if it has one, over the mean of the true squared error
+// (render - reference)^2 - variance of the reference. Means are taken because the true error of a pixel is known from
+// only one squared sample.
 #include <algorithm>
 #include <cstdio>
 #include <exception>

@@ -4,20 +4,20 @@
 #include <filesystem>
 #include <vector>
 
-#include "fuzz/read_stranger.h"
+#include "fuzz/read_untrusted.h"
 #include "io/exr_fixture.h"
 
 namespace polyrecon::fuzz {
 namespace {
 
-/// What the fuzzer began with and what it once stumbled over stays harmless.
+/// The corpus holds seeds of the fuzzer and files that once failed.
 TEST(FuzzCorpus, EveryFileIsReadOrRefused) {
   const testing::TemporaryFolder folder;
   std::vector<std::filesystem::path> files;
   for (const auto& entry : std::filesystem::directory_iterator(POLYRECON_FUZZ_CORPUS)) files.push_back(entry.path());
   std::sort(files.begin(), files.end());
   ASSERT_GT(files.size(), 30u);
-  for (const auto& file : files) EXPECT_NO_THROW(read_stranger(file.string(), folder / "")) << file;
+  for (const auto& file : files) EXPECT_NO_THROW(read_untrusted(file.string(), folder / "")) << file;
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
-// The libFuzzer side: every input becomes a file in memory, which is read as a stranger's. tests/fuzz/run.sh drives it.
+// The libFuzzer target: every input is written to a file in memory and given to read_untrusted. Run by
+// tests/fuzz/run.sh.
 
 #include <unistd.h>
 
@@ -10,11 +11,11 @@
 #include <fstream>
 #include <string>
 
-#include "fuzz/read_stranger.h"
+#include "fuzz/read_untrusted.h"
 
 namespace {
 
-/// A folder in memory, removed at a normal end.
+/// A folder in memory, removed at a normal exit.
 class Folder {
  public:
   Folder() {
@@ -34,19 +35,19 @@ class Folder {
   std::string path_;
 };
 
-/// Most that one file may take, of processor time: libFuzzer's own clock runs on while others use the machine.
-constexpr double kSeconds = 10;
+/// Limit of processor time for one file. libFuzzer's -timeout is wall-clock time, which depends on the load.
+constexpr double most_seconds = 10;
 
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const Folder folder;
-  const std::string file = folder.path() + "/stranger.exr";
+  const std::string file = folder.path() + "/input.exr";
   std::ofstream(file, std::ios::binary).write(reinterpret_cast<const char*>(data), static_cast<std::streamsize>(size));
   const std::clock_t begin = std::clock();
-  polyrecon::fuzz::read_stranger(file, folder.path());
-  if (static_cast<double>(std::clock() - begin) > kSeconds * CLOCKS_PER_SEC) {
-    std::fprintf(stderr, "over %g s of processor time\n", kSeconds);
+  polyrecon::fuzz::read_untrusted(file, folder.path());
+  if (static_cast<double>(std::clock() - begin) > most_seconds * CLOCKS_PER_SEC) {
+    std::fprintf(stderr, "over %g s of processor time\n", most_seconds);
     std::abort();
   }
   return 0;

@@ -1,4 +1,4 @@
-// Writes the seeds of the fuzzer: crops of a few pixels of real renders, in every form that an EXR file can have.
+// Writes the seeds of the fuzzer: crops of a few pixels from the samples, in every form that an EXR file can have.
 //   make_seeds SAMPLES_FOLDER TARGET_FOLDER
 
 #include <OpenEXR/ImfDeepFrameBuffer.h>
@@ -23,23 +23,23 @@ namespace fs = std::filesystem;
 using namespace polyrecon::testing;
 using polyrecon::Rect;
 
-constexpr int kWidth = 12, kHeight = 9, kLeft = 60, kTop = 40;  ///< The crop.
+constexpr int crop_width = 12, crop_height = 9, crop_left = 60, crop_top = 40;
 
 constexpr std::array compressions{"none", "rle", "zips", "zip", "piz", "pxr24", "b44", "b44a", "dwaa", "dwab"};
 
-/// A crop of one part, its samples, types and names kept, its window moved to the origin.
+/// A crop of one part, moved to the origin. Samples, types and names are kept.
 TestPart crop(const std::string& path, int index) {
   Imf::MultiPartInputFile file(path.c_str());
   const Imf::Header& header = file.header(index);
   TestPart part;
   part.name = header.hasName() ? header.name() : "";
-  part.window = part.display = Rect{0, 0, kWidth, kHeight};
+  part.window = part.display = Rect{0, 0, crop_width, crop_height};
   for (auto c = header.channels().begin(); c != header.channels().end(); ++c) {
     const Imf::PixelType type = c.channel().type;
     const std::vector<char> bytes = stored_bytes(path, index, c.name());
     const int width = header.dataWindow().max.x - header.dataWindow().min.x + 1;
     part.channels.push_back({c.name(), type, [bytes, width, type](int x, int y) {
-                               const auto i = static_cast<std::size_t>((y + kTop) * width + x + kLeft);
+                               const auto i = static_cast<std::size_t>((y + crop_top) * width + x + crop_left);
                                if (type == Imf::HALF) return double{reinterpret_cast<const half*>(bytes.data())[i]};
                                return double{reinterpret_cast<const float*>(bytes.data())[i]};
                              }});
@@ -53,7 +53,7 @@ std::vector<TestPart> crops(const std::string& path, int parts) {
   return all;
 }
 
-/// All parts as one, as Blender 3.4 and most renderers write.
+/// The channels of all parts in one part, as Blender 3.4 and most renderers write them.
 TestPart joined(const std::vector<TestPart>& parts) {
   TestPart one = parts.front();
   one.name.clear();
@@ -67,18 +67,18 @@ TestPart joined(const std::vector<TestPart>& parts) {
 }
 
 void write_deep(const std::string& path, bool tiled, Imf::Compression compression) {
-  Imf::Header header(kWidth, kHeight);
+  Imf::Header header(crop_width, crop_height);
   header.channels().insert("R", Imf::Channel(Imf::HALF));
   header.channels().insert("Z", Imf::Channel(Imf::FLOAT));
   header.compression() = compression;
   header.setType(tiled ? Imf::DEEPTILE : Imf::DEEPSCANLINE);
   header.setName("deep");
   if (tiled) header.setTileDescription({8, 8, Imf::ONE_LEVEL});
-  std::array<unsigned, kWidth * kHeight> counts{};
-  std::array<std::array<half, 3>, kWidth * kHeight> red{};
-  std::array<std::array<float, 3>, kWidth * kHeight> depth{};
-  std::array<half*, kWidth * kHeight> reds{};
-  std::array<float*, kWidth * kHeight> depths{};
+  std::array<unsigned, crop_width * crop_height> counts{};
+  std::array<std::array<half, 3>, crop_width * crop_height> red{};
+  std::array<std::array<float, 3>, crop_width * crop_height> depth{};
+  std::array<half*, crop_width * crop_height> reds{};
+  std::array<float*, crop_width * crop_height> depths{};
   for (std::size_t i = 0; i < counts.size(); ++i) {
     counts[i] = static_cast<unsigned>(i % 4);
     reds[i] = red[i].data();
@@ -87,14 +87,14 @@ void write_deep(const std::string& path, bool tiled, Imf::Compression compressio
   }
   Imf::DeepFrameBuffer buffer;
   buffer.insertSampleCountSlice(
-      Imf::Slice(Imf::UINT, reinterpret_cast<char*>(counts.data()), sizeof(unsigned), sizeof(unsigned) * kWidth));
+      Imf::Slice(Imf::UINT, reinterpret_cast<char*>(counts.data()), sizeof(unsigned), sizeof(unsigned) * crop_width));
   buffer.insert("R", Imf::DeepSlice(Imf::HALF, reinterpret_cast<char*>(reds.data()), sizeof(half*),
-                                    sizeof(half*) * kWidth, sizeof(half)));
+                                    sizeof(half*) * crop_width, sizeof(half)));
   buffer.insert("Z", Imf::DeepSlice(Imf::FLOAT, reinterpret_cast<char*>(depths.data()), sizeof(float*),
-                                    sizeof(float*) * kWidth, sizeof(float)));
+                                    sizeof(float*) * crop_width, sizeof(float)));
   TestPart flat;
   flat.name = "flat";
-  flat.window = flat.display = Rect{0, 0, kWidth, kHeight};
+  flat.window = flat.display = Rect{0, 0, crop_width, crop_height};
   flat.channels = layer("", "RGB");
   const std::array headers{header, header_of(flat)};
   Imf::MultiPartOutputFile file(path.c_str(), headers.data(), static_cast<int>(headers.size()));
@@ -105,51 +105,51 @@ void write_deep(const std::string& path, bool tiled, Imf::Compression compressio
   } else {
     Imf::DeepScanLineOutputPart part(file, 0);
     part.setFrameBuffer(buffer);
-    part.writePixels(kHeight);
+    part.writePixels(crop_height);
   }
   write_part(file, 1, flat);
 }
 
-/// Levels of a mip- or rip-map beside a flat part.
+/// Writes a part with the levels of a mipmap or ripmap, and a flat part.
 void write_levels(const std::string& path, Imf::LevelMode mode, Imf::LevelRoundingMode rounding) {
-  Imf::Header header(kWidth, kHeight);
+  Imf::Header header(crop_width, crop_height);
   header.channels().insert("extra.R", Imf::Channel(Imf::HALF));
   header.setType(Imf::TILEDIMAGE);
   header.setName("levels");
   header.setTileDescription({4, 4, mode, rounding});
   TestPart flat;
   flat.name = "flat";
-  flat.window = flat.display = Rect{0, 0, kWidth, kHeight};
+  flat.window = flat.display = Rect{0, 0, crop_width, crop_height};
   flat.channels = layer("", "RGBA", 0, Imf::HALF);
   const std::array headers{header, header_of(flat)};
   Imf::MultiPartOutputFile file(path.c_str(), headers.data(), static_cast<int>(headers.size()));
-  std::vector<half> samples(kWidth * kHeight, half(0.5F));
+  std::vector<half> samples(crop_width * crop_height, half(0.5F));
   Imf::TiledOutputPart tiles(file, 0);
   for (int ly = 0; ly < tiles.numYLevels(); ++ly)
     for (int lx = 0; lx < tiles.numXLevels(); ++lx) {
       if (mode == Imf::MIPMAP_LEVELS && lx != ly) continue;
       Imf::FrameBuffer buffer;
       buffer.insert("extra.R", Imf::Slice(Imf::HALF, reinterpret_cast<char*>(samples.data()), sizeof(half),
-                                          sizeof(half) * kWidth));
+                                          sizeof(half) * crop_width));
       tiles.setFrameBuffer(buffer);
       tiles.writeTiles(0, tiles.numXTiles(lx) - 1, 0, tiles.numYTiles(ly) - 1, lx, ly);
     }
   write_part(file, 1, flat);
 }
 
-/// Luminance and subsampled chroma.
+/// Writes channels Y, RY and BY; the last two have a sample for 2 x 2 pixels.
 void write_luminance_chroma(const std::string& path) {
-  Imf::Header header(kWidth, 8);
+  Imf::Header header(crop_width, 8);
   header.channels().insert("Y", Imf::Channel(Imf::HALF));
   header.channels().insert("RY", Imf::Channel(Imf::HALF, 2, 2));
   header.channels().insert("BY", Imf::Channel(Imf::HALF, 2, 2));
   header.setType(Imf::SCANLINEIMAGE);
-  std::vector<half> samples(kWidth * 8, half(0.25F));
+  std::vector<half> samples(crop_width * 8, half(0.25F));
   Imf::FrameBuffer buffer;
   auto* raw = reinterpret_cast<char*>(samples.data());
-  buffer.insert("Y", Imf::Slice(Imf::HALF, raw, sizeof(half), sizeof(half) * kWidth));
+  buffer.insert("Y", Imf::Slice(Imf::HALF, raw, sizeof(half), sizeof(half) * crop_width));
   for (const char* chroma : {"RY", "BY"})
-    buffer.insert(chroma, Imf::Slice(Imf::HALF, raw, sizeof(half), sizeof(half) * kWidth, 2, 2));
+    buffer.insert(chroma, Imf::Slice(Imf::HALF, raw, sizeof(half), sizeof(half) * crop_width, 2, 2));
   Imf::MultiPartOutputFile file(path.c_str(), &header, 1);
   Imf::OutputPart part(file, 0);
   part.setFrameBuffer(buffer);
@@ -158,8 +158,8 @@ void write_luminance_chroma(const std::string& path) {
 
 void write_stereo(const std::string& path) {
   TestPart part;
-  part.window = Rect{-3, -2, kWidth - 3, kHeight - 2};
-  part.display = Rect{0, 0, kWidth, kHeight};
+  part.window = Rect{-3, -2, crop_width - 3, crop_height - 2};
+  part.display = Rect{0, 0, crop_width, crop_height};
   part.channels = join({layer("", "RGB"), layer("right", "RGB", 4), layer("N", "XYZ", 9)});
   part.edit = [](Imf::Header& header) { Imf::addMultiView(header, {"left", "right"}); };
   write_exr(path, {part});

@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# Fuzzes the EXR reader under AddressSanitizer and UndefinedBehaviorSanitizer until both SECONDS (7200) and FILES (100000)
-# are reached; a file that takes 10 s of processor time, a hang of 10 minutes and memory over 2 GB count as failures.
-# Findings lie in build/fuzz/findings, the corpus grows in build/fuzz/corpus. Needs clang-16 (Debian: clang-16 has libFuzzer
-# with it).
+# Fuzzes the EXR reader under AddressSanitizer and UndefinedBehaviorSanitizer for at least SECONDS (default 7200) and
+# FILES (default 100000). A file fails if it takes more than 10 s of processor time, 10 minutes of wall-clock time or
+# 2 GB of memory. Failing files are kept in build/fuzz/findings, the corpus in build/fuzz/corpus. Needs Debian's clang-16,
+# which includes libFuzzer.
 #   tests/fuzz/run.sh [SECONDS [FILES]]
-# A build of OpenEXR with the same flags, given by CMAKE_PREFIX_PATH (and LD_LIBRARY_PATH), lets the fuzzer see into the
-# library too; docs/dev/files_from_strangers.md says how it was made.
+# With CMAKE_PREFIX_PATH (and LD_LIBRARY_PATH) naming an OpenEXR built with the same flags, the fuzzer covers that library
+# too; docs/dev/files_from_strangers.md says how to build it.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 seconds=${1:-7200} files=${2:-100000}
@@ -16,7 +16,7 @@ build=build/fuzz/tests/fuzz
 mkdir -p build/fuzz/corpus build/fuzz/findings
 "$build/make_seeds" samples build/fuzz/seeds
 
-# allocator_may_return_null: an allocation beyond all reason is std::bad_alloc, as it is for a user.
+# allocator_may_return_null: an allocation that is far too large throws std::bad_alloc, as it does without a sanitizer.
 export ASAN_OPTIONS=allocator_may_return_null=1:detect_leaks=1 UBSAN_OPTIONS=print_stacktrace=1
 fuzz() {
   "$build/exr_fuzzer" -dict=tests/fuzz/exr.dict -timeout=600 -report_slow_units=600 -rss_limit_mb=2048 \

@@ -1,5 +1,6 @@
-// A library for LD_PRELOAD: the call number FAIL_AT of the kind FAIL_CALL (write, fsync, close, rename) fails as on a
-// full disk, and the file FAIL_MARK says that it did. Calls count that concern a temporary of polyrecon or its folder.
+// A library for LD_PRELOAD. The call with number FAIL_AT of the kind FAIL_CALL (write, fsync, close, rename) fails as
+// on a full disk, and the file FAIL_MARK is then created. Only calls on temporary files of polyrecon and their folder
+// count.
 
 #include <dlfcn.h>
 #include <fcntl.h>
@@ -28,7 +29,7 @@ bool is_output(int descriptor) {
   return std::strstr(path, ".polyrecon-") || (::stat(path, &about) == 0 && S_ISDIR(about.st_mode));
 }
 
-/// True for the one call that is to fail.
+/// Counts a call of this kind; true if it is the one that must fail.
 bool fails(const char* call) {
   static int count = 0;
   const char *kind = std::getenv("FAIL_CALL"), *at = std::getenv("FAIL_AT"), *mark = std::getenv("FAIL_MARK");
@@ -57,7 +58,7 @@ int fsync(int descriptor) {
   return next<int(int)>("fsync")(descriptor);
 }
 
-/// A close that fails has closed all the same.
+/// Closes the file even if it reports a failure, as Linux does.
 int close(int descriptor) {
   const bool output = is_output(descriptor);
   const int result = next<int(int)>("close")(descriptor);

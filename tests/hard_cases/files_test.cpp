@@ -1,4 +1,4 @@
-// Cases 1 to 15: files that stay whole, and processes that end at any moment.
+// Cases 1 to 15: damaged and unusual files are refused or kept, and no failure or kill leaves half a file.
 
 #include <OpenEXR/ImfStandardAttributes.h>
 #include <OpenEXR/ImfStringAttribute.h>
@@ -42,7 +42,7 @@ using testing::TemporaryFolder;
 using testing::TestPart;
 using testing::write_exr;
 
-/// Runs the program on files in a folder of its own.
+/// Runs the program in a folder that is made for the test.
 class HardFiles : public testing::ProgramTest {
  protected:
   static std::vector<std::string> denoise(const std::string& in, const std::string& out,
@@ -52,7 +52,7 @@ class HardFiles : public testing::ProgramTest {
     return arguments;
   }
 
-  /// A run that has to fail: its exit code, one line that names the file, and no file but the input.
+  /// Expects a run to fail with this exit code and one line that names the file, and to leave no file but the input.
   void expect_refused(const std::vector<std::string>& arguments, int code, const std::string& words) {
     const Outcome o = run(arguments);
     EXPECT_EQ(o.code, code) << o.err;
@@ -73,9 +73,9 @@ class Case11File : public HardFiles {};
 class Case12File : public HardFiles {};
 class Case13File : public HardFiles {};
 
-// ---- 1: cut at any byte
+// ---- 1: files cut off at any byte
 
-/// Two parts, of scanlines and of tiles, in several chunks each.
+/// One part of scanlines and one of tiles, each of several chunks.
 std::vector<TestPart> small_parts() {
   TestPart lines, tiles;
   lines.window = lines.display = tiles.window = tiles.display = {0, 0, 10, 40};
@@ -115,9 +115,9 @@ TEST_F(Case01File, TheLastByteIsMissedAndItsTileNamed) {
   expect_refused(denoise("in.exr", "out.exr"), 3, "part 1 \"tiles\", tile (1, 4) cannot be read");
 }
 
-// ---- 3: claims
+// ---- 3: headers that claim too much
 
-/// A file that claims a window of width x height: under 500 bytes.
+/// Writes a file of less than 500 bytes whose header claims a data window of width x height.
 void write_bomb(const std::string& path, int width, int height) {
   TestPart part;
   part.channels = layer("", "RGB");
@@ -151,7 +151,7 @@ TEST_F(Case03File, LimitsCanBeSet) {
   EXPECT_EQ(run(denoise("in.exr", "out.exr", {"--max-pixels", "960", "--max-channels", "16"})).code, 0);
 }
 
-// ---- 4: one bad part among many
+// ---- 4: one damaged part among many
 
 TEST_F(Case04File, ADamagedPartThatIsOnlyCopiedIsNamed) {
   std::vector<TestPart> parts(8);
@@ -160,7 +160,7 @@ TEST_F(Case04File, ADamagedPartThatIsOnlyCopiedIsNamed) {
     parts[p].channels = layer(parts[p].name, p == 0 ? "RGB" : "rgba", static_cast<int>(p));
   }
   std::string bytes = contents(write_exr(path("in.exr"), parts));
-  // Parts are written one after the other, in one chunk each: the middle of the sixth.
+  // Each part is one chunk of about 300 bytes; the sixth is damaged.
   const std::size_t chunks = bytes.size() - static_cast<std::size_t>(8 * 300);
   for (std::size_t i = 0; i < 8; ++i) bytes[chunks + 300 * 5 + i] = static_cast<char>(0x55);
   put_contents(path("in.exr"), bytes);
@@ -171,7 +171,7 @@ TEST_F(Case04File, ADamagedPartThatIsOnlyCopiedIsNamed) {
   EXPECT_THAT(files(), ElementsAre("in.exr"));
 }
 
-// ---- 5: windows
+// ---- 5: data and display windows
 
 TEST_F(Case05File, OverscanAndNegativeOriginAreKept) {
   TestPart part;
@@ -189,7 +189,7 @@ TEST_F(Case05File, OverscanAndNegativeOriginAreKept) {
             testing::stored_bytes(path("out.exr"), 0, "V.Combined.A"));
 }
 
-// ---- 6: other kinds of parts
+// ---- 6: unsupported kinds of parts
 
 TEST_F(Case06File, ALuminanceChromaBeautyIsUnsupported) {
   Imf::Header header(8, 8);
@@ -213,9 +213,10 @@ TEST_F(Case06File, ALuminanceChromaBeautyIsUnsupported) {
   EXPECT_THAT(files(), ElementsAre("in.exr"));
 }
 
-// ---- 8: what is not reconstructed
+// ---- 8: channels and attributes that are copied
 
-/// Every bit pattern of half, and random ones of float and uint: NaN with payloads, denormals, -0.
+/// The copied channels hold every bit pattern of half, and random ones of float and uint: NaN with payloads, denormals,
+/// -0.
 TEST(Case08, UntouchedChannelsAndAttributesAreTheSameBits) {
   const TemporaryFolder folder;
   test::Random random(8);
@@ -275,9 +276,9 @@ TEST_F(Case09File, InspectShowsTheViewsAndTheirRoles) {
   EXPECT_THAT(o.out, HasSubstr("right"));
 }
 
-// ---- 11: calls of the system that fail
+// ---- 11: system calls that fail
 
-/// Sets the variables that failing_calls.cpp reads, for the programs started meanwhile.
+/// While it lives, started programs load failing_calls.cpp and let one system call fail.
 class Failing {
  public:
   Failing(const char* call, int at, const std::string& mark) {
@@ -293,7 +294,7 @@ class Failing {
   }
 };
 
-/// Every write, fsync, close and rename of an output fails in turn, until a run has no such call left.
+/// Lets the first call of a kind fail, then the second, and so on, until a run has fewer calls of this kind.
 TEST_F(Case11File, ACallThatFailsIsExitCode5AndTheOldFileStaysWhole) {
   testing::write_render(path("in.exr"), 16, 12);
   ASSERT_EQ(run(denoise("in.exr", "new.exr")).code, 0);
@@ -314,8 +315,7 @@ TEST_F(Case11File, ACallThatFailsIsExitCode5AndTheOldFileStaysWhole) {
         break;
       }
       SCOPED_TRACE(std::string(call) + " " + std::to_string(at));
-      // A failure that the writing made good again (a buffer flushed a second time) shows in nothing: the file is
-      // whole.
+      // A call may be repeated with success (a buffer is flushed again); then the run succeeds and the file is whole.
       const bool whole = contents(path("out.exr")) == fresh;
       EXPECT_TRUE(whole || contents(path("out.exr")) == old);
       if (o.code != 0) {
@@ -333,7 +333,7 @@ TEST_F(Case11File, ACallThatFailsIsExitCode5AndTheOldFileStaysWhole) {
   }
 }
 
-// ---- 12: killed at any moment
+// ---- 12: kills at any moment
 
 TEST_F(Case12File, KilledAtAnyMomentTheOldOrTheNewFileIsThere) {
   const std::uint64_t seed = 12;
@@ -348,7 +348,7 @@ TEST_F(Case12File, KilledAtAnyMomentTheOldOrTheNewFileIsThere) {
   for (int kill = 0; kill < test::instances(30, 200); ++kill) {
     put_contents(path("out.exr"), old);
     const pid_t child = start(denoise("in.exr", "out.exr"));
-    // The writing is at the end of the run.
+    // Files are written at the end of the run, so most kills are aimed there.
     std::this_thread::sleep_for(whole_run * random.uniform(0.3, 1.1));
     ::kill(child, SIGKILL);
     killed += finish(child).code == 128 + SIGKILL;
@@ -359,7 +359,7 @@ TEST_F(Case12File, KilledAtAnyMomentTheOldOrTheNewFileIsThere) {
   RecordProperty("killed", killed);
   RecordProperty("replaced", replaced);
   EXPECT_GT(killed, 0);
-  // What they left is recognised by the next run, once it is older than a run that may just begin.
+  // The next run removes temporary files of killed runs, but only if they are older than a minute.
   for (const std::string& name : files())
     if (name != "in.exr" && name != "out.exr")
       fs::last_write_time(path(name), fs::file_time_type::clock::now() - std::chrono::minutes(2));
@@ -367,7 +367,7 @@ TEST_F(Case12File, KilledAtAnyMomentTheOldOrTheNewFileIsThere) {
   EXPECT_THAT(files(), ::testing::UnorderedElementsAre("in.exr", "out.exr"));
 }
 
-// ---- 13: several writers
+// ---- 13: several writers of one file
 
 TEST(Case13, SixteenWritersOfOneFileLeaveOneWholeFile) {
   const TemporaryFolder folder;

@@ -1,4 +1,4 @@
-// Cases 16 to 28: numbers that stay finite and right.
+// Cases 16 to 28: results stay finite, symmetric, unbiased and the same to the bit.
 
 #include <gtest/gtest.h>
 
@@ -50,7 +50,7 @@ using test::stored;
 constexpr Real nan = std::numeric_limits<Real>::quiet_NaN();
 constexpr Real infinity = std::numeric_limits<Real>::infinity();
 
-/// The same function of every image of a frame.
+/// The frame with map applied to the images of all its passes.
 template <typename F>
 Frame mapped(Frame frame, const F& map) {
   const auto map_pass = [&](Pass& pass) {
@@ -88,15 +88,14 @@ const BadPixel bad_pixels[] = {
     {"layer", [](Frame& f) { return &f.aovs[0].mean; }},
 };
 
-/// One stage on one level with windows of radius 2: reach of the fits 2 radii, patch, and the same again for what
-/// decides on the finer centres (fit_halo), the choice (select_halo), the outliers (2 + 9) and their restoration (none
-/// here).
+/// With one stage on one level, a pixel influences others within the halo of a stage plus the radii of the firefly
+/// removal (neighbourhood 2, density 9). Totals are not restored here, as that changes every pixel.
 TEST(Case16, OneBadPixelIsFiniteAndStaysLocal) {
   Params params = quick();
   params.stages = 1;
   params.levels = 1;
   params.radius = 2;
-  params.parts.restore_totals = false;  // which is of the whole frame, and reported
+  params.parts.restore_totals = false;
   const int reach = stage_halo(params) + 2 + 9;
   Scene scene = make_scene(96, 32, 0.2, 10);
   scene.frame.aovs = {{"Layer", test::times(scene.frame.beauty.mean, 0.5), {}, {}, {}}};
@@ -109,8 +108,7 @@ TEST(Case16, OneBadPixelIsFiniteAndStaysLocal) {
       const Result result = run(frame, params);
       EXPECT_TRUE(finite(result));
       const Rect far{4 + reach + 1, 0, 96, 32};
-      // Of the whole frame is the mean brightness, too, against which relative errors are weighed: off by one pixel in
-      // 3072.
+      // Relative errors are divided by the mean brightness of the frame, which changes with one pixel of 3072.
       EXPECT_LT(test::max_difference(crop(result.beauty, far), crop(clean.beauty, far)), 1e-4);
       EXPECT_LT(test::max_difference(result.beauty, clean.beauty), 2);
     }
@@ -151,7 +149,7 @@ Frame with_features_times(Frame frame, double factor) {
   return frame;
 }
 
-/// As they are: what cleaning leaves of noise in a flat feature is rounded, and a fit may follow that.
+/// Without the prefilter, which leaves rounding errors in a flat feature that a fit may follow.
 TEST(Case18, FeaturesOfAnyScaleGiveTheSameImage) {
   const Scene scene = make_scene(48, 40, 0.3, 12);
   Params params = quick();
@@ -163,9 +161,9 @@ TEST(Case18, FeaturesOfAnyScaleGiveTheSameImage) {
         << factor;
 }
 
-TEST(Case18, CleanedFeaturesOfAnyScaleGiveTheSameBits) {
+TEST(Case18, PrefilteredFeaturesOfAnyScaleGiveTheSameBits) {
   const Scene scene = make_scene(48, 40, 0.3, 12);
-  Frame frame = scene.frame;  // without depth, which is brought to its own median
+  Frame frame = scene.frame;  // without depth, which is divided by its median
   frame.features.erase(std::remove_if(frame.features.begin(), frame.features.end(),
                                       [](const Feature& f) { return f.kind == FeatureKind::Depth; }),
                        frame.features.end());
@@ -178,7 +176,7 @@ TEST(Case18, DependentFeaturesChangeNothing) {
   const Scene scene = make_scene(48, 40, 0.3, 13);
   const Result plain = run(scene.frame);
   Frame twice = scene.frame;
-  twice.features.push_back(twice.features[0]);  // a duplicate adds no column to the span
+  twice.features.push_back(twice.features[0]);  // the columns span the same space
   const Result duplicate = run(twice);
   EXPECT_GT(duplicate.report.rank_deficient_windows, 0u);
   EXPECT_LT(test::max_difference(duplicate.beauty, plain.beauty), 1e-5 * test::max_magnitude(plain.beauty));
@@ -206,7 +204,8 @@ TEST(Case18, MoreFeaturesThanTheModelHoldsAreLeftOut) {
   Scene scene = make_scene(40, 36, 0.3, 15);
   for (int k = 0; k < 12; ++k) scene.frame.features.push_back(scene.frame.features[static_cast<std::size_t>(k % 2)]);
   EXPECT_TRUE(finite(run(scene.frame)));
-  scene.frame.beauty.variance = scene.frame.beauty.half_a = scene.frame.beauty.half_b = Image();  // estimated then
+  scene.frame.beauty.variance = scene.frame.beauty.half_a = scene.frame.beauty.half_b =
+      Image();  // the variance is estimated
   EXPECT_TRUE(finite(run(scene.frame)));
 }
 
@@ -240,7 +239,7 @@ TEST(Case19, WrongVarianceIsStable) {
   EXPECT_LT(test::relative_mse(result.beauty, scene.truth), 0.5 * before);
 }
 
-// ---- 20: values
+// ---- 20: extreme values
 
 TEST(Case20, HardImagesAreFinite) {
   test::Random random(18);
@@ -278,7 +277,7 @@ TEST(Case20, HardImagesAreFinite) {
       if (noise == 0) {
         EXPECT_TRUE(test::same_bits(result.beauty, k.truth));
       }
-      // Nothing beyond the largest value that came in.
+      // No value is much larger than the largest input.
       EXPECT_LE(test::max_magnitude(result.beauty),
                 1.5 * std::max(test::max_magnitude(frame.beauty.half_a), test::max_magnitude(frame.beauty.half_b)));
     }
@@ -317,8 +316,8 @@ TEST(Case21, ColoursPermute) {
   EXPECT_LT(test::max_difference(run(frame).beauty, expected), 1e-5 * test::max_magnitude(expected));
 }
 
-/// Every pixel a centre, sizes divisible by the coarsest level's pixels, no noise of features estimated, which is done
-/// from every second pixel on: nothing tells left from right.
+/// Parameters under which a flip of the input flips the result: every pixel is a centre, and no noise of features is
+/// estimated, as that takes every second pixel. Sizes must be divisible by the pixels of the coarsest level.
 Params symmetric() {
   Params params = quick();
   params.stride = 1;
@@ -389,11 +388,11 @@ TEST(Case23, HasTheSameBitsForAnyNumberOfThreads) {
   }
 }
 
-/// The whole method under the least limit that is accepted: its stages work in tiles.
+/// Under the smallest limit that is accepted, stages work in tiles.
 TEST(Case15, HasTheSameBitsUnderTheLeastMemory) {
   const Scene scene = make_scene(700, 260, 0.3, 27);
   Params params = quick();
-  params.stages = 1;  // the frame is larger than a tile: keep the rest small
+  params.stages = 1;  // quick settings, as the frame must be larger than a tile
   params.max_order = 0;
   params.stride = 5;
   const FrameShape shape = shape_of(scene.frame);
@@ -407,7 +406,8 @@ TEST(Case15, HasTheSameBitsUnderTheLeastMemory) {
   EXPECT_TRUE(test::same_bits(tiled.error.mse, whole.error.mse));
 }
 
-/// A stage in tiles of any size; a strip of 5 rows keeps it quick and is wider than three tiles with their margins.
+/// A stage gives the same bits with tiles of any size. The frame is a strip of 6 rows, to be quick, and is wider than
+/// three tiles with their halos.
 TEST(Case23, HasTheSameBitsForAnyMemory) {
   const Scene scene = make_scene(900, 6, 0.3, 26);
   for (const auto& [radius, stride] : {std::pair{4, 4}, std::pair{3, 3}, std::pair{9, 8}}) {
@@ -436,7 +436,7 @@ TEST(Case23, HasTheSameBitsForAnyMemory) {
 
 // ---- 24, 25: the fit of one window
 
-/// rows x columns of the given rank with singular values in (0.1, 1), as LAPACK's xQRT15 makes them.
+/// A matrix of the given rank with singular values in (0.1, 1), as LAPACK's xQRT15 makes them.
 MatrixXd matrix_of_rank(int rows, int columns, int rank, Random& random) {
   const auto orthonormal = [&](int n) -> MatrixXd {
     return normal_matrix(n, rank, random).householderQr().householderQ() * MatrixXd::Identity(n, rank);
@@ -448,8 +448,8 @@ MatrixXd matrix_of_rank(int rows, int columns, int rank, Random& random) {
 }
 
 /// The six kinds of matrices of LAPACK's least squares tests (xDRVLS): full rank and rank deficient, each unscaled,
-/// scaled near underflow and near overflow of the storage type. The ratios are LAPACK's (xQRT17 and xQRT01), to stay
-/// below 30.
+/// scaled near underflow and near overflow of the storage type. The ratios are LAPACK's (xQRT17 and xQRT01), which
+/// must stay below 30.
 TEST(Case24, LapackSixKindsOfMatricesHaveResidualRatiosBelow30) {
   const std::uint64_t seed = 20160701;
   RecordProperty("seed", std::to_string(seed));
@@ -469,14 +469,14 @@ TEST(Case24, LapackSixKindsOfMatricesHaveResidualRatiosBelow30) {
     const VectorXd s = p.w.cwiseSqrt(), y = stored(normal_matrix(rows, 1, random)), z = p.coefficients(y);
     const MatrixXd q = p.q(), sx = s.asDiagonal() * p.x;
     ASSERT_TRUE(q.allFinite());
-    // The problem that is solved: with the rows of the penalties.
+    // The problem that is solved has additional rows for the penalties.
     const test::Penalised reference = test::penalised(p.x / scale, p.w, {}, 0);
     const MatrixXd& a = reference.augmented;
     MatrixXd aq(a.rows(), columns);
     aq << s.asDiagonal() * q, reference.tail;
     const double n = rows;
-    // Columns that are partly there leave as much of what depends on them, which may be more than the limit: where
-    // hardly any is, the rank is clear.
+    // A column that enters in part leaves part of the columns that depend on it, which then may count too. The rank is
+    // certain only if hardly any column enters in part.
     if (reference.tail.squaredNorm() < 0.03 * 0.03) {
       ++clear_ranks;
       EXPECT_EQ(p.factor.rank, rank);
@@ -490,13 +490,13 @@ TEST(Case24, LapackSixKindsOfMatricesHaveResidualRatiosBelow30) {
   EXPECT_GT(clear_ranks, 0.5 * instances);
 }
 
-/// To the rank but for what the penalties take: a column of which little is left counts for less than 1.
+/// The sum is the number of columns kept, less the part that the penalties take.
 TEST(Case25, LeverageLiesBetweenZeroAndOneAndSumsToTheRank) {
   const std::uint64_t seed = 4;
   SCOPED_TRACE("seed " + std::to_string(seed));
   Random random(seed);
   for (int round = 0; round < test::instances(500, 10000); ++round) {
-    // Down to fewer pixels of weight than columns, where every leverage is 0 or 1.
+    // Some rounds have fewer pixels with weight than columns; every leverage is then 0 or 1.
     const int rows = 3 + random.below(60), columns = 1 + random.below(20);
     const Problem p(design_with_constant(rows, columns, random), random_weights(rows, 0.4, random));
     const MatrixXd q = p.q();
@@ -535,8 +535,7 @@ TEST(Case25, LeaveOneOutResidualIsTheResidualOverOneMinusLeverage) {
 
 // ---- 26: energy
 
-/// Whatever falls where: what the removal takes and the restoration gives back is the image's energy, to 1e-6 a
-/// channel.
+/// Removal and restoration together keep the energy of each channel to 1e-6, whatever the spikes.
 TEST(Case26, EnergyOfAnySpikesComesBack) {
   const std::uint64_t first = 2600;
   for (int instance = 0; instance < test::instances(200, 5000); ++instance) {
@@ -548,7 +547,7 @@ TEST(Case26, EnergyOfAnySpikesComesBack) {
         image_of(width, height, 6, [&](int x, int, int c) { return base * (c < 3 ? 1 + 0.02 * x : 0.3); });
     HalfPair pair = test::pair_of(truth, 0.02 * base, first);
     for (int k = random.below(1 + width * height / 100 + 3); k >= 0; --k) {
-      const int x = random.below(width), y = random.below(height);  // a run of one to three pixels in a half
+      const int x = random.below(width), y = random.below(height);  // of one to three pixels in a row, in one half
       const std::size_t half = static_cast<std::size_t>(random.below(2));
       const double value = (base + 1) * std::pow(10, random.uniform(0, 4));
       for (int run = random.below(3); run >= 0; --run)
@@ -567,8 +566,8 @@ TEST(Case26, EnergyOfAnySpikesComesBack) {
   }
 }
 
-/// A sun's reflection, whose pixels differ a thousandfold, on a surface that hardly has noise: no window that covers
-/// both carries its light to pixels that have seen nothing of it.
+/// A glint (a reflection of the sun) has pixels that differ a thousandfold; the surface around it has little noise.
+/// Windows that cover both must not spread the glint's energy to pixels without it.
 TEST(Case26, AGlintStaysInItsPlace) {
   const auto inside = [](int x, int y) { return (x - 64) * (x - 64) + (y - 48) * (y - 48) <= 4; };
   Random random(2626);
@@ -601,9 +600,9 @@ TEST(Case26, AGlintStaysInItsPlace) {
   EXPECT_LT(with, without / 3) << without;
 }
 
-// ---- 27: more samples never make it worse
+// ---- 27: more samples never increase the error
 
-/// n times the samples, a variance n times smaller.
+/// n times the samples stand for a variance that is n times smaller.
 TEST(Case27, MoreSamplesNeverMakeItWorse) {
   double before = 1e9;
   for (const int samples : {4, 16, 64, 256, 1024}) {
@@ -615,7 +614,7 @@ TEST(Case27, MoreSamplesNeverMakeItWorse) {
   }
 }
 
-/// Real renders: 8, 12 and 16 samples of one scene, merged, against the reference of 2048.
+/// Merged renders of one scene with 8, 12 and 16 samples per pixel, against a reference of 2048.
 TEST(Case27, MoreSamplesOfARealRenderNeverMakeItWorse) {
   const std::string samples = std::string(POLYRECON_SAMPLES_DIR) + "/";
   const testing::TemporaryFolder folder;

@@ -1,7 +1,7 @@
-// Reconstructs random frames of random size, dynamic range and options, with NaN, infinities, negatives, zeros and
-// duplicates in any pass, on one thread and on several. Every result has to be finite and the same to the bit.
+// Reconstructs random frames on one thread and on four. Size, dynamic range and parameters are random, and any pass may
+// hold NaN, infinity, negative values, zeros, or a copy of another. Each result must be finite and have the same bits.
 //   stress_sweep [FRAMES [SEED]]
-// Frame number n is that of SEED + n: `stress_sweep 1 SEED` repeats one alone.
+// Frame n is made from SEED + n, so `stress_sweep 1 SEED` repeats a single frame.
 
 #include <cstdio>
 #include <cstdlib>
@@ -23,7 +23,7 @@ constexpr double unusable[] = {std::numeric_limits<double>::quiet_NaN(), std::nu
                                -std::numeric_limits<double>::infinity(), 1e30, -1e30};
 constexpr double awkward[] = {0, -0.0, -1, 1e-45, 1e-38, 65504, 1e6, 1e10};
 
-/// Puts wrong values at random pixels of an image; at times over whole rows, or everywhere.
+/// Puts wrong values into random pixels of an image, sometimes into a whole row or everywhere.
 void spoil(Image& image, Random& random) {
   if (image.empty() || random.uniform() < 0.5) return;
   const auto value = [&] { return random.uniform() < 0.5 ? unusable[random.below(5)] : awkward[random.below(8)]; };
@@ -39,7 +39,7 @@ void spoil(Image& image, Random& random) {
   }
 }
 
-/// Radiance over up to 14 powers of ten: a smooth part, an edge, and pixels drawn one by one.
+/// Radiance over up to 14 powers of ten: smooth, with an edge and with single random pixels.
 Image random_radiance(int width, int height, int channels, Random& random) {
   const double low = random.uniform(-8, 2), range = random.uniform(0, 6 - low), single = random.uniform() * 0.3;
   const double slope_x = random.normal() * 0.2, slope_y = random.normal() * 0.2;
@@ -50,7 +50,7 @@ Image random_radiance(int width, int height, int channels, Random& random) {
   });
 }
 
-/// A pass of known truth with some of what a pass can have beside its mean.
+/// A noisy pass around truth; its variance and its halves may be missing.
 Pass noisy_pass(const std::string& name, const Image& truth, double noise, Random& random) {
   Pass pass;
   pass.name = name;
@@ -114,7 +114,7 @@ Params random_params(Random& random) {
   return params;
 }
 
-/// What came out, or the exit code of the Error that did.
+/// A result, or the exit code of the Error that was thrown.
 struct Answer {
   int code = 0;
   Result result;
@@ -143,23 +143,23 @@ std::vector<const Image*> images_of(const Result& result, bool with_alpha) {
   return images;
 }
 
-/// Sums over the frames that were swept.
+/// Sums over all frames.
 struct Totals {
   std::size_t refused = 0, windows = 0, rank_deficient = 0, dropped = 0, fallen_back = 0, repaired = 0, outliers = 0;
 };
 
-/// What is wrong with a frame's result; empty where all is well.
+/// What is wrong with the result of a frame; empty if nothing is.
 std::string fault_of(std::uint64_t seed, Totals& totals) {
   Random random(seed);
   const Frame frame = random_frame(random);
   const Params params = random_params(random);
   const Answer one = answer(frame, params, 1), many = answer(frame, params, 4);
-  if (one.code != many.code) return "another answer with 4 threads";
+  if (one.code != many.code) return "4 threads give another exit code";
   if (one.code != 0) {
     ++totals.refused;
     return one.code == static_cast<int>(ExitCode::CheckFailed) ? "" : "exit code " + std::to_string(one.code);
   }
-  // A kept alpha is the input's own, NaN and all.
+  // An alpha that is not reconstructed may hold NaN, as the input's does.
   const auto a = images_of(one.result, params.reconstruct_alpha), b = images_of(many.result, params.reconstruct_alpha);
   for (std::size_t i = 0; i < a.size(); ++i) {
     if (!test::all_finite(*a[i])) return "image " + std::to_string(i) + " is not finite";
@@ -191,7 +191,8 @@ int main(int argc, char** argv) {
     std::fflush(stdout);
   }
   std::printf(
-      "%llu frames from seed %llu: %zu bad, %zu refused as without a finite pixel; %zu windows, %zu of lower rank, %zu "
+      "%llu frames from seed %llu: %zu bad, %zu refused because no pixel is finite; %zu windows, %zu of lower rank, "
+      "%zu "
       "dropped, %zu pixels fallen back, %zu repaired, %zu outliers\n",
       static_cast<unsigned long long>(frames), static_cast<unsigned long long>(first), bad, totals.refused,
       totals.windows, totals.rank_deficient, totals.dropped, totals.fallen_back, totals.repaired, totals.outliers);

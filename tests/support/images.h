@@ -8,7 +8,7 @@
 
 namespace polyrecon::test {
 
-/// An image of f(x, y, c).
+/// An image with the values f(x, y, c).
 template <typename F>
 Image image_of(int width, int height, int channels, const F& f) {
   Image out(width, height, channels);
@@ -29,7 +29,7 @@ inline double max_difference(const Image& a, const Image& b) {
   for (int c = 0; c < a.channels(); ++c)
     for (std::size_t i = 0; i < a.pixels(); ++i) {
       const double d = std::abs(static_cast<double>(a.plane(c)[i]) - static_cast<double>(b.plane(c)[i]));
-      worst = d <= worst ? worst : d;  // a NaN becomes the worst
+      worst = d <= worst ? worst : d;  // keeps a NaN
     }
   return worst;
 }
@@ -60,7 +60,7 @@ inline Image mean_of(const Image& a, const Image& b) {
   });
 }
 
-/// a with every sample multiplied.
+/// The image with every sample multiplied by factor.
 inline Image times(const Image& a, double factor) {
   return image_of(a.width(), a.height(), a.channels(),
                   [&](int x, int y, int c) { return static_cast<double>(a.at(x, y, c)) * factor; });

@@ -6,18 +6,19 @@
 
 namespace polyrecon::test {
 
-/// Seeded numbers that are the same with every standard library: the distributions of <random> are not.
+/// Random numbers that are the same with every standard library, unlike those of the distributions in <random>.
 class Random {
  public:
   explicit Random(std::uint64_t seed) : engine_(seed) {}
-  /// In [0, 1).
+  /// Uniform in [0, 1).
   double uniform() { return static_cast<double>(engine_() >> 11) * 0x1p-53; }
   double uniform(double low, double high) { return low + (high - low) * uniform(); }
-  /// Standard normal (Box and Muller).
+  /// Standard normal, by the method of Box and Muller.
   double normal() {
     const double u = uniform() + 0x1p-54;
     return std::sqrt(-2 * std::log(u)) * std::cos(6.28318530717958648 * uniform());
   }
+  /// 0 .. n - 1
   int below(int n) { return static_cast<int>(uniform() * n); }
 
  private:

@@ -7,7 +7,7 @@
 
 namespace polyrecon::test {
 
-/// Two stages and two levels with small windows: every part of the pipeline runs, in little time.
+/// Parameters for quick tests: two stages and two levels with small windows, so that every part of the method runs.
 inline Params quick() {
   Params params;
   params.stages = 2;

@@ -10,7 +10,7 @@
 
 namespace polyrecon::test {
 
-/// A window that holds the given design, one row a pixel, as it would be stored; rows beyond its end are zero.
+/// A window with the given design, one row per pixel, rounded to Real. Rows of the padding are zero.
 inline Window window_of(const Eigen::MatrixXd& design) {
   Window window;
   int radius = 0;
@@ -27,21 +27,21 @@ inline Window window_of(const Eigen::MatrixXd& design) {
 
 using RealMatrix = Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic>;
 
-/// A function of its own: where GCC 12 sees both conversions at -O3, its vectoriser of straight-line code (SLP) leaves
-/// them out for some elements, which are then not rounded.
+/// Not inlined: GCC 12 at -O3 otherwise sees the conversions to Real and back, and its SLP vectoriser removes both for
+/// some elements, which are then not rounded.
 [[gnu::noinline]] inline RealMatrix rounded(const Eigen::MatrixXd& m) { return m.cast<Real>(); }
 
-/// The values as they are stored, as double.
+/// The values rounded to Real.
 inline Eigen::MatrixXd stored(const Eigen::MatrixXd& m) { return rounded(m).cast<double>(); }
 
-/// Weights or responses with the padding that a window wants.
+/// Weights or responses, rounded to Real and padded with zeros to the length of the window.
 inline std::vector<Real> padded(const Eigen::VectorXd& v, const Window& window) {
   std::vector<Real> out(static_cast<std::size_t>(window.stride), Real(0));
   for (int j = 0; j < v.size(); ++j) out[static_cast<std::size_t>(j)] = static_cast<Real>(v(j));
   return out;
 }
 
-/// The first columns of what stands pixel by pixel.
+/// The first columns of values that are stored pixel by pixel with window.pitch.
 template <typename T>
 Eigen::MatrixXd rows_of(const std::vector<T>& values, int columns, const Window& window) {
   Eigen::MatrixXd m(window.count, columns);
@@ -71,15 +71,15 @@ inline Eigen::MatrixXd normal_matrix(int rows, int columns, Random& random) {
   return m;
 }
 
-/// Weights in (0, 1], some of them zero.
+/// Weights in (0, 1], or zero with the probability zeros.
 inline Eigen::VectorXd random_weights(int rows, double zeros, Random& random) {
   Eigen::VectorXd w(rows);
   for (int j = 0; j < rows; ++j) w(j) = random.uniform() < zeros ? 0 : random.uniform(0.01, 1);
   return w;
 }
 
-/// The projection matrix of equations (5) and (6) without any factor of ours: H = X (S X)^+ S, by a complete orthogonal
-/// decomposition, which finds the rank by itself.
+/// The projection matrix of equations (5) and (6), independently of factorise: H = X (S X)^+ S with the pseudoinverse
+/// from Eigen's complete orthogonal decomposition.
 inline Eigen::MatrixXd projection_matrix(const Eigen::MatrixXd& x, const Eigen::VectorXd& w) {
   const Eigen::VectorXd s = w.cwiseSqrt();
   const Eigen::MatrixXd sx = s.asDiagonal() * x;
@@ -88,7 +88,7 @@ inline Eigen::MatrixXd projection_matrix(const Eigen::MatrixXd& x, const Eigen::
 
 inline constexpr double eps = std::numeric_limits<Real>::epsilon();
 
-/// A design with its weights and factorisation; every number as stored, so that a reference sees what the code sees.
+/// A design with its weights and factorisation. All numbers are rounded to Real, as the code under test sees them.
 struct Problem {
   Eigen::MatrixXd x;
   Eigen::VectorXd w;
@@ -116,14 +116,14 @@ inline Eigen::MatrixXd design_with_constant(int rows, int columns, Random& rando
   return x;
 }
 
-/// The generalised ridge regression of least_squares.h by Gram and Schmidt over rows that are added for the penalties:
-/// S X above the square roots of diag(D) is Q R, with Q = (S q above tail).
+/// The generalised ridge regression of least_squares.h, solved by the Gram-Schmidt process: S X with the additional
+/// rows diag(sqrt(D)) for the penalties is Q R, and Q has the rows S q and, below them, tail.
 struct Penalised {
-  Eigen::MatrixXd augmented;  ///< S X above diag(sqrt(D)); dropped columns are zero here and in q and tail.
+  Eigen::MatrixXd augmented;  ///< S X with the rows diag(sqrt(D)) below. Dropped columns are zero, as in q and tail.
   Eigen::MatrixXd q, tail;
 };
 
-/// The columns from 1 to features are features.
+/// Columns 1 to features are features, whose variation is limited too.
 inline Penalised penalised(const Eigen::MatrixXd& x, const Eigen::VectorXd& w, const DependenceLimits& limits,
                            int features) {
   const Eigen::VectorXd s = w.cwiseSqrt();
@@ -140,8 +140,7 @@ inline Penalised penalised(const Eigen::MatrixXd& x, const Eigen::VectorXd& w, c
         left -= part * q.col(b);
         out.q.col(k) -= part * out.q.col(b);  // also where S is zero
       }
-    // What column k takes over from the penalties of those before it, in the rows below, is left of it too: it makes up
-    // for what they do not take.
+    // The remainder includes the penalty rows of the columns before k: what those columns do not take, column k does.
     const double own = a.col(k).squaredNorm(), rest = left.squaredNorm();
     const bool is_feature = k >= 1 && k <= features;
     const double little = std::max(limits.remainder * limits.remainder * own,
@@ -160,8 +159,7 @@ inline Penalised penalised(const Eigen::MatrixXd& x, const Eigen::VectorXd& w, c
   return out;
 }
 
-/// How far S^-1 Q above the tail is from orthonormal under the weights, over the kept columns; dropped ones must be
-/// zero.
+/// Largest difference between Q^T Q and the identity, for Q with the rows S q and tail. Dropped columns must be zero.
 inline double orthonormality_error(const Problem& p) {
   const Eigen::MatrixXd q = p.q(), tail = penalised(p.x, p.w, {}, p.window.layout.features()).tail;
   const Eigen::MatrixXd gram = q.transpose() * p.w.asDiagonal() * q + tail.transpose() * tail;

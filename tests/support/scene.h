@@ -9,14 +9,14 @@
 
 namespace polyrecon::test {
 
-/// A frame of known truth.
+/// A noisy frame and its true image.
 struct Scene {
   Frame frame;
   Image truth;
 };
 
-/// A textured plane with a bright disk on it under a smooth light; the texture is in the albedo, the disk in the
-/// normals. Gaussian noise of standard deviation `noise` x (truth + 0.1), half buffers and exact variance.
+/// A textured plane with a bright disk, under smooth light. The texture is in the albedo, the disk in the normals. The
+/// noise is Gaussian with standard deviation noise x (truth + 0.1); the frame has half buffers and exact variance.
 inline Scene make_scene(int width, int height, double noise, std::uint64_t seed) {
   const auto albedo = [](int x, int y, int c) { return 0.5 + 0.2 * (((x / 6) + (y / 6)) % 2) + 0.1 * c; };
   const auto on_disk = [&](int x, int y) {
@@ -61,7 +61,7 @@ inline Scene make_scene(int width, int height, double noise, std::uint64_t seed)
   return scene;
 }
 
-/// Mean of (image - truth)^2 / (truth^2 + 0.01), relMSE without a noisy reference.
+/// relMSE against a noise-free reference: mean of (image - truth)^2 / (truth^2 + 0.01).
 inline double relative_mse(const Image& image, const Image& truth) {
   double sum = 0;
   for (int c = 0; c < 3; ++c)
@@ -72,7 +72,7 @@ inline double relative_mse(const Image& image, const Image& truth) {
   return sum / (3.0 * static_cast<double>(truth.pixels()));
 }
 
-/// Two noisy halves of a truth, ready for the fit, without features.
+/// Two noisy halves of truth without features. sigma: standard deviation of the noise of a half.
 inline HalfPair pair_of(const Image& truth, double sigma, std::uint64_t seed) {
   Random random(seed);
   const auto half = [&](int x, int y, int c) {

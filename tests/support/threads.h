@@ -6,7 +6,7 @@
 
 namespace polyrecon::test {
 
-/// Runs work on exactly up to `threads` threads, more than there are processors if it has to be.
+/// Runs work on up to this many threads, even if there are fewer processors.
 template <typename Work>
 auto with_threads(int threads, const Work& work) {
   set_thread_limit(threads);

@@ -1,4 +1,4 @@
-#include "fuzz/read_stranger.h"
+#include "fuzz/read_untrusted.h"
 
 #include <fstream>
 #include <functional>
@@ -11,9 +11,9 @@
 namespace polyrecon::fuzz {
 namespace {
 
-constexpr std::size_t kMemory = std::size_t{512} << 20;
+constexpr std::size_t most_bytes = std::size_t{512} << 20;
 
-void answer(const std::function<void()>& action) {
+void try_to(const std::function<void()>& action) {
   try {
     action();
   } catch (const Error& error) {
@@ -23,17 +23,17 @@ void answer(const std::function<void()>& action) {
 
 }  // namespace
 
-void read_stranger(const std::string& path, const std::string& folder) {
+void read_untrusted(const std::string& path, const std::string& folder) {
   ReadOptions options;
-  options.limits.max_bytes = kMemory;
-  answer([&] { inspect(path, options); });
-  answer([&] {
+  options.limits.max_bytes = most_bytes;
+  try_to([&] { inspect(path, options); });
+  try_to([&] {
     const ReadResult in = read_frame(path, options);
     write_result(in.source, {{in.frame.beauty.name, in.frame.beauty.mean, false}}, folder + "/result.exr", {});
   });
-  answer([&] {
+  try_to([&] {
     const std::string copy = folder + "/copy.exr";
-    // Not copy_file, which gives up when the alarm of libFuzzer's clock interrupts it.
+    // Not copy_file, which fails when the alarm signal of libFuzzer interrupts it.
     std::ofstream(copy, std::ios::binary) << std::ifstream(path, std::ios::binary).rdbuf();
     MergeOptions merging;
     merging.limits = options.limits;
