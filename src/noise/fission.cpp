@@ -7,7 +7,8 @@
 namespace polyrecon {
 namespace {
 
-/// SplitMix64 (Steele, Lea and Flood 2014) as a hash: the n-th number of the stream without the ones before it.
+/// SplitMix64 (Steele, Lea and Flood 2014) used as a hash, so that any number of the stream is computed without the
+/// ones before it.
 std::uint64_t hash(std::uint64_t x) {
   x += 0x9E3779B97F4A7C15u;
   x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9u;
@@ -15,7 +16,7 @@ std::uint64_t hash(std::uint64_t x) {
   return x ^ (x >> 31);
 }
 
-/// Standard normal by Box and Muller from two hashes.
+/// A standard normal number from two hashes, by the method of Box and Muller.
 double normal(std::uint64_t key) {
   const double u = (static_cast<double>(hash(key) >> 11) + 0.5) * 0x1p-53;
   const double v = static_cast<double>(hash(key ^ 0xD1B54A32D192ED03u) >> 11) * 0x1p-53;

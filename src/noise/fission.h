@@ -7,10 +7,11 @@
 
 namespace polyrecon {
 
-/// Splits an image of known noise into two halves whose noise is independent where it is Gaussian: mean + s xi and mean
-/// - s xi with s^2 the variance of the mean and xi standard normal ("data fission": Rasines and Young 2023, Leiner et
-/// al. 2023). Each half has twice the variance, their average is the mean again. xi depends on stream, position and
-/// channel only.
+/// Splits an image of known noise into two halves, mean + s xi and mean - s xi, where s^2 is the variance of the mean
+/// and xi is standard normal ("data fission": Rasines and Young 2023, Leiner et al. 2023). Where the noise is Gaussian,
+/// the noise of the halves is independent. Each half has twice the variance of the mean, and their average is the mean.
+/// xi depends on stream, position and channel only. variance: of the mean, same shape; pixels where it is not positive
+/// stay unchanged in both halves.
 std::array<Image, 2> split_halves(const Image& mean, const Image& variance, std::uint64_t stream);
 
 }  // namespace polyrecon

@@ -13,11 +13,13 @@
 namespace polyrecon {
 namespace {
 
-constexpr int block = 5, reach = 2;  // pixels; blocks around one
-constexpr std::size_t others = 3;    // spikes that must be as high
-constexpr Real share = Real(0.5);    // of the square: all of it takes more light from highlights than noise from spikes
+constexpr int block = 5, block_radius = 2;  // pixels; blocks
+constexpr std::size_t others = 3;           // blocks that must have a spike as high
+// Part of the squared excess that counts as variance. With all of it, highlights of the scene lose more than the noise
+// of spikes is reduced.
+constexpr Real share = Real(0.5);
 
-/// By how much a pixel exceeds the second brightest of its neighbours, beyond what rounding to half floats may add.
+/// How far a pixel exceeds the second brightest of its neighbours, less what rounding to half floats may contribute.
 double excess(const Image& image, int x, int y, int c) {
   Real brightest = std::numeric_limits<Real>::lowest(), second = brightest;
   for (int v = y - 1; v <= y + 1; ++v)
@@ -31,7 +33,7 @@ double excess(const Image& image, int x, int y, int c) {
   return std::max(value - other - half_float_rounding * (std::abs(value) + std::abs(other)), 0.0);
 }
 
-/// The highest of each block.
+/// The maximum of each block.
 Image block_maxima(const Image& image) {
   Image out((image.width() + block - 1) / block, (image.height() + block - 1) / block, image.channels());
   for_rows(out.height(), [&](int row) {
@@ -45,14 +47,14 @@ Image block_maxima(const Image& image) {
   return out;
 }
 
-/// What `others` more blocks around each reach; 0 where there are no more.
-Image reached_by_others(const Image& maxima) {
+/// The highest value that `others` further blocks around each block also reach; 0 where there are too few blocks.
+Image exceeded_by_others(const Image& maxima) {
   Image out(maxima.width(), maxima.height(), maxima.channels());
   for_rows(out.height(), [&](int y) {
     std::vector<Real> around;
     for (int c = 0; c < out.channels(); ++c)
       for (int x = 0; x < out.width(); ++x) {
-        const Rect area = intersect(grow({x, y, x + 1, y + 1}, reach), maxima.bounds());
+        const Rect area = intersect(grow({x, y, x + 1, y + 1}, block_radius), maxima.bounds());
         around.clear();
         for (int v = area.y0; v < area.y1; ++v)
           for (int u = area.x0; u < area.x1; ++u) around.push_back(maxima.at(u, v, c));
@@ -76,7 +78,7 @@ Image spike_variance(const Image& radiance) {
         out.at(x, y, c) = share * storable(e * e);
       }
   });
-  const Image limit = reached_by_others(block_maxima(out));
+  const Image limit = exceeded_by_others(block_maxima(out));
   for_rows(out.height(), [&](int y) {
     for (int c = 0; c < out.channels(); ++c)
       for (int x = 0; x < out.width(); ++x)

@@ -4,12 +4,12 @@
 
 namespace polyrecon {
 
-/// What single bright pixels add to a noise variance that knows regions only, by channel: half of the square by which a
-/// pixel exceeds all but one of its eight neighbours, so that a line is no spike. Spikes of noise come in numbers, a
-/// glint stands alone: none counts for more than the fourth highest among the blocks of 5 x 5 pixels within two blocks
-/// of its own. Beyond the border the nearest
-/// pixel counts. Rounding to half floats makes no spikes. radiance: finite. Returns radiance squared, >= 0, of
-/// radiance's shape.
+/// The variance of single bright pixels, per channel, for use with a noise variance that was estimated over regions and
+/// so misses them. A spike exceeds all but one of its eight neighbours (so a line is not a spike); its variance is half
+/// of the square of this excess. Spikes of noise are numerous and a glint of the scene is not, so the variance is
+/// limited to the fourth highest of the maxima of the 5 x 5 pixel blocks within two blocks of the pixel's block.
+/// Border pixels are repeated outside the image. An excess that rounding to half floats explains is ignored.
+/// radiance: finite. Returns radiance squared, >= 0, of radiance's shape.
 Image spike_variance(const Image& radiance);
 
 }  // namespace polyrecon

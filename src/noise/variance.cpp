@@ -16,12 +16,12 @@
 namespace polyrecon {
 namespace {
 
-constexpr int fit_radius = 3, fit_stride = 2, vote_radius = 2;
-constexpr double texture_correlation = 0.5;  // of neighbours, in what a fit leaves of texture
-constexpr double half_difference_sigma =
-    1.5;  // pixels over which (A - B)^2 is averaged: one of them alone has one degree of freedom
+constexpr int fit_radius = 3, fit_stride = 2, median_radius = 2;
+constexpr double texture_correlation = 0.5;    // a in variance.h
+constexpr double half_difference_sigma = 1.5;  // pixels; the variance from the halves of one pixel has one degree of
+                                               // freedom, so it is averaged by a Gaussian
 
-/// Of a fit whose weights are 1: the trace of H, which is the rank but for columns that count in part.
+/// The trace of H for a fit whose weights are all 1: the rank, but for columns that count in part.
 double degrees_of_freedom(const NestedFactor& factor, const Window& window) {
   double trace = 0;
   for (std::size_t j = 0; j < static_cast<std::size_t>(window.count); ++j)
@@ -32,22 +32,22 @@ double degrees_of_freedom(const NestedFactor& factor, const Window& window) {
   return trace;
 }
 
-/// Calls of(i, j) for each two pixels of a window, rows of `width` pixels, that stand side by side or one above the
-/// other; returns their number.
-template <typename Of>
-int for_neighbours(const Rect& area, const Of& of) {
+/// Calls body(i, j) for each pair of horizontal or vertical neighbours of a window that covers area; i and j count its
+/// pixels row by row. Returns the number of pairs.
+template <typename Body>
+int for_neighbours(const Rect& area, const Body& body) {
   const int width = area.width(), height = area.height();
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x) {
       const auto i = static_cast<std::size_t>(y * width + x);
-      if (x + 1 < width) of(i, i + 1);
-      if (y + 1 < height) of(i, i + static_cast<std::size_t>(width));
+      if (x + 1 < width) body(i, i + 1);
+      if (y + 1 < height) body(i, i + static_cast<std::size_t>(width));
     }
   return (width - 1) * height + width * (height - 1);
 }
 
-/// Mean of H over the pairs of neighbours.
-double neighbours_in_hat(const NestedFactor& factor, const Window& window, const Rect& area) {
+/// Mean of H over the pairs of neighbours: h in variance.h.
+double mean_hat_of_neighbours(const NestedFactor& factor, const Window& window, const Rect& area) {
   double sum = 0;
   const auto pitch = static_cast<std::size_t>(window.pitch);
   const int pairs = for_neighbours(area, [&](std::size_t i, std::size_t j) {
@@ -57,8 +57,8 @@ double neighbours_in_hat(const NestedFactor& factor, const Window& window, const
   return pairs > 0 ? sum / pairs : 0;
 }
 
-/// y less the fit, pixel by pixel: |y|^2 - sum z^2 would cancel to the rounding of q where the noise is small beside
-/// the light.
+/// Computes y minus the fit pixel by pixel. The sum |y|^2 - sum z^2 would be faster, but it cancels to the rounding of
+/// q where the noise is small compared with the radiance.
 void residuals_of(const NestedFactor& factor, const Window& window, const std::vector<Real>& weight, int channel,
                   std::vector<double>& rest) {
   const Real* values =
@@ -74,7 +74,7 @@ void residuals_of(const NestedFactor& factor, const Window& window, const std::v
   }
 }
 
-/// Variance of the noise in the residuals of a fit (variance.h).
+/// Variance N of the noise in the residuals of a fit; see variance.h.
 double noise_in(const std::vector<double>& rest, const Rect& area, double freedom, double hat) {
   double squares = 0, covariance = 0;
   for (const double r : rest) squares += r * r;
@@ -83,7 +83,7 @@ double noise_in(const std::vector<double>& rest, const Rect& area, double freedo
   return std::max((squares / freedom - covariance / texture_correlation) / (1 + hat / texture_correlation), 0.0);
 }
 
-/// What the threads of estimate_variance work with.
+/// Buffers of one thread.
 struct Scratch {
   Window window;
   NestedFactor factor;
@@ -91,7 +91,8 @@ struct Scratch {
   std::vector<double> rest;
 };
 
-/// Variance of the noise per channel by the fit around a centre; -1 where there are too few pixels for the columns.
+/// Estimates the variance of the noise per channel from the fit around a centre; -1 where the window has too few pixels
+/// for the columns.
 void fit_noise(const Image& y, const Image& features, int cx, int cy, Scratch& s, Real* out) {
   const BasisLayout layout(features.channels(), 1);
   Window& window = s.window;
@@ -109,14 +110,14 @@ void fit_noise(const Image& y, const Image& features, int cx, int cy, Scratch& s
   gather({&y, &y, &features, nullptr}, layout, cx, cy, fit_radius, window);
   factorise(window, window.layout.columns(), s.weight.data(), s.factor);
   const double freedom = window.count - degrees_of_freedom(s.factor, window);
-  const double hat = neighbours_in_hat(s.factor, window, area);
+  const double hat = mean_hat_of_neighbours(s.factor, window, area);
   for (int c = 0; c < y.channels(); ++c) {
     residuals_of(s.factor, window, s.weight, c, s.rest);
     out[c] = freedom > 0.5 ? storable(noise_in(s.rest, area, freedom, hat)) : Real(-1);
   }
 }
 
-/// As many features as the local model holds, in the frame's order.
+/// The features that fit into the local model, in the frame's order, repaired.
 Image repaired_features(const Frame& frame) {
   std::vector<const Image*> used;
   int channels = 0;
@@ -137,24 +138,23 @@ Image repaired_features(const Frame& frame) {
   return out;
 }
 
-/// The noise that remains where rounding to half floats, whose error is at most 2^-11 of the value, explains none of
-/// it.
+/// The variance, or 0 where rounding to half floats, with its error of at most 2^-11 of the value, explains it.
 Real beyond_rounding(Real variance, Real value) {
   const Real rounding = value * Real(half_float_rounding);
   return variance > rounding * rounding ? variance : 0;
 }
 
-/// Median over the fits within vote_radius (in fits) of pixel (x, y).
-Real vote(const Image& fits, int x, int y, int c) {
+/// Median of the estimates of the fits around pixel (x, y), up to median_radius fits away.
+Real median_of_fits(const Image& fits, int x, int y, int c) {
   const int fx = x / fit_stride, fy = y / fit_stride;
-  const Rect area = intersect(grow({fx, fy, fx + 1, fy + 1}, vote_radius), fits.bounds());
-  std::vector<Real> votes;
+  const Rect area = intersect(grow({fx, fy, fx + 1, fy + 1}, median_radius), fits.bounds());
+  std::vector<Real> estimates;
   for (int v = area.y0; v < area.y1; ++v)
     for (int u = area.x0; u < area.x1; ++u)
-      if (fits.at(u, v, c) >= 0) votes.push_back(fits.at(u, v, c));
-  if (votes.empty()) return 0;
-  const auto middle = votes.begin() + static_cast<std::ptrdiff_t>(votes.size() / 2);
-  std::nth_element(votes.begin(), middle, votes.end());
+      if (fits.at(u, v, c) >= 0) estimates.push_back(fits.at(u, v, c));
+  if (estimates.empty()) return 0;
+  const auto middle = estimates.begin() + static_cast<std::ptrdiff_t>(estimates.size() / 2);
+  std::nth_element(estimates.begin(), middle, estimates.end());
   return *middle;
 }
 
@@ -171,7 +171,7 @@ Image variance_from_halves(const Pass& beauty) {
 
 bool noise_is_measured(const Frame& frame) { return frame.beauty.noise_is_told(); }
 
-bool variance_is_estimated(FeatureKind kind, bool told) { return !told && kind != FeatureKind::Depth; }
+bool variance_is_estimated(FeatureKind kind, bool known) { return !known && kind != FeatureKind::Depth; }
 
 Image estimate_variance(const Image& y, const Image& features, Progress& progress) {
   Image fits((y.width() + fit_stride - 1) / fit_stride, (y.height() + fit_stride - 1) / fit_stride, y.channels());
@@ -189,7 +189,7 @@ Image estimate_variance(const Image& y, const Image& features, Progress& progres
     const int v = static_cast<int>(row);
     for (int c = 0; c < y.channels(); ++c)
       for (int x = 0; x < out.width(); ++x) {
-        const Real value = y.at(x, v, c), noise = std::max(vote(fits, x, v, c), out.at(x, v, c));
+        const Real value = y.at(x, v, c), noise = std::max(median_of_fits(fits, x, v, c), out.at(x, v, c));
         out.at(x, v, c) = value == 0 ? Real(0) : beyond_rounding(noise, value);
       }
   });

@@ -4,12 +4,15 @@
 
 namespace polyrecon {
 
-/// A variance estimated from a few samples can be far too small, or zero, where light comes in rare spikes: a pixel
-/// that no spike has hit yet believes that it is exact, refuses all neighbours and stays a dark speck. Each pixel
-/// therefore claims at least the median of its 5 x 5 neighbourhood (the mean of the medians of its columns' and of its
-/// rows' medians) and half of the square of its mean standard deviation (the mean variance would be the brightest
-/// spike's alone). Where a whole neighbourhood is free of noise it stays so. Beyond the border the nearest pixel
-/// counts.
+/// Raises variances that are too small for their neighbourhood. A variance that was computed from a few samples can be
+/// far too small, or zero, where radiance comes in rare spikes: a pixel that no spike has hit yet looks exact, gives
+/// all its neighbours no weight and stays a dark speck. So the variance of a pixel becomes at least
+/// - the median over its 5 x 5 neighbourhood, computed as the mean of the median of its columns' medians and the median
+///   of its rows' medians, and
+/// - half of the square of the mean standard deviation over the neighbourhood. The mean variance would be dominated by
+///   the brightest spike.
+/// A neighbourhood without any noise keeps variance 0. Border pixels are repeated outside the image.
+/// variance: >= 0, any channels. Returns the same shape.
 Image floor_variance(const Image& variance);
 
 }  // namespace polyrecon

@@ -19,20 +19,21 @@ double brightness(const Image& color, std::size_t i) {
   return sum / 3;
 }
 
-/// Where the value of an outlier comes from; index -1 where the pixel is none.
+/// The outliers of one half.
 struct Replacement {
-  std::vector<std::ptrdiff_t> source;
-  std::vector<int> count_above;  ///< Summed-area table of outliers, (width + 1) x (height + 1).
+  std::vector<std::ptrdiff_t> source;  ///< Index of the pixel that replaces each pixel; -1 where it is no outlier.
+  std::vector<int> count_above;        ///< Summed-area table of outliers, (width + 1) x (height + 1).
 };
 
-/// True if fewer than three pixels of the half around (x, y) are as bright as it: a cheap test that all but a few fail.
-bool stands_out(const Image& own, int x, int y, int radius) {
-  const double value = brightness(own, own.index(x, y));
-  const Rect around = intersect(grow({x, y, x + 1, y + 1}, radius), own.bounds());
-  int as_bright = -1;  // itself
+/// Whether fewer than three pixels of the half around (x, y) are as bright as it. A cheap test that nearly all pixels
+/// fail.
+bool stands_out(const Image& half, int x, int y, int radius) {
+  const double value = brightness(half, half.index(x, y));
+  const Rect around = intersect(grow({x, y, x + 1, y + 1}, radius), half.bounds());
+  int as_bright = -1;  // not counting the pixel itself
   for (int v = around.y0; v < around.y1; ++v)
     for (int u = around.x0; u < around.x1; ++u)
-      if (brightness(own, own.index(u, v)) >= value && ++as_bright == 3) return false;
+      if (brightness(half, half.index(u, v)) >= value && ++as_bright == 3) return false;
   return true;
 }
 
@@ -42,7 +43,7 @@ std::ptrdiff_t neighbour_of_median(std::vector<std::pair<double, std::ptrdiff_t>
   return middle->second;
 }
 
-/// Whether what a pixel has in excess is within what its own noise allows: then it cannot be trusted.
+/// Whether the noise variance of a pixel allows its excess, so that the pixel cannot be trusted.
 bool unreliable(const HalfPair& pair, std::size_t center, double excess, const OutlierParams& p) {
   if (!p.variance_is_measured) return true;
   double variance = 0;
@@ -50,32 +51,33 @@ bool unreliable(const HalfPair& pair, std::size_t center, double excess, const O
   return excess * excess < p.reliability * p.reliability * variance;
 }
 
-/// Where the pixel of half h stands far above what both halves hold around it: the neighbour of median brightness.
+/// The first test of remove_outliers: returns the neighbour of median brightness if the pixel of half h is far brighter
+/// than the pixels of both halves around it, else -1.
 std::ptrdiff_t against_neighbours(const HalfPair& pair, std::size_t h, int x, int y, bool independent,
                                   const OutlierParams& p) {
-  const Image &own = pair.color[h], &other = pair.color[1 - h];
-  if (!stands_out(own, x, y, p.neighbourhood)) return -1;
-  const std::size_t center = own.index(x, y);
-  const double value = brightness(own, center);
-  const Rect around = intersect(grow({x, y, x + 1, y + 1}, p.neighbourhood), own.bounds());
-  std::vector<double> witnesses;
+  const Image &half = pair.color[h], &other = pair.color[1 - h];
+  if (!stands_out(half, x, y, p.neighbourhood)) return -1;
+  const std::size_t center = half.index(x, y);
+  const double value = brightness(half, center);
+  const Rect around = intersect(grow({x, y, x + 1, y + 1}, p.neighbourhood), half.bounds());
+  std::vector<double> surroundings;
   std::vector<std::pair<double, std::ptrdiff_t>> neighbours;
   for (int v = around.y0; v < around.y1; ++v)
     for (int u = around.x0; u < around.x1; ++u) {
-      const std::size_t i = own.index(u, v);
-      if (i != center || independent) witnesses.push_back(brightness(other, i));
+      const std::size_t i = half.index(u, v);
+      if (i != center || independent) surroundings.push_back(brightness(other, i));
       if (i == center) continue;
-      witnesses.push_back(brightness(own, i));
-      neighbours.emplace_back(witnesses.back(), static_cast<std::ptrdiff_t>(i));
+      surroundings.push_back(brightness(half, i));
+      neighbours.emplace_back(surroundings.back(), static_cast<std::ptrdiff_t>(i));
     }
   if (neighbours.size() < 3) return -1;
-  // The third brightest witness: one spike beside this one, in either half, must not hide it.
-  const std::size_t third = witnesses.size() - 3;
-  std::nth_element(witnesses.begin(), witnesses.begin() + static_cast<std::ptrdiff_t>(third), witnesses.end());
-  const double top = witnesses[third];
+  // The third brightest, so that one more spike nearby, in either half, does not hide this one.
+  const std::size_t third = surroundings.size() - 3;
+  std::nth_element(surroundings.begin(), surroundings.begin() + static_cast<std::ptrdiff_t>(third), surroundings.end());
+  const double top = surroundings[third];
   if (!(value > top)) return -1;
-  const auto middle = witnesses.begin() + static_cast<std::ptrdiff_t>(witnesses.size() / 2);
-  std::nth_element(witnesses.begin(), middle, witnesses.end());
+  const auto middle = surroundings.begin() + static_cast<std::ptrdiff_t>(surroundings.size() / 2);
+  std::nth_element(surroundings.begin(), middle, surroundings.end());
   const double median = *middle;
   const double excess = value - median;
   const double height = independent ? p.height : 2 * p.height;
@@ -83,30 +85,30 @@ std::ptrdiff_t against_neighbours(const HalfPair& pair, std::size_t h, int x, in
   return neighbour_of_median(neighbours);
 }
 
-/// Whether fewer than three pixels around differ between the halves by the excess over that height, or more: a cheap
-/// test that all but a few fail.
-bool stands_out_of_differences(const Image& own, const Image& other, const Rect& around, std::size_t center,
+/// Whether fewer than three of the pixels around differ between the halves by excess / height or more. A cheap test
+/// that nearly all pixels fail.
+bool stands_out_of_differences(const Image& half, const Image& other, const Rect& around, std::size_t center,
                                double excess, double height) {
   int as_large = 0;
   for (int v = around.y0; v < around.y1; ++v)
     for (int u = around.x0; u < around.x1; ++u) {
-      const std::size_t i = own.index(u, v);
-      if (i == center || height * std::abs(brightness(own, i) - brightness(other, i)) < excess) continue;
+      const std::size_t i = half.index(u, v);
+      if (i == center || height * std::abs(brightness(half, i) - brightness(other, i)) < excess) continue;
       if (++as_large == 3) return false;
     }
   return true;
 }
 
-/// The third largest difference between the halves around a pixel; the largest possible one where there are fewer.
-double third_difference(const Image& own, const Image& other, const Rect& around, std::size_t center) {
+/// The third largest difference between the halves around a pixel; infinite where there are fewer than three pixels.
+double third_difference(const Image& half, const Image& other, const Rect& around, std::size_t center) {
   std::array<double, 3> largest;
   largest.fill(std::numeric_limits<double>::infinity());
   std::size_t count = 0;
   for (int v = around.y0; v < around.y1; ++v)
     for (int u = around.x0; u < around.x1; ++u) {
-      const std::size_t i = own.index(u, v);
+      const std::size_t i = half.index(u, v);
       if (i == center) continue;
-      double difference = std::abs(brightness(own, i) - brightness(other, i));
+      double difference = std::abs(brightness(half, i) - brightness(other, i));
       if (count < 3) {
         largest[count++] = difference;
         if (count == 3) std::sort(largest.begin(), largest.end(), std::greater<>());
@@ -118,35 +120,36 @@ double third_difference(const Image& own, const Image& other, const Rect& around
   return largest[2];
 }
 
-/// Where the pixel of half h stands far above the other half's, as no pixel around it does: beside an edge, whose
-/// bright side hides a spike from against_neighbours. Of the five neighbours that the other half takes for the most
-/// alike the one of median brightness; none where all are so unlike that putting one here could cost more than a third
-/// of the excess.
+/// The second test of remove_outliers: if the pixel of half h is far brighter than that of the other half and the
+/// halves differ much less around it, returns the neighbour of median brightness among the five that are most alike in
+/// the other half. -1 if the pixel is no outlier, or if all neighbours differ so much in the other half that a
+/// replacement might be wrong by more than a third of the excess.
 std::ptrdiff_t against_other_half(const HalfPair& pair, std::size_t h, int x, int y, const OutlierParams& p) {
-  const Image &own = pair.color[h], &other = pair.color[1 - h];
-  const std::size_t center = own.index(x, y);
-  const double seen_by_other = brightness(other, center), excess = brightness(own, center) - seen_by_other;
+  const Image &half = pair.color[h], &other = pair.color[1 - h];
+  const std::size_t center = half.index(x, y);
+  const double value_in_other = brightness(other, center), excess = brightness(half, center) - value_in_other;
   if (!(excess > 0) || !unreliable(pair, center, excess, p)) return -1;
-  const Rect around = intersect(grow({x, y, x + 1, y + 1}, p.neighbourhood), own.bounds());
-  if (!stands_out_of_differences(own, other, around, center, excess, p.height_over_other_half)) return -1;
-  const double third = third_difference(own, other, around, center);
+  const Rect around = intersect(grow({x, y, x + 1, y + 1}, p.neighbourhood), half.bounds());
+  if (!stands_out_of_differences(half, other, around, center, excess, p.height_over_other_half)) return -1;
+  const double third = third_difference(half, other, around, center);
   if (!(excess > p.height_over_other_half * third)) return -1;
   std::vector<std::pair<double, std::ptrdiff_t>> alike, neighbours;
   for (int v = around.y0; v < around.y1; ++v)
     for (int u = around.x0; u < around.x1; ++u) {
-      const std::size_t i = own.index(u, v);
-      const double unlike = std::abs(brightness(other, i) - seen_by_other);
-      const bool spike = std::abs(brightness(own, i) - brightness(other, i)) > third;
-      if (i != center && !spike && 3 * unlike < excess) alike.emplace_back(unlike, static_cast<std::ptrdiff_t>(i));
+      const std::size_t i = half.index(u, v);
+      const double difference = std::abs(brightness(other, i) - value_in_other);
+      const bool spike = std::abs(brightness(half, i) - brightness(other, i)) > third;
+      if (i != center && !spike && 3 * difference < excess)
+        alike.emplace_back(difference, static_cast<std::ptrdiff_t>(i));
     }
   if (alike.empty()) return -1;
   std::sort(alike.begin(), alike.end());
   alike.resize(std::min(alike.size(), std::size_t{5}));
-  for (const auto& [unlike, i] : alike) neighbours.emplace_back(brightness(own, static_cast<std::size_t>(i)), i);
+  for (const auto& [difference, i] : alike) neighbours.emplace_back(brightness(half, static_cast<std::size_t>(i)), i);
   return neighbour_of_median(neighbours);
 }
 
-/// Index of the pixel whose value takes the place of pixel (x, y) of half h if that is an outlier, else -1.
+/// Index of the pixel that replaces pixel (x, y) of half h if that is an outlier, else -1.
 std::ptrdiff_t replacement_of(const HalfPair& pair, std::size_t h, int x, int y, bool independent,
                               const OutlierParams& p) {
   const std::ptrdiff_t neighbour = against_neighbours(pair, h, x, y, independent, p);
@@ -172,6 +175,7 @@ Replacement find(const HalfPair& pair, std::size_t h, bool independent, const Ou
   return out;
 }
 
+/// Whether outliers are so rare around a pixel that they are noise; where they are common they are the scene's energy.
 bool rare(const Replacement& found, int width, int height, int x, int y, const OutlierParams& p) {
   const Rect r = intersect(grow({x, y, x + 1, y + 1}, p.density_radius), {0, 0, width, height});
   const auto sum = [&](int u, int v) {
@@ -190,7 +194,7 @@ std::vector<Outlier> remove_outliers(HalfPair& pair, bool independent_halves, co
   const int channels = ColorLayout(pair.color[0].channels()).layer_channels();
   const std::array<Replacement, 2> found{find(pair, 0, independent_halves, params, progress),
                                          find(pair, 1, independent_halves, params, progress)};
-  // Sources are read from the untouched images: an outlier may stand beside another.
+  // Replacements are read from copies of the input, as an outlier may be next to another.
   const std::array<Image, 2> color = pair.color;
   const Image variance = pair.variance;
   std::vector<Outlier> outliers;

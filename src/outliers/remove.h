@@ -9,13 +9,18 @@
 
 namespace polyrecon {
 
-/// Finds the pixels of each half that stand far above what both halves say of their neighbourhood, or far above the
-/// other half's own pixel as nothing around does (a spike beside an edge), and whose own variance says that they cannot
-/// be trusted; replaces them by the neighbour of median brightness (in the second case among those that the other half
-/// finds alike), with all its colour channels (so that layers that add up still do), and its variance; alpha stays. A
-/// spike that both halves saw is a feature of the scene and stays; with independent_halves false the other half's own
-/// pixel is no witness.
-/// Returned in order of rows, half 0 first within a pixel.
+/// Finds and replaces outliers, equation (10). A pixel of a half is an outlier if its excess is within what its noise
+/// variance allows (OutlierParams::reliability), and either
+/// - it is far brighter than its neighbourhood in both halves, or
+/// - it is far brighter than the same pixel of the other half, while the halves differ much less around it. This test
+///   finds a spike next to an edge, which the bright side of the edge hides from the first test.
+/// An outlier gets the values of the neighbour of median brightness, in the second case of the neighbours that are
+/// alike in the other half: its variance and all colour channels but alpha, so that layers that add up to the beauty
+/// still do.
+///
+/// A spike that both halves have is a feature of the scene and stays. With independent_halves false, the same pixel of
+/// the other half is no evidence for that, and the second test is not made. Returns the outliers in the order of rows,
+/// half 0 before half 1.
 std::vector<Outlier> remove_outliers(HalfPair& pair, bool independent_halves, const OutlierParams& params,
                                      Progress& progress);
 

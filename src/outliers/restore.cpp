@@ -11,10 +11,10 @@
 namespace polyrecon {
 namespace {
 
-/// Of a pixel, where the whole image takes part; more only where all must gain more.
+/// Largest relative gain of a pixel where the whole image takes part, unless all pixels must gain more.
 constexpr double kMostGain = 0.5;
 
-constexpr double kBelowAll = 1e-100;  ///< No positive value of an image is less.
+constexpr double kBelowAll = 1e-100;  ///< Below every positive value of an image.
 
 double positive_part(Real value) { return usable(value) ? std::max(static_cast<double>(value), 0.0) : 0; }
 
@@ -31,48 +31,50 @@ double sum_of(const Image& image, int channel, const Term& term) {
   });
 }
 
-/// kappa of every pixel, of the brightness (one channel, one table of sums): how far it takes part in what is given
-/// back.
-Image parts_of(const Image& variance, double quiet, const Image& image) {
-  Image part(image.width(), image.height(), 1);
+/// kappa of every pixel. It is computed for the brightness, not per channel, so that one channel and one table of sums
+/// suffice.
+Image kappa_of(const Image& variance, double noise_free, const Image& image) {
+  Image kappa(image.width(), image.height(), 1);
   for_rows(image.height(), [&](int y) {
     for (int x = 0; x < image.width(); ++x) {
       double sigma = 0, yhat = 0;
       for (int c = 0; c < 3; ++c) {
-        sigma += std::sqrt(0.5 * static_cast<double>(variance.at(x, y, c)));  // of the mean of the halves
+        // Half of the variance of a half is that of the mean.
+        sigma += std::sqrt(0.5 * static_cast<double>(variance.at(x, y, c)));
         yhat += positive_part(image.at(x, y, c));
       }
-      part.at(x, y, 0) = static_cast<Real>(sigma < quiet * yhat ? sigma / (quiet * yhat) : 1);
+      kappa.at(x, y, 0) = static_cast<Real>(sigma < noise_free * yhat ? sigma / (noise_free * yhat) : 1);
     }
   });
-  return part;
+  return kappa;
 }
 
-/// kappa yhat^2 of a pixel. What is not positive receives nothing.
-double share_of(Real value, Real part) {
+/// kappa yhat^2 of a pixel; 0 for a value that is not positive.
+double share_of(Real value, Real kappa) {
   const double yhat = positive_part(value);
-  return static_cast<double>(part) * yhat * yhat;
+  return static_cast<double>(kappa) * yhat * yhat;
 }
 
-/// How energy given to all pixels of a channel is shared out: kappa yhat min(yhat, limit) / sum of that.
+/// How energy for all pixels of a channel is shared out: kappa yhat min(yhat, limit) / sum of the same.
 struct Sharing {
-  double limit = 0, sum = 0;  ///< 0: no pixel is positive.
+  double limit = 0, sum = 0;  ///< sum is 0 where no pixel is positive.
 
-  double of(Real value, Real part) const {
+  double of(Real value, Real kappa) const {
     const double yhat = positive_part(value);
-    return static_cast<double>(part) * yhat * std::min(yhat, limit) / sum;
+    return static_cast<double>(kappa) * yhat * std::min(yhat, limit) / sum;
   }
 };
 
-/// What is left to the pixels up to a limit, and what the others hold.
-struct Light {
-  double squares, above;
+/// Sums over the pixels below and above a limit.
+struct LimitedSums {
+  double squares;  ///< Of kappa v^2 over the positive values up to the limit.
+  double above;    ///< Of kappa v over the values above the limit.
 };
 
-Light light_of(const Image& image, const Image& part, int channel, double limit) {
-  const auto kappa = [&](std::size_t i) { return static_cast<double>(part.plane(0)[i]); };
-  return {sum_of(image, channel, [&](double v, std::size_t i) { return v > 0 && v <= limit ? kappa(i) * v * v : 0.0; }),
-          sum_of(image, channel, [&](double v, std::size_t i) { return v > limit ? kappa(i) * v : 0.0; })};
+LimitedSums limited_sums(const Image& image, const Image& kappa, int channel, double limit) {
+  const auto k = [&](std::size_t i) { return static_cast<double>(kappa.plane(0)[i]); };
+  return {sum_of(image, channel, [&](double v, std::size_t i) { return v > 0 && v <= limit ? k(i) * v * v : 0.0; }),
+          sum_of(image, channel, [&](double v, std::size_t i) { return v > limit ? k(i) * v : 0.0; })};
 }
 
 double greatest(const Image& image, int channel) {
@@ -85,26 +87,27 @@ double greatest(const Image& image, int channel) {
   return *std::max_element(of_row.begin(), of_row.end());
 }
 
-/// By squares, which cost the least relative squared error, with no pixel's gain above kMostGain: what is brighter than
-/// the limit gains that, which is the least error under this bound (the limit falls until the gain is met; each step
-/// solves for it with the pixels known to lie above). Where the bound cannot be kept all gain alike.
-Sharing sharing_of(double energy, const Image& image, const Image& part, int channel) {
+/// Finds the sharing of least relative squared error in which no pixel gains more than kMostGain: pixels above a limit
+/// gain that, the others share by squares. The limit falls until the bound is met; each step solves for the limit with
+/// the pixels that are known to lie above. Where the bound cannot be met, the limit is below all values, and all pixels
+/// gain the same factor.
+Sharing sharing_of(double energy, const Image& image, const Image& kappa, int channel) {
   double limit = greatest(image, channel);
-  Light light = light_of(image, part, channel, limit);
-  while (std::abs(energy) * limit > kMostGain * (light.squares + limit * light.above) * (1 + 1e-9)) {
-    const double left = std::abs(energy) - kMostGain * light.above;
-    limit = left > 0 ? std::min(kMostGain * light.squares / left, limit * (1 - 1e-9)) : 0;
-    light = light_of(image, part, channel, limit);
-    if (light.squares > 0) continue;
+  LimitedSums sums = limited_sums(image, kappa, channel, limit);
+  while (std::abs(energy) * limit > kMostGain * (sums.squares + limit * sums.above) * (1 + 1e-9)) {
+    const double left = std::abs(energy) - kMostGain * sums.above;
+    limit = left > 0 ? std::min(kMostGain * sums.squares / left, limit * (1 - 1e-9)) : 0;
+    sums = limited_sums(image, kappa, channel, limit);
+    if (sums.squares > 0) continue;
     limit = kBelowAll;
-    light = light_of(image, part, channel, limit);
+    sums = limited_sums(image, kappa, channel, limit);
     break;
   }
-  return {limit, light.squares + limit * light.above};
+  return {limit, sums.squares + limit * sums.above};
 }
 
-/// Sums of term(x, y) over rectangles, by a summed-area table for each block of pixels: in one for the whole
-/// image the square of a sun would drown what its dark surroundings add.
+/// Sums of term(x, y) over rectangles, by a summed-area table for each block of pixels. In a single table for the whole
+/// image, the terms of dark surroundings would be lost in the rounding of the square of a sun.
 class BoxSums {
  public:
   template <typename Term>
@@ -140,21 +143,21 @@ class BoxSums {
   std::vector<double> sums_;
 };
 
-/// The square around an outlier over which the root mean square of every channel's gain, weighed by kappa,
-/// e_o / sqrt(sum kappa x sum kappa yhat^2), is small enough.
-Rect restoration_area(const Outlier& outlier, const std::vector<BoxSums>& sums, const BoxSums& taking_part,
+/// Omega_o: the smallest square around an outlier over which the root mean square of every channel's gain, weighted by
+/// kappa, e_o / sqrt(sum kappa x sum kappa yhat^2), is at most max_gain. kappa_sums: sums of kappa.
+Rect restoration_area(const Outlier& outlier, const std::vector<BoxSums>& sums, const BoxSums& kappa_sums,
                       double max_gain, const Rect& bounds) {
   Rect area;
   for (int radius = 9;; radius += radius / 2) {
     area = intersect(grow({outlier.x, outlier.y, outlier.x + 1, outlier.y + 1}, radius), bounds);
     bool small = true;
     for (std::size_t c = 0; c < sums.size(); ++c)
-      small &= std::abs(outlier.energy[c]) <= max_gain * std::sqrt(taking_part.sum(area) * sums[c].sum(area));
+      small &= std::abs(outlier.energy[c]) <= max_gain * std::sqrt(kappa_sums.sum(area) * sums[c].sum(area));
     if (small || area == bounds) return area;
   }
 }
 
-/// Adds value to every pixel of r once `integrate` has run.
+/// Records at the corners of r that value is to be added to every pixel of r; integrate() then does so.
 void add_box(std::vector<double>& corners, std::size_t row, const Rect& r, double value) {
   const auto at = [&](int x, int y) -> double& {
     return corners[static_cast<std::size_t>(y) * row + static_cast<std::size_t>(x)];
@@ -172,15 +175,15 @@ void integrate(std::vector<double>& corners, std::size_t row) {
   for (std::size_t i = row; i < corners.size(); ++i) corners[i] += corners[i - row];
 }
 
-/// Adds energy[c] to the channels c = color, color + 3, ... as sharing_of has it for `color`. Nothing where no pixel of
-/// that takes part.
-void give_to_all(const std::vector<double>& energy, int color, const Image& part, Image& image) {
-  const Sharing sharing = sharing_of(energy[static_cast<std::size_t>(color)], image, part, color);
+/// Adds energy[c] to the channel c of every layer that has the beauty's primary `color`, shared out as sharing_of finds
+/// it for the beauty. Does nothing if no pixel takes part.
+void give_to_all(const std::vector<double>& energy, int color, const Image& kappa, Image& image) {
+  const Sharing sharing = sharing_of(energy[static_cast<std::size_t>(color)], image, kappa, color);
   if (!(sharing.sum > 0)) return;
   for_rows(image.height(), [&](int y) {
     std::vector<double> parts(static_cast<std::size_t>(image.width()));
-    std::transform(image.row(color, y), image.row(color, y) + image.width(), part.row(0, y), parts.begin(),
-                   [&](Real yhat, Real kappa) { return sharing.of(yhat, kappa); });
+    std::transform(image.row(color, y), image.row(color, y) + image.width(), kappa.row(0, y), parts.begin(),
+                   [&](Real yhat, Real k) { return sharing.of(yhat, k); });
     for (int layer = 0; layer < ColorLayout(static_cast<int>(energy.size())).layers(); ++layer) {
       const int c = ColorLayout::channel(layer, color);
       Real* out = image.row(c, y);
@@ -194,19 +197,19 @@ void give_to_all(const std::vector<double>& energy, int color, const Image& part
 
 void restore_energy(const std::vector<Outlier>& outliers, const Image& variance, double max_gain, Image& image) {
   if (outliers.empty()) return;
-  const Image shape = image;  // yhat before anything is given back
-  const Image part = parts_of(variance, max_gain, image);
+  const Image shape = image;  // yhat before any energy is returned
+  const Image kappa = kappa_of(variance, max_gain, image);
   std::vector<BoxSums> sums;
   for (int c = 0; c < 3; ++c)
-    sums.emplace_back(shape, [&](int x, int y) { return share_of(shape.at(x, y, c), part.at(x, y, 0)); });
-  const BoxSums taking_part(shape, [&](int x, int y) { return static_cast<double>(part.at(x, y, 0)); });
+    sums.emplace_back(shape, [&](int x, int y) { return share_of(shape.at(x, y, c), kappa.at(x, y, 0)); });
+  const BoxSums kappa_sums(shape, [&](int x, int y) { return static_cast<double>(kappa.at(x, y, 0)); });
   std::vector<Rect> areas(outliers.size());
   in_parallel(areas.size(), [&](std::size_t k) {
-    areas[k] = restoration_area(outliers[k], sums, taking_part, max_gain, image.bounds());
+    areas[k] = restoration_area(outliers[k], sums, kappa_sums, max_gain, image.bounds());
   });
   const auto row = static_cast<std::size_t>(image.width()) + 1;
-  std::vector<double> of_all(static_cast<std::size_t>(ColorLayout(image.channels()).layer_channels()), 0.0);
-  for (std::size_t c = 0; c < of_all.size(); ++c) {
+  std::vector<double> whole_image_energy(static_cast<std::size_t>(ColorLayout(image.channels()).layer_channels()), 0.0);
+  for (std::size_t c = 0; c < whole_image_energy.size(); ++c) {
     const auto channel = static_cast<int>(c), color = ColorLayout::beauty_channel(channel);
     std::vector<double> gain(row * (static_cast<std::size_t>(image.height()) + 1), 0.0);
     for (std::size_t k = 0; k < outliers.size(); ++k) {
@@ -214,7 +217,7 @@ void restore_energy(const std::vector<Outlier>& outliers, const Image& variance,
       if (!(sum > 0))
         image.at(outliers[k].x, outliers[k].y, channel) += static_cast<Real>(energy);
       else if (areas[k] == image.bounds())
-        of_all[c] += energy;
+        whole_image_energy[c] += energy;
       else
         add_box(gain, row, areas[k], energy / sum);
     }
@@ -222,18 +225,19 @@ void restore_energy(const std::vector<Outlier>& outliers, const Image& variance,
     for_rows(image.height(), [&](int y) {
       const double* gains = gain.data() + static_cast<std::size_t>(y) * row;
       for (int x = 0; x < image.width(); ++x)
-        image.at(x, y, channel) += static_cast<Real>(share_of(shape.at(x, y, color), part.at(x, y, 0)) * gains[x]);
+        image.at(x, y, channel) += static_cast<Real>(share_of(shape.at(x, y, color), kappa.at(x, y, 0)) * gains[x]);
     });
   }
-  if (std::all_of(of_all.begin(), of_all.end(), [](double energy) { return energy == 0; })) return;
-  for (int color = 0; color < 3; ++color) give_to_all(of_all, color, part, image);
+  if (std::all_of(whole_image_energy.begin(), whole_image_energy.end(), [](double energy) { return energy == 0; }))
+    return;
+  for (int color = 0; color < 3; ++color) give_to_all(whole_image_energy, color, kappa, image);
 }
 
 std::size_t restore_channels(std::size_t color_channels) {
   constexpr std::size_t in_double = sizeof(double) / sizeof(Real);
-  constexpr std::size_t part = 1, box_sums = 4 * in_double, gain = in_double;
+  constexpr std::size_t kappa = 1, box_sums = 4 * in_double, gain = in_double;
   const std::size_t image = color_channels, shape = color_channels;
-  return image + shape + part + box_sums + gain;
+  return image + shape + kappa + box_sums + gain;
 }
 
 std::vector<double> channel_sums(const Image& image) {
@@ -242,14 +246,14 @@ std::vector<double> channel_sums(const Image& image) {
   return sums;
 }
 
-void restore_everywhere(const std::vector<double>& energy, const Image& variance, double quiet, Image& image) {
-  const Image part = parts_of(variance, quiet, image);
-  for (int color = 0; color < 3; ++color) give_to_all(energy, color, part, image);
+void restore_everywhere(const std::vector<double>& energy, const Image& variance, double noise_free, Image& image) {
+  const Image kappa = kappa_of(variance, noise_free, image);
+  for (int color = 0; color < 3; ++color) give_to_all(energy, color, kappa, image);
 }
 
-std::array<double, 3> restore_totals(const std::vector<double>& totals, const Image& variance, double quiet,
+std::array<double, 3> restore_totals(const std::vector<double>& totals, const Image& variance, double noise_free,
                                      double max_gain, Image& image) {
-  const Image part = parts_of(variance, quiet, image);
+  const Image kappa = kappa_of(variance, noise_free, image);
   const std::vector<double> found = channel_sums(image);
   std::vector<double> missing(totals.size());
   for (std::size_t c = 0; c < totals.size(); ++c) missing[c] = totals[c] - found[c];
@@ -260,7 +264,7 @@ std::array<double, 3> restore_totals(const std::vector<double>& totals, const Im
     const double gain = positive > 0 ? missing[c] / positive : 0;
     if (!(std::abs(gain) <= max_gain) || !(positive > 0)) continue;
     gains[c] = gain;
-    give_to_all(missing, color, part, image);
+    give_to_all(missing, color, kappa, image);
   }
   return gains;
 }

@@ -8,32 +8,34 @@
 
 namespace polyrecon {
 
-/// Gives back what remove_outliers took: equations (10) and (11) with a gain that is proportional to the pixel's
-/// brightness, yhat(i) += e_o kappa yhat(i)^2 / sum over Omega_o of kappa yhat^2, which of all ways to add e_o costs
-/// the least relative squared error, sum (d / yhat)^2 / kappa (docs/lab/2026-11-28-fireflies.md);
-/// the sum of every channel is what it
-/// was to double rounding. kappa = min(1, sigma / (max_gain yhat)), sigma being the standard deviation of the input's
-/// noise: a pixel that carries less noise than the gain would show (a sky of one colour) is known better than to take
-/// part in full. Omega_o is a square around o that grows until the root mean square of the gain, weighed by kappa, is
-/// at most max_gain, so that light stays where it fell as far as that cannot be seen. Layers beyond the first three
-/// channels (AOVs, three channels each) receive their e_o in the shape of the beauty, so that layers that add up still
-/// do; a last single channel (alpha) is left alone. Where Omega_o is the whole image, gains are bounded: see
-/// restore_everywhere. An outlier on an image that is all black, or free of noise, gives its energy back where it was
-/// taken. variance: of the noise of one half of the input, 3 channels (HalfPair::variance).
+/// Returns the energy that remove_outliers took, equations (10) and (11), so that the sum of every channel is that of
+/// the input to the rounding of double. The gain of a pixel is proportional to its brightness,
+///     yhat(i) += e_o kappa yhat(i)^2 / sum over Omega_o of kappa yhat^2.
+/// Of all ways to add e_o, this has the least relative squared error, sum (d / yhat)^2 / kappa
+/// (docs/lab/2026-11-28-fireflies.md).
+///
+/// kappa = min(1, sigma / (max_gain yhat)), with sigma the standard deviation of the input's noise, is smaller for
+/// pixels in which max_gain would exceed the noise, such as a sky of one colour. Omega_o is a square around o. It grows
+/// until the root mean square of the gain, weighted by kappa, is at most max_gain: the energy stays as close to o as it
+/// can without being visible. Where Omega_o is the whole image, gains are bounded as in restore_everywhere. Where no
+/// pixel of Omega_o is positive and noisy, the energy returns to o itself.
+///
+/// AOVs receive their e_o in the shape of the beauty, so that layers that add up to the beauty still do. Alpha stays
+/// unchanged. variance: noise variance of one half of the input, 3 channels (HalfPair::variance). image: ColorLayout.
 void restore_energy(const std::vector<Outlier>& outliers, const Image& variance, double max_gain, Image& image);
 
-/// The same with Omega the whole image, for energy that has no place of its own (blend/noise_bound.h): one value per
-/// colour channel. No pixel changes by more than a half: those that would, the brightest, change by that, the others
-/// still by squares, which is the least relative squared error under this bound; where it cannot be kept all gain
-/// alike. Here, too, a pixel takes part by kappa: quiet is the relative noise below which it does less. Nothing where
-/// no pixel of the colour takes part.
-void restore_everywhere(const std::vector<double>& energy, const Image& variance, double quiet, Image& image);
+/// The same with Omega the whole image, for energy without a place, such as that of blend/noise_bound.h. energy: one
+/// value per channel of the beauty and the AOVs. noise_free: relative noise below which kappa is less than 1. No pixel
+/// changes by more than a half: the brightest ones, which would, change by a half, and the rest is shared out by
+/// squares among the others, which is the least relative squared error under this bound. Where the bound cannot be
+/// kept, all pixels gain the same factor. Does nothing for a colour of which no pixel takes part.
+void restore_everywhere(const std::vector<double>& energy, const Image& variance, double noise_free, Image& image);
 
-/// The same for what the fit itself gained or lost: every channel's sum becomes `totals` (one value a channel, as many
-/// as are to be restored). Only where that is at most max_gain of the channel; a larger difference is not rounding or
-/// the pull of the weights but content (an input of both signs, a hole that was repaired), and stays.
-/// Returns the gain of each of the first three channels.
-std::array<double, 3> restore_totals(const std::vector<double>& totals, const Image& variance, double quiet,
+/// The same for the energy that the fits gained or lost: the sums of the first totals.size() channels become `totals`.
+/// A colour whose sum would change by more than max_gain is left unchanged, since such a difference is neither rounding
+/// nor the effect of the weights but content (an input of both signs, a hole that was repaired). Returns the relative
+/// gain of each of the first three channels.
+std::array<double, 3> restore_totals(const std::vector<double>& totals, const Image& variance, double noise_free,
                                      double max_gain, Image& image);
 
 /// Channels that restore_energy holds, the image that it works on included.

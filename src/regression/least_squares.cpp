@@ -5,28 +5,29 @@
 
 #include "core/simd.h"
 
-// A pixel's columns stand side by side, and the sums over pixels are kept four columns at a time in registers: a tile.
-// So no sum ends within a vector, which for the small windows of finer lattices was most of the work, and a sum is
-// loaded and stored once a window.
+// The columns of a pixel are adjacent in memory, and sums over pixels are kept in registers for four columns at a time,
+// here called a tile. So no vector has to be summed across its lanes, which would be most of the work for the small
+// windows of finer lattices, and each sum is loaded and stored once per window.
 namespace polyrecon {
 namespace {
 
 constexpr int tile = vector_lanes;
 constexpr int max_tiles = (BasisLayout::max_columns + tile - 1) / tile;
 constexpr int max_columns = max_tiles * tile;
-constexpr int rows_at_once = 2 * tile;  ///< Of the Gram matrix: as many sums as hide how long one takes.
-/// Part of the limit (of squares) below which a column goes: with its penalty it would count for 1e-5 of itself.
-constexpr double as_good_as_nothing = 3e-3;
+constexpr int rows_at_once = 2 * tile;  ///< Rows of the Gram matrix; so many sums hide the latency of an addition.
+/// A column is dropped where its squared remainder is below this part of its limit: with its penalty it would count for
+/// (3e-3)^2, about 1e-5.
+constexpr double negligible = 3e-3;
 
-/// By rows, of whole tiles.
+/// Row-major, padded to whole tiles.
 struct Matrix {
   double at[max_columns][max_columns];
 };
 
 int tiles_of(int columns) { return (columns + tile - 1) / tile; }
 
-/// sums[k][b] = sum_j w_j x_k(j) y_b(j) for rows_at_once columns x and a tile of columns y, in rows that are pitch
-/// apart.
+/// Computes sums[k][b] = sum_j w_j x_k(j) y_b(j) for rows_at_once columns x and a tile of columns y. Rows j are pitch
+/// values apart.
 POLYRECON_SIMD void tile_of_gram(const double* x, const double* y, std::size_t pitch, const Real* weight, int rows,
                                  double (*sums)[max_columns]) {
   Doubles s[rows_at_once] = {};
@@ -39,7 +40,7 @@ POLYRECON_SIMD void tile_of_gram(const double* x, const double* y, std::size_t p
   for (int k = 0; k < rows_at_once; ++k) *reinterpret_cast<StoredDoubles*>(sums[k]) = s[k];
 }
 
-/// The Gram matrix X^T W X, from the diagonal's tiles to the right.
+/// Computes the Gram matrix X^T W X: the tiles on the diagonal and to the right of it.
 void gram_matrix(const Window& window, const Real* weight, int tiles, Matrix& gram) {
   for (int a = 0; a < tiles * tile; a += rows_at_once)
     for (int b = a; b < tiles * tile; b += tile)
@@ -47,13 +48,15 @@ void gram_matrix(const Window& window, const Real* weight, int tiles, Matrix& gr
                    window.padded, reinterpret_cast<double(*)[max_columns]>(&gram.at[a][b]));
 }
 
-/// A kept column's row of R, and behind it what it takes of each column of the design: its row of the inverse of R^T.
+/// The row of R of a kept column, followed by its row of the inverse of R^T: the factor that this column of Q takes of
+/// each column of the design.
 template <int tiles>
 struct FactorRow {
   double at[2 * tiles * tile];
 };
 
-/// The row behind the first `above`, of column a, less those, each times its own value in that column.
+/// One step of the Cholesky factorisation: subtracts the first `above` rows, each times its value in column a, from
+/// the row after them.
 template <int tiles>
 POLYRECON_SIMD void subtract_above(FactorRow<tiles>* rows, int above, int a) {
   Doubles s[2 * tiles];
@@ -68,33 +71,34 @@ POLYRECON_SIMD void subtract_above(FactorRow<tiles>* rows, int above, int a) {
   for (int t = 0; t < 2 * tiles; ++t) *reinterpret_cast<StoredDoubles*>(rows[above].at + t * tile) = s[t];
 }
 
-/// What is left of a column beside those before it.
+/// The remainder of a column after the projection onto the columns before it.
 struct Remainder {
-  double inverse_length = 0;  ///< 1 / (length with the penalty); 0 where the column is as good as dependent.
-  bool independent = false;   ///< More is left than the limits ask for.
+  double inverse_length = 0;  ///< 1 / (length with the penalty); 0 where the column is dropped.
+  bool independent = false;   ///< Its squared length is above the limit, so the column counts for more than half.
 };
 
-/// rest and own: the squares of what is left of column a and of all of it; weight_sum: of the window.
-Remainder remainder_of(double rest, double own, double weight_sum, bool is_feature, const DependenceLimits& limits) {
-  const double little = std::max(limits.remainder * limits.remainder * own,
-                                 is_feature ? limits.variation * limits.variation * weight_sum : 0.0);
-  const double square = rest + little * (little / rest);
+/// rest and whole: squared lengths of a column's remainder and of the column itself. weight_sum: sum of the window's
+/// weights.
+Remainder remainder_of(double rest, double whole, double weight_sum, bool is_feature, const DependenceLimits& limits) {
+  const double limit = std::max(limits.remainder * limits.remainder * whole,
+                                is_feature ? limits.variation * limits.variation * weight_sum : 0.0);
+  const double square = rest + limit * (limit / rest);
   // The length and its inverse must be values of the storage type, or q overflows.
   const bool keep =
-      rest > as_good_as_nothing * little && std::isnormal(rest) && std::isnormal(static_cast<Real>(std::sqrt(square)));
-  return {keep ? 1 / std::sqrt(square) : 0, keep && rest > little};
+      rest > negligible * limit && std::isnormal(rest) && std::isnormal(static_cast<Real>(std::sqrt(square)));
+  return {keep ? 1 / std::sqrt(square) : 0, keep && rest > limit};
 }
 
-/// Factors the Gram matrix into R^T R, row by row from the top, and sets what factor keeps and its rank. inverse
-/// becomes R^-1: row b tells how much of column b each kept column of Q takes.
+/// Factors the Gram matrix into R^T R, row by row from the top, and sets the kept columns and the rank. inverse becomes
+/// R^-1: row b holds the factors that the kept columns of Q take of column b of the design.
 template <int tiles>
 void invert_factor(const Matrix& gram, const BasisLayout& layout, const DependenceLimits& limits, NestedFactor& factor,
                    Matrix& inverse) {
   constexpr int width = tiles * tile;
   FactorRow<tiles> rows[width];
   for (int a = 0; a < factor.columns; ++a) {
-    double* const row = rows[factor.kept].at;  // taken by the next column if this one goes
-    const int first = a / tile * tile;         // the Gram matrix has nothing before
+    double* const row = rows[factor.kept].at;  // overwritten by the next column if this one is dropped
+    const int first = a / tile * tile;         // gram_matrix leaves the columns before this one unset
     std::fill_n(row, 2 * width, 0.0);
     std::copy(gram.at[a] + first, gram.at[a] + width, row + first);
     row[width + a] = 1;
@@ -110,7 +114,8 @@ void invert_factor(const Matrix& gram, const BasisLayout& layout, const Dependen
     for (int k = 0; k < width; ++k) inverse.at[b][k] = k < factor.kept ? rows[k].at[width + b] : 0;
 }
 
-/// A tile of columns of q = X R^-1 for all pixels: of the first `columns` of X, which are all that these take of.
+/// Computes a tile of columns of q = X R^-1 for all pixels. They depend on the first `columns` columns of X only, as R
+/// is triangular.
 POLYRECON_SIMD void tile_of_q(const double* x, std::size_t pitch, const double (*inverse)[max_columns], int columns,
                               int rows, Real* q) {
   constexpr int at_once = 4;  // pixels: a row of the inverse is loaded once for all of them
@@ -131,8 +136,8 @@ POLYRECON_SIMD void tile_of_q(const double* x, std::size_t pitch, const double (
   }
 }
 
-/// How many columns of the design, from the first, the tile of q that begins with its column k takes of.
-int columns_taken(const NestedFactor& factor, int k) {
+/// Number of leading columns of the design that a tile of q, beginning with column k of q, depends on.
+int columns_needed(const NestedFactor& factor, int k) {
   return factor.kept_column[static_cast<std::size_t>(std::min(k + tile, factor.kept) - 1)] + 1;
 }
 
@@ -143,7 +148,7 @@ void factorise_tiles(const Window& window, const Real* weight, NestedFactor& fac
   invert_factor<tiles>(gram, window.layout, limits, factor, inverse);
   for (int k = 0; k < factor.kept; k += tile)
     tile_of_q(window.design.data(), static_cast<std::size_t>(window.pitch),
-              reinterpret_cast<const double(*)[max_columns]>(&inverse.at[0][k]), columns_taken(factor, k),
+              reinterpret_cast<const double(*)[max_columns]>(&inverse.at[0][k]), columns_needed(factor, k),
               window.padded, factor.q.data() + k);
 }
 
@@ -155,7 +160,7 @@ POLYRECON_SIMD void multiply_by(const Real* factor, double* y, int rows) {
   for (int j = 0; j < rows; ++j) y[j] *= static_cast<double>(factor[j]);
 }
 
-/// sums[a] = sum_j w_j q_a(j) y(j) for a tile of columns.
+/// Computes sums[a] = sum_j w_j q_a(j) y(j) for a tile of columns.
 POLYRECON_SIMD void tile_sums(const Real* q, std::size_t pitch, const Real* weight, const Real* y, int rows,
                               double* sums) {
   Doubles s = {};
@@ -165,7 +170,9 @@ POLYRECON_SIMD void tile_sums(const Real* q, std::size_t pitch, const Real* weig
   *reinterpret_cast<StoredDoubles*>(sums) = s;
 }
 
-/// The same, weighted before, for six or three y, and then for three with the squares of q: sums[..][k] on.
+/// The same for responses that are weighted already: y holds three responses, three guesses (used if with_guess) and
+/// three variances, stride values apart. Variances are summed with the squares of q. The tile's sums go to
+/// sums[0..8][k ...].
 template <bool with_guess>
 POLYRECON_SIMD void tile_sums_of_beauty(const Real* q, std::size_t pitch, const double* y, std::size_t stride, int rows,
                                         double (*sums)[max_columns], int k) {
@@ -191,10 +198,10 @@ POLYRECON_SIMD void tile_sums_of_beauty(const Real* q, std::size_t pitch, const 
   for (int c = 0; c < 9; ++c) *reinterpret_cast<StoredDoubles*>(sums[c] + k) = all[c];
 }
 
-/// Sums of the kept columns, to where the design has these; zero for the others.
-void spread(const double* of_kept, const NestedFactor& factor, double* of_all) {
-  std::fill_n(of_all, factor.columns, 0.0);
-  for (std::size_t k = 0; k < static_cast<std::size_t>(factor.kept); ++k) of_all[factor.kept_column[k]] = of_kept[k];
+/// Copies the sums of the kept columns to the columns of the design; zero for columns that are not kept.
+void scatter(const double* kept_sums, const NestedFactor& factor, double* sums) {
+  std::fill_n(sums, factor.columns, 0.0);
+  for (std::size_t k = 0; k < static_cast<std::size_t>(factor.kept); ++k) sums[factor.kept_column[k]] = kept_sums[k];
 }
 
 }  // namespace
@@ -230,7 +237,7 @@ void project(const NestedFactor& factor, const Window& window, const Real* weigh
   double sums[max_columns];
   for (int k = 0; k < factor.kept; k += tile)
     tile_sums(factor.q.data() + k, static_cast<std::size_t>(window.pitch), weight, y, window.padded, sums + k);
-  spread(sums, factor, z);
+  scatter(sums, factor, z);
 }
 
 void project_beauty(NestedFactor& factor, const Window& window, const Real* weight, bool with_guess, double* const* z,
@@ -250,9 +257,9 @@ void project_beauty(NestedFactor& factor, const Window& window, const Real* weig
   for (int k = 0; k < factor.kept; k += tile)
     sum(factor.q.data() + k, static_cast<std::size_t>(window.pitch), scaled, stride, window.padded, sums, k);
   for (std::size_t c = 0; c < 3; ++c) {
-    spread(sums[c], factor, z[c]);
-    if (with_guess) spread(sums[3 + c], factor, guess_z[c]);
-    spread(sums[6 + c], factor, s2[c]);
+    scatter(sums[c], factor, z[c]);
+    if (with_guess) scatter(sums[3 + c], factor, guess_z[c]);
+    scatter(sums[6 + c], factor, s2[c]);
   }
 }
 

@@ -10,28 +10,31 @@ namespace {
 
 using Channels = std::array<ColumnStatistics, 3>;
 
-// Of z_a m_a in the estimate of mu_a^2 by which an error is told; the rest is m_a^2. z_a m_a is unbiased where z_a and
-// the guess err independently, but the factors were chosen by it; m_a^2 is too high by the noise of the guess.
+// Part of z_a m_a in the estimate of mu_a^2 that the error is computed from; the rest is m_a^2. z_a m_a is unbiased
+// where the errors of z_a and of the guess are independent, but the factors were chosen by it, which makes the error
+// look too small; m_a^2 is too large by the noise of the guess.
 constexpr double share_of_product = 0.9;
 
-/// Estimates of mu_a^2: what the factors and the order are chosen by, and what the error is told by.
-double chosen_by(const ColumnStatistics& channel, std::size_t a, bool first_stage) {
+/// The estimate e of mu_a^2 by which the factors and the order are chosen; see error_change.
+double selection_energy(const ColumnStatistics& channel, std::size_t a, bool first_stage) {
   return first_stage ? channel.z[a] * channel.z[a] - channel.variance[a] : channel.z[a] * channel.guess[a];
 }
-double told_by(const ColumnStatistics& channel, std::size_t a, bool first_stage) {
-  const double chosen = chosen_by(channel, a, first_stage);
+
+/// The estimate of mu_a^2 by which the error of the choice is computed.
+double error_energy(const ColumnStatistics& channel, std::size_t a, bool first_stage) {
+  const double chosen = selection_energy(channel, a, first_stage);
   return first_stage ? chosen : chosen + (1 - share_of_product) * (channel.guess[a] * channel.guess[a] - chosen);
 }
 
-/// |S mu|^2 outside of all columns: the error that every model has.
+/// The part of |S mu|^2 that is orthogonal to all columns: every model has this error.
 double error_of_all(const ColumnStatistics& channel, const BasisLayout& layout, bool first_stage) {
   double error = first_stage ? channel.guess_energy - channel.noise_energy : channel.guess_energy;
   for (std::size_t a = 0; a < static_cast<std::size_t>(layout.columns()); ++a)
-    error -= first_stage ? chosen_by(channel, a, true) : channel.guess[a] * channel.guess[a];
+    error -= first_stage ? selection_energy(channel, a, true) : channel.guess[a] * channel.guess[a];
   return error;
 }
 
-/// Estimated error of every model, summed over the channels: one pass over the columns.
+/// Estimated error of every model, summed over the channels, in one pass over the columns.
 std::array<double, BasisLayout::max_models> nested_errors(const Channels& channels, const BasisLayout& layout,
                                                           const double* factor, bool first_stage) {
   std::array<double, BasisLayout::max_models> errors{};
@@ -39,7 +42,7 @@ std::array<double, BasisLayout::max_models> nested_errors(const Channels& channe
   for (const ColumnStatistics& channel : channels) {
     error += error_of_all(channel, layout, first_stage);
     for (std::size_t a = 0; a < static_cast<std::size_t>(layout.columns()); ++a)
-      error += chosen_by(channel, a, first_stage);
+      error += selection_energy(channel, a, first_stage);
   }
   int column = 0;
   for (int model = 0; model < layout.models(); ++model) {
@@ -55,7 +58,7 @@ std::array<double, BasisLayout::max_models> nested_errors(const Channels& channe
 
 double error_change(const ColumnStatistics& channel, int column, double g, bool first_stage) {
   const auto a = static_cast<std::size_t>(column);
-  return g * g * channel.variance[a] - (2 * g - g * g) * chosen_by(channel, a, first_stage);
+  return g * g * channel.variance[a] - (2 * g - g * g) * selection_energy(channel, a, first_stage);
 }
 
 double shrinkage_factor(const Channels& channels, int begin, int end, bool first_stage) {
@@ -63,7 +66,7 @@ double shrinkage_factor(const Channels& channels, int begin, int end, bool first
   double energy = 0, noise = 0;
   for (const ColumnStatistics& channel : channels)
     for (auto a = static_cast<std::size_t>(begin); a < static_cast<std::size_t>(end); ++a) {
-      energy += chosen_by(channel, a, first_stage);
+      energy += selection_energy(channel, a, first_stage);
       noise += channel.variance[a];
     }
   return energy > 0 ? energy / (energy + noise) : 0;
@@ -71,7 +74,7 @@ double shrinkage_factor(const Channels& channels, int begin, int end, bool first
 
 namespace {
 
-/// Features have a factor each, the Taylor terms of one order share theirs.
+/// A factor for each feature and one for all Taylor terms of an order; see select_order.
 std::array<double, BasisLayout::max_columns> shrinkage_factors(const Channels& channels, const BasisLayout& layout,
                                                                bool first_stage) {
   std::array<double, BasisLayout::max_columns> factors{};
@@ -85,7 +88,7 @@ std::array<double, BasisLayout::max_columns> shrinkage_factors(const Channels& c
   return factors;
 }
 
-/// How much each model counts: by how far its error lies above the least one.
+/// The share of each model in the average, by how far its error lies above the least one. Shares sum to 1.
 std::array<double, BasisLayout::max_models> model_shares(const std::array<double, BasisLayout::max_models>& errors,
                                                          const Channels& channels, int models, double tolerance) {
   const double least = *std::min_element(errors.begin(), errors.begin() + models);
@@ -102,7 +105,8 @@ std::array<double, BasisLayout::max_models> model_shares(const std::array<double
   return shares;
 }
 
-/// A column is in every model from the one it comes with on: its factor times what those count for.
+/// Multiplies the factor of each column by the shares of the models that have it: those from the model that adds the
+/// column on.
 void weigh_columns(const std::array<double, BasisLayout::max_models>& shares, const BasisLayout& layout,
                    std::array<double, BasisLayout::max_columns>& factor) {
   double with_column = 0;
@@ -113,19 +117,21 @@ void weigh_columns(const std::array<double, BasisLayout::max_models>& shares, co
   }
 }
 
-/// Sets model and order. A model all of whose own columns have the factor 0 is the one below.
-void tell_order(const std::array<double, BasisLayout::max_models>& shares, const BasisLayout& layout,
-                OrderChoice& choice) {
+/// Sets model and order of the choice. A model counts as the one below it where all columns that it adds have the
+/// factor 0.
+void set_order(const std::array<double, BasisLayout::max_models>& shares, const BasisLayout& layout,
+               OrderChoice& choice) {
   double most = 0;
-  int same = 0;
+  int effective = 0;
   for (int model = 0; model < layout.models(); ++model) {
     const double share = shares[static_cast<std::size_t>(model)];
     const auto begin = choice.factor.begin() + (model > 0 ? layout.columns(model - 1) : 0);
-    if (std::any_of(begin, choice.factor.begin() + layout.columns(model), [](double g) { return g > 0; })) same = model;
-    choice.order += share * BasisLayout::order_of(same);
+    if (std::any_of(begin, choice.factor.begin() + layout.columns(model), [](double g) { return g > 0; }))
+      effective = model;
+    choice.order += share * BasisLayout::order_of(effective);
     if (share <= most) continue;
     most = share;
-    choice.model = same;
+    choice.model = effective;
   }
 }
 
@@ -143,12 +149,12 @@ OrderChoice select_order(const Channels& channels, const BasisLayout& layout, do
   std::fill(choice.factor.begin() + layout.columns(), choice.factor.end(), 0.0);
   const auto shares = model_shares(errors, channels, layout.models(), tolerance);
   weigh_columns(shares, layout, choice.factor);
-  tell_order(shares, layout, choice);
+  set_order(shares, layout, choice);
   for (std::size_t c = 0; c < channels.size(); ++c) {
     double squared_bias = error_of_all(channels[c], layout, first_stage), variance = 0;
     for (std::size_t a = 0; a < static_cast<std::size_t>(layout.columns()); ++a) {
       const double g = choice.factor[a];
-      squared_bias += (1 - g) * (1 - g) * told_by(channels[c], a, first_stage);
+      squared_bias += (1 - g) * (1 - g) * error_energy(channels[c], a, first_stage);
       variance += g * g * channels[c].variance[a];
     }
     choice.variance[c] = variance / weight_sum;

@@ -10,17 +10,17 @@
 namespace polyrecon {
 namespace {
 
-/// What a difference of colours is divided by at least, relative to their square: keeps noise-free pixels apart by more
-/// than the rounding of float data, at any exposure.
+/// eps in the patch distance. It bounds the denominator for noise-free pixels: two of them are alike only if they
+/// differ by about the rounding of float data, at any exposure.
 constexpr Real relative_epsilon = Real(1e-10);
 
-/// What two pixels differ by beyond their noise, from the differences of their colours.
+/// One term of the patch distance. dr, dg, db: differences of the colours. scale: the denominator.
 inline Real difference(Real dr, Real dg, Real db, Real a_noise, Real b_noise, Real scale) {
   const Real noise = a_noise + (a_noise < b_noise ? a_noise : b_noise);
   return (dr * dr + dg * dg + db * db - noise) / scale;
 }
 
-/// Adds the differences between pixel a and a row of pixels, each up to `most`; a and b: the planes of `load`.
+/// Adds the terms between pixel a and a row of pixels b, each limited to `most`. a and b are values by plane.
 POLYRECON_SIMD void add_differences(const Real* a, const Real* const* b, Real most, Real* out, int n) {
   const Real ar = a[0], ag = a[1], ab = a[2], an = a[3], as = a[4];
   const Real *br = b[0], *bg = b[1], *bb = b[2], *bn = b[3], *bs = b[4];
@@ -30,7 +30,7 @@ POLYRECON_SIMD void add_differences(const Real* a, const Real* const* b, Real mo
   }
 }
 
-/// Adds what add_differences leaves out.
+/// Adds the parts of the terms above `most`, which add_differences leaves out.
 POLYRECON_SIMD void add_excess(const Real* a, const Real* const* b, Real most, Real* out, int n) {
   const Real ar = a[0], ag = a[1], ab = a[2], an = a[3], as = a[4];
   const Real *br = b[0], *bg = b[1], *bb = b[2], *bn = b[3], *bs = b[4];

@@ -22,7 +22,7 @@ bool is_flat(const Real* plane, const int* offset, Real center, int n) {
   return std::all_of(offset, offset + n, [&](int at) { return std::abs(plane[at] - center) < Real(least_variation); });
 }
 
-/// The features that vary over the window: where their planes begin, and their values at the centre.
+/// The features that vary over the window: their planes and their values at the centre.
 struct VaryingFeatures {
   int count = 0;
   std::array<const Real*, BasisLayout::max_features> plane;
@@ -41,7 +41,7 @@ VaryingFeatures varying_features(const Image& features, int number, int center_x
   return out;
 }
 
-/// Terms dx^(o-b) dy^b for b = 0..o, o = 1..order: each from those of one order below.
+/// Computes the terms dx^(o-b) dy^b for b = 0..o, o = 1..order, each from a term of one order below.
 void taylor_terms(int order, Real dx, Real dy, Real* term) {
   Real* below = term;
   *term++ = dx;
@@ -59,7 +59,8 @@ std::size_t taylor_width(int order) {
          vector_lanes;
 }
 
-/// Rows are written from the first to the last: the zeros at the end of one reach into the next.
+/// Fills the design. The order of the rows matters: the zeros that end a row extend into the next one, which is written
+/// after it.
 POLYRECON_SIMD void gather_design(const VaryingFeatures& features, int center_x, int center_y, Window& window) {
   const int side = 2 * window.taylor_radius + 1, middle = window.taylor_radius * (side + 1);
   const std::size_t width = taylor_width(window.taylor_order);
@@ -80,14 +81,14 @@ POLYRECON_SIMD void gather_design(const VaryingFeatures& features, int center_x,
 
 void Window::reserve(int radius, int columns, int channels) {
   const int side = 2 * radius + 1;
-  stride = (side * side + lanes - 1) / lanes * lanes;  // side is odd: there is one row more, at least
+  stride = (side * side + lanes - 1) / lanes * lanes;  // side is odd, so this is at least one more than side^2
   const auto rows = static_cast<std::size_t>(stride);
   x.resize(rows);
   y.resize(rows);
   offset.resize(rows);
   distance.resize(rows);
   pitch = (columns + 2 * vector_lanes - 1) / (2 * vector_lanes) * (2 * vector_lanes);
-  design.resize(rows * static_cast<std::size_t>(pitch) + std::size_t{2} * vector_lanes);  // and the last row's zeros
+  design.resize(rows * static_cast<std::size_t>(pitch) + std::size_t{2} * vector_lanes);  // + zeros after the last row
   response.resize(rows * static_cast<std::size_t>(channels));
   origin.resize(static_cast<std::size_t>(channels));
   noise_variance.resize(rows * 3);
