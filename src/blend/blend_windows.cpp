@@ -19,11 +19,11 @@ namespace {
 /// Channels of the blend sums that have one value per window: relative bias 3, variance 3, order 1, weight 1.
 constexpr std::size_t constants = 8;
 
-/// Sums of equation (3) for one bandwidth, interleaved: a window touches all of them at each of its pixels.
-/// Channels: response | relative bias 3 | variance 3 | order 1 | weight.
+/// Sums of equation (3) for one bandwidth over an area. Channels are interleaved, since a window adds to all of them at
+/// each of its pixels: response | relative bias 3 | variance 3 | order 1 | weight 1.
 class BlendSums {
  public:
-  /// Zero over the area.
+  /// Sets all sums of the area to zero.
   void begin(const Rect& area, int responses) {
     area_ = area;
     channels_ = static_cast<std::size_t>(responses) + constants;
@@ -44,7 +44,7 @@ class BlendSums {
   std::vector<double> sums_;
 };
 
-/// The same sums for the whole image, in storage precision.
+/// The sums of the whole image, in storage precision.
 struct BlendPlane {
   std::size_t channels;
   int width;
@@ -69,7 +69,7 @@ struct BlendPlane {
   }
 };
 
-/// What a thread needs to work through windows, allocated once.
+/// Buffers of a thread, allocated once.
 struct Scratch {
   PatchDistances distances;
   Window window;
@@ -78,16 +78,16 @@ struct Scratch {
   std::vector<Real> fit;  ///< yhat, window.padded rows of fit_pitch values.
   std::size_t fit_pitch = 0;
   std::vector<int> center_x, center_y;
-  Rect centers;                 ///< These lie in it.
-  std::vector<BlendSums> sums;  ///< For each bandwidth.
+  Rect centers;                 ///< Bounding box of the centres.
+  std::vector<BlendSums> sums;  ///< One for each bandwidth.
 };
 
 constexpr std::size_t responses_at_once = vector_lanes;
 
-/// fit(j) = origin + sum_a f_a q_a(j) for all pixels and responses_at_once responses, which stand side by side.
+/// Computes fit(j) = origin + sum_a f_a q_a(j) for all pixels j and responses_at_once adjacent responses.
 POLYRECON_SIMD void evaluate_at_once(const Real* q, std::size_t pitch, const Real (*factor)[responses_at_once],
                                      int columns, const Real* origin, int rows, Real* fit, std::size_t fit_pitch) {
-  constexpr std::size_t at_once = 4;  // pixels: factors are loaded once for all of them
+  constexpr std::size_t at_once = 4;  // pixels, so that factors are loaded once for all of them
   const Reals start = *reinterpret_cast<const StoredReals*>(origin);
   for (int j = 0; j < rows; j += at_once, q += at_once * pitch, fit += at_once * fit_pitch) {
     const Real *q0 = q, *q1 = q + pitch, *q2 = q1 + pitch, *q3 = q2 + pitch;
@@ -137,7 +137,8 @@ std::array<ColumnStatistics, 3> column_statistics(Scratch& s, bool first_stage) 
   return channels;
 }
 
-/// yhat of every response channel at every pixel of the window: sum_a g_a z_a q_a and the value that gather took away.
+/// Computes yhat of every response channel at every pixel of the window: sum_a g_a z_a q_a plus the value at the
+/// centre, which gather subtracted.
 void evaluate(Scratch& s, const OrderChoice& choice, std::size_t responses,
               const std::array<ColumnStatistics, 3>& beauty) {
   std::array<double, BasisLayout::max_columns> z{};
@@ -159,14 +160,15 @@ void evaluate(Scratch& s, const OrderChoice& choice, std::size_t responses,
   }
 }
 
-/// Whether all responses of the pixels are finite, and sum_i w_i yhat(i)^2 of the three of the beauty.
+/// Computes energy = sum_i w_i yhat(i)^2 for the three channels of the beauty. Returns whether all values of the fit
+/// are finite.
 POLYRECON_SIMD bool energies_of_fit(const Real* fit, std::size_t pitch, std::size_t responses, const Real* weight,
                                     int count, double* energy) {
   Doubles sum = {}, rest = {};
   for (int j = 0; j < count; ++j, fit += pitch) {
     const Doubles f = __builtin_convertvector(*reinterpret_cast<const StoredReals*>(fit), Doubles);
     sum += static_cast<double>(weight[j]) * f * f;
-    rest += f * 0.0;  // NaN where it is not finite
+    rest += f * 0.0;  // 0, or NaN where f is not finite
     for (std::size_t first = responses_at_once; first < responses; first += responses_at_once)
       rest += __builtin_convertvector(*reinterpret_cast<const StoredReals*>(fit + first), Doubles) * 0.0;
   }
@@ -187,7 +189,7 @@ POLYRECON_SIMD void add_pixels(const Window& window, const Real* weight, const R
   }
 }
 
-/// energy: weighted mean of yhat^2; epsilon as in FitSource.
+/// Adds a window to the sums. energy: weighted mean of yhat^2.
 void blend(const Scratch& s, const OrderChoice& choice, const double* energy, double epsilon, std::size_t responses,
            BlendSums& sums) {
   double constant[constants];
@@ -200,7 +202,7 @@ void blend(const Scratch& s, const OrderChoice& choice, const double* energy, do
   add_pixels(s.window, s.weight.data(), s.fit.data(), s.fit_pitch, responses, constant, sums);
 }
 
-/// The image sized state of one call.
+/// The state of one call of fit_and_blend.
 struct Blending {
   const FitSource& source;
   const FitParams& params;
@@ -211,12 +213,12 @@ struct Blending {
   std::size_t responses() const { return static_cast<std::size_t>(source.response->channels()); }
 };
 
-/// Fits the gathered window under one bandwidth and adds it to the sums.
+/// Fits the gathered window with the weights of one bandwidth and adds it to the sums.
 void fit_window(Blending& b, Scratch& s, Real bandwidth, BlendSums& sums) {
   const bool first_stage = !b.source.guess;
   const BasisLayout& layout = s.window.layout;
   const double weight_sum = kernel_weights(s.window, bandwidth, s.weight.data());
-  // Of a lone pixel nothing but the constant is left.
+  // All columns but the constant are zero in a window of one pixel.
   factorise(s.window, s.window.count > 1 ? layout.columns() : 1, s.weight.data(), s.factor);
   const auto statistics = column_statistics(s, first_stage);
   OrderChoice choice =
@@ -226,7 +228,7 @@ void fit_window(Blending& b, Scratch& s, Real bandwidth, BlendSums& sums) {
   if (s.factor.rank < layout.columns()) ++b.counters.rank_deficient;
   double energy[3];
   if (!energies_of_fit(s.fit.data(), s.fit_pitch, b.responses(), s.weight.data(), s.window.count, energy)) {
-    // A window whose fit overflowed says nothing; its pixels are left to the other windows and, last, to the input.
+    // The fit overflowed. Other windows cover the pixels of this one, or they keep the input.
     ++b.counters.dropped;
     return;
   }
@@ -261,7 +263,7 @@ void list_centers(const Rect& block, const IsCenter& is_center, Scratch& s) {
   s.center_x.clear();
   s.center_y.clear();
   s.centers = {block.x1, block.y1, block.x0, block.y0};
-  for (int x = block.x0; x < block.x1; ++x)  // by columns: see PatchDistances
+  for (int x = block.x0; x < block.x1; ++x)  // by columns, for which PatchDistances is fastest
     for (int y = block.y0; y < block.y1; ++y) {
       if (!is_center(x, y)) continue;
       s.center_x.push_back(x);
@@ -270,8 +272,8 @@ void list_centers(const Rect& block, const IsCenter& is_center, Scratch& s) {
     }
 }
 
-/// Works all centres for which is_center holds. Blocks of one of the four phases never touch the same pixel, and the
-/// phases follow each other: every pixel is summed in one order, whatever the threads do.
+/// Fits windows around all centres for which is_center holds. Blocks of the same phase (of four) never add to the same
+/// pixel, and the phases follow one another, so every pixel is summed in the same order for any number of threads.
 template <typename IsCenter>
 void sweep(Blending& b, Progress& progress, const IsCenter& is_center) {
   const Rect bounds = b.source.response->bounds();
@@ -306,7 +308,7 @@ BlendedFit normalise(BlendPlane& plane, const FitSource& source, const std::vect
       const Real weight = sums[plane.channels - 1];
       const bool covered = weight > std::numeric_limits<Real>::min();
       for (int c = 0; c < channels; ++c) out.value.at(x, y, c) = covered ? sums[c] / weight : response.at(x, y, c);
-      if (!covered) {  // the response itself, in which each of the two halves' mean has half the noise of one
+      if (!covered) {  // keeps the response; the variance is that of the mean of both halves, half that of one
         for (int c = 0; c < 3; ++c) out.variance.at(x, y, c) = Real(0.5) * noise_variance.at(x, y, c);
         uncovered += active[response.index(x, y)];
         continue;
@@ -324,8 +326,8 @@ BlendedFit normalise(BlendPlane& plane, const FitSource& source, const std::vect
   return out;
 }
 
-/// Grows the set of active pixels by the window's radius: the centres that some active pixel needs.
-std::vector<unsigned char> reached(const std::vector<unsigned char>& active, int width, int height, int radius) {
+/// The centres whose windows cover an active pixel: the active pixels, grown by the window's radius.
+std::vector<unsigned char> needed_centers(const std::vector<unsigned char>& active, int width, int height, int radius) {
   std::vector<unsigned char> rows(active.size(), 0), out(active.size(), 0);
   const auto spread = [&](const std::vector<unsigned char>& in, std::vector<unsigned char>& to, int lines, int length,
                           std::size_t line_step, std::size_t step) {
@@ -358,9 +360,9 @@ std::size_t blended_fit_channels(std::size_t color_channels) {
 std::size_t blend_sums_channels(std::size_t color_channels) { return color_channels + constants; }
 
 int fit_halo(const FitParams& params) {
-  // One radius from a pixel to the centres that cover it and one to the pixels of their windows. A centre of a finer
-  // lattice is there or not by the centres that cover it, those by the ones of the lattice before: one radius for each
-  // lattice.
+  // One radius from a pixel to the centres that cover it, and one from these to the pixels of their windows. Whether a
+  // pixel is a centre of a finer lattice depends on the centres that cover it, whether these are centres on those of
+  // the lattice before: one radius per lattice.
   int lattices = 1;
   for (int step = params.stride / 2; step >= 1; step /= 2) ++lattices;
   const int radii = std::max(lattices, 2);
@@ -373,21 +375,22 @@ std::vector<BlendedFit> fit_and_blend(const FitSource& source, const std::vector
   Blending b{source, params, BasisLayout(source.features->channels(), params.max_order), counters, {}};
   for (std::size_t h = 0; h < params.bandwidths.size(); ++h)
     b.planes.emplace_back(width, height, source.response->channels());
-  const auto needed = reached(active, width, height, params.radius);
-  // Like patches weigh 1, so sums at the limit itself are common: they count as covered, whatever their rounding.
+  const auto needed = needed_centers(active, width, height, params.radius);
+  // Equal patches have weight 1, so sums equal to the coverage are common; the factor makes them count as covered in
+  // spite of rounding.
   const double least_coverage = params.coverage * (1 - 1e-4);
-  // A coarse lattice of centres first; then, on ever finer ones, pixels that only unlike centres cover so far: they
-  // would get a bad blend, and become centres themselves.
+  // The first lattice has all its centres. On each finer one only those pixels become centres that are covered by
+  // unlike centres alone so far, which would make a bad blend.
   std::vector<unsigned char> is_center(active.size(), 0), done(active.size(), 0);
   for (int step = params.stride; step >= 1; step /= 2) {
-    const BlendPlane& plane = b.planes.back();  // of the widest
+    const BlendPlane& plane = b.planes.back();  // of the widest bandwidth
     for (int y = 0; y < height; ++y)
       for (int x = 0; x < width; ++x) {
         const std::size_t i = source.response->index(x, y);
-        // Lattices begin anew in each block, so that a crop sees the same ones whatever the stride.
+        // Lattices start again in each block, so that a crop has the same ones for any stride.
         const bool on_lattice = x % block_size % step == 0 && y % block_size % step == 0;
-        const bool lonely = static_cast<double>(plane.sums[(i + 1) * plane.channels - 1]) < least_coverage;
-        is_center[i] = on_lattice && !done[i] && (step == params.stride ? needed[i] : active[i] && lonely);
+        const bool sparse = static_cast<double>(plane.sums[(i + 1) * plane.channels - 1]) < least_coverage;
+        is_center[i] = on_lattice && !done[i] && (step == params.stride ? needed[i] : active[i] && sparse);
         done[i] |= is_center[i];
       }
     sweep(b, progress, [&](int x, int y) { return is_center[source.response->index(x, y)] != 0; });

@@ -41,12 +41,12 @@ Candidate add_coarse(const HalfPair& pair, Candidate fine, const Candidate& coar
   for (std::size_t h = 0; h < 2; ++h)
     remainder[h] =
         double_resolution(plus(coarse.half[h], -1, half_resolution(fine.half[h])), pair.width(), pair.height());
-  const auto make = [&](const std::array<Image, 2>& own, const Rect& region) {
+  const auto make = [&](const std::array<Image, 2>& halves, const Rect& region) {
     std::vector<std::array<Image, 2>> corrected(2);
     for (std::size_t h = 0; h < 2; ++h) {
       const Image u = crop(remainder[h], region);
-      corrected[0][h] = plus(own[h], Real(0.5), u);
-      corrected[1][h] = plus(own[h], 1, u);
+      corrected[0][h] = plus(halves[h], Real(0.5), u);
+      corrected[1][h] = plus(halves[h], 1, u);
     }
     return corrected;
   };

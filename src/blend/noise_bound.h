@@ -8,24 +8,26 @@
 
 namespace polyrecon {
 
-/// How far a result may stand from the noisy input: 5 standard deviations of a half's noise, which is at least that of
-/// the quietest 7 x 7 pixels (by their mean standard deviation) that hold the pixel. So a pixel beside a glint, which
-/// has seen nothing of it in either half and has quiet pixels on one side, does not take the glint's light from the
-/// windows that cover both; one among spikes may take theirs, though it has met none yet. variance: of a half's noise
-/// as it was measured, before any floor; 3 channels, >= 0. Returns radiance, of variance's shape.
-Image noise_reach(const Image& variance);
+/// How far a result may differ from the noisy input, radiance: 5 standard deviations of a half's noise. The standard
+/// deviation is that of the pixel, or if that is larger the least mean standard deviation of all squares of 7 x 7
+/// pixels that contain the pixel. So a pixel next to a glint, with little noise on one side and without the glint in
+/// either half, does not receive the glint's energy from windows that cover both; a pixel among spikes may receive
+/// theirs, though no spike has hit it yet. variance: of a half's noise as measured, before variance_floor.h raises it;
+/// 3 channels, >= 0. Returns variance's shape.
+Image noise_bound(const Image& variance);
 
-/// What a result lost where it was bound.
+/// The energy that a result lost where it was bound.
 struct BoundEnergy {
-  std::size_t pixels = 0;
-  std::vector<double> energy;  ///< Of each colour channel (beauty, then each AOV), radiance x pixels.
+  std::size_t pixels = 0;      ///< Pixels that were changed.
+  std::vector<double> energy;  ///< Lost by each channel of the beauty and the AOVs, radiance x pixels.
 };
 
-/// Brings both halves of a result nearer to the mean of the noisy ones, all three by the same part of their distance,
-/// where their mean is more than reach from it; by colour channel, each of a layer's (AOV) by the beauty's part of that
-/// colour, so that layers that add up still do. A last single channel (alpha) is left alone. The bias shrinks with the
-/// distance. What is lost has to be given to the whole image (restore_everywhere): where that would be more than
-/// max_lost of a colour's light (a frame whose light is one glint), all its pixels are brought nearer by less.
-BoundEnergy bind_to_noise(const HalfPair& pair, const Image& reach, double max_lost, Candidate& result);
+/// Moves the result toward the noisy input where the means of their halves differ by more than `bound`. Both halves of
+/// the result move by the same part of their distance to the mean of the noisy halves. The part is computed for each
+/// colour of the beauty and applied to that colour of every layer, so that layers that add up to the beauty still do;
+/// alpha stays unchanged. The bias shrinks with the distance. The lost energy has to be returned to the whole image
+/// (restore_everywhere). Where it would be more than max_lost of the energy of a colour, as in a frame lit by a single
+/// glint, all pixels move by correspondingly less.
+BoundEnergy bind_to_noise(const HalfPair& pair, const Image& bound, double max_lost, Candidate& result);
 
 }  // namespace polyrecon

@@ -8,36 +8,41 @@
 
 namespace polyrecon {
 
-/// A denoised layer of the file, made usable; 3 channels each.
+/// The prior, a denoised layer of the file, after its correction; 3 channels each.
 struct CorrectedPrior {
   Image value;
-  Image sharpening;  ///< What was added to make it as sharp as our own result, part of value.
+  Image sharpening;  ///< The part of value that sharpen_to added.
 };
 
 /// Channels that the corrections by a prior hold, but for the tiles of select_correction: the corrected prior, and the
 /// beauty of both halves before and after.
 constexpr std::size_t prior_work_channels = 2 * 3 + 2 * 3 + 2 * 3;
 
-/// What a denoised layer of the file says of the beauty: the mean of its halves where it has them (their noise is
-/// averaged), else its mean. Each channel is brought to the sum of the noisy halves where that takes a factor of 1/2 to
-/// 2: noise hardly moves a sum over the frame, so what differs is the prior's exposure. Pixels that are not usable, and
-/// all of a prior without a usable one, take the value of own. Last, a blurred one is sharpened (blend/sharpen.h).
-/// 3 channels; prior is not empty and of the pair's size.
-CorrectedPrior correct_prior(Pass prior, const HalfPair& pair, const Image& own);
+/// Prepares a prior for add_prior. It is the mean of the pass's halves where it has them (which averages their noise),
+/// else its mean.
+/// - Each channel is scaled to the sum of the noisy halves if that takes a factor of 1/2 to 2. Noise hardly changes a
+///   sum over the frame, so the factor is a difference in exposure.
+/// - Pixels that are not usable get the value of the reconstruction, as do all pixels of a prior without a usable one.
+/// - A blurred prior is sharpened (blend/sharpen.h).
+/// prior: not empty, of the pair's size.
+/// reconstruction: the mean of the halves of the result so far, 3 channels.
+CorrectedPrior correct_prior(Pass prior, const HalfPair& pair, const Image& reconstruction);
 
-/// How much of the input's noise the prior holds, 1 if it is the input itself: slope of its difference from own over
-/// the input's, relative to the brightest of the three. An upper bound, since detail that own misses counts too. All 3
+/// Part of the input's noise that the prior holds: 0 for a prior without it, 1 for the input itself. Computed as the
+/// slope of the prior's difference from the reconstruction on the input's difference from it, relative to the brightest
+/// of the three. This is an upper bound, since detail that the reconstruction misses counts as noise. All images have 3
 /// channels.
-double noise_in_prior(const Image& prior, const HalfPair& pair, const Image& own);
+double noise_in_prior(const Image& prior, const HalfPair& pair, const Image& reconstruction);
 
-/// Order -1 of equation (2): takes the prior as it is, whole or in part, where that has less error. own and own + s b
-/// (prior - own), s = 0.5, 0.6 .. 1, are judged by cross-validation like any others. b is how far each is believed,
-///     exp(-max(0, D / E - 2)),   D = its squared distance from own + (2 s sharpening)^2,   E = mse,
-/// both relative and averaged over risk_sigma: an image that contradicts the samples by far more than our own
-/// estimated error is wrong, whatever the noise of the validation lets it score; and what had to be sharpened may be
-/// wrong by twice what that changed. mse: estimated squared error of own (ErrorMap::mse). Only the beauty changes;
-/// bias, variance and order stay those of own. max_bytes: as in select_correction.
-Candidate add_prior(const HalfPair& pair, const CorrectedPrior& prior, const Image& mse, Candidate own,
+/// Order -1 of equation (2): uses the prior, whole or in part, where it has less error than the result so far, f.
+/// Selects by cross-validation among f and f + s b (prior - f) for s = 0.5, 0.6 .. 1. b is the trust in the prior,
+///     b = exp(-max(0, D / E - 2)),   D = |prior - f|^2 + (2 s sharpening)^2,   E = mse,
+/// with D and E relative and averaged over risk_sigma. A prior that differs from f by far more than the estimated error
+/// of f is wrong, whatever the noise of the validation lets it score; and sharpening may be wrong by twice what it
+/// changed. Only the beauty changes; bias, variance and order of the result are those of f.
+/// mse: estimated squared error of f (ErrorMap::mse).
+/// max_bytes: as in select_correction.
+Candidate add_prior(const HalfPair& pair, const CorrectedPrior& prior, const Image& mse, Candidate result,
                     const SelectParams& params, std::size_t max_bytes);
 
 }  // namespace polyrecon

@@ -16,13 +16,13 @@ namespace polyrecon {
 namespace {
 
 constexpr double brightness_sigma = 1;
-constexpr double tie = 1e-3;  // candidates whose risk is within this of the least are the best together
-// Relative noise variance below and above which candidates count alike: keeps shares finite and above zero.
+constexpr double tie = 1e-3;  // the best candidate is the mean of those whose risk is within this of the least one
+// Limits of the relative noise variance, which keep shares finite and above zero.
 constexpr Real least_relative_variance = Real(1e-12), most_relative_variance = Real(1e12);
-constexpr std::size_t largest_tile = std::size_t{1024} * 1024;  // of corrections; larger ones are no faster
+constexpr std::size_t largest_tile = std::size_t{1024} * 1024;  // pixels; larger ones are not faster
 constexpr double pi = 3.14159265358979323846;
 
-/// 1 / (brightness^2 + epsilon), the square smoothed so that one dark pixel does not carry the risk of its
+/// 1 / (brightness^2 + epsilon). The square is smoothed so that one dark pixel does not dominate the risk of its
 /// neighbourhood.
 Image inverse_brightness(const Image& brightness, double epsilon) {
   Image out = brightness;
@@ -39,7 +39,7 @@ Image inverse_brightness(const Image& brightness, double epsilon) {
   return out;
 }
 
-/// The unsmoothed risk of a candidate.
+/// The risk of a candidate before it is averaged.
 Image raw_risk(const HalfPair& pair, const Candidate& candidate, const Image& scale) {
   Image out(scale.width(), scale.height(), 1);
   for_rows(out.height(), [&](int y) {
@@ -56,13 +56,13 @@ Image raw_risk(const HalfPair& pair, const Candidate& candidate, const Image& sc
   return out;
 }
 
-/// What the candidates are compared with at each pixel.
+/// The best candidate of each pixel, which the others are compared with.
 struct Best {
-  Image raw;   ///< Unsmoothed risk of the best candidate, the mean over those that are as good.
-  Image risk;  ///< The least one.
+  Image raw;   ///< Risk before averaging; the mean over the candidates that are about equally good.
+  Image risk;  ///< The least averaged risk.
 };
 
-/// exp(-z^2 / 2), z = D / SE, of a candidate against the best of each pixel.
+/// exp(-z^2 / 2), z = D / SE, of a candidate compared with the best one of each pixel.
 Image likelihood(const Image& raw, const Image& risk, const Best& best, const SelectParams& params) {
   const int width = raw.width(), height = raw.height();
   Image moments(width, height, 2);
@@ -74,7 +74,8 @@ Image likelihood(const Image& raw, const Image& risk, const Best& best, const Se
     }
   });
   moments = gaussian_blur(moments, params.risk_sigma);
-  const double independent = 4 * pi * params.risk_sigma * params.risk_sigma;  // pixels that a Gaussian average is worth
+  // The number of independent pixels whose mean has the variance of the Gaussian average.
+  const double independent = 4 * pi * params.risk_sigma * params.risk_sigma;
   Image out(width, height, 1);
   for_rows(height, [&](int y) {
     for (int x = 0; x < width; ++x) {
@@ -88,8 +89,8 @@ Image likelihood(const Image& raw, const Image& risk, const Best& best, const Se
   return out;
 }
 
-/// Divides by the standard deviation of the candidate's noise, relative like the risk.
-void favour_little_noise(const Image& variance, const Image& scale, double sigma, Image& shares) {
+/// Divides the shares of a candidate by the standard deviation s of its noise, which is relative like the risk.
+void divide_by_noise(const Image& variance, const Image& scale, double sigma, Image& shares) {
   if (variance.empty()) return;
   Image relative(shares.width(), shares.height(), 1);
   for_rows(shares.height(), [&](int y) {
@@ -126,14 +127,14 @@ Best best_of(const std::vector<Image>& raw, const std::vector<Image>& risk) {
   return out;
 }
 
-/// Adds to out the share of a candidate's `in`, each value as `of` gives it.
-template <typename Of>
-void add_share(const Image& in, const Image& shares, const Image& total, const Of& of, Image& out) {
+/// Adds an image of a candidate to the average, after `map` has been applied to each value.
+template <typename Map>
+void add_share(const Image& in, const Image& shares, const Image& total, const Map& map, Image& out) {
   if (in.empty()) return;
   for_rows(out.height(), [&](int y) {
     for (int c = 0; c < out.channels(); ++c)
       for (int x = 0; x < out.width(); ++x)
-        out.at(x, y, c) += of(in.at(x, y, c)) * (shares.at(x, y, 0) / total.at(x, y, 0));
+        out.at(x, y, c) += map(in.at(x, y, c)) * (shares.at(x, y, 0) / total.at(x, y, 0));
   });
 }
 
@@ -150,8 +151,9 @@ void square(Image& image) {
 }  // namespace
 
 int select_halo(const SelectParams& params) {
-  // The choice is smoothed; it takes the spread of the difference to the best, which each pixel's risk tells.
-  return gaussian_reach(params.map_sigma) + 2 * gaussian_reach(params.risk_sigma) + gaussian_reach(brightness_sigma);
+  // Smoothing of the shares + average of the squared difference to the best risk + average of the risk + smoothing of
+  // the brightness.
+  return gaussian_radius(params.map_sigma) + 2 * gaussian_radius(params.risk_sigma) + gaussian_radius(brightness_sigma);
 }
 
 Candidate select(const HalfPair& pair, const Image& brightness, const std::vector<Candidate>& candidates,
@@ -168,7 +170,7 @@ Candidate select(const HalfPair& pair, const Image& brightness, const std::vecto
   Image total(width, height, 1);
   for (std::size_t k = 0; k < candidates.size(); ++k) {
     Image share = likelihood(raw[k], risk[k], best, params);
-    favour_little_noise(candidates[k].variance, scale, params.risk_sigma, share);
+    divide_by_noise(candidates[k].variance, scale, params.risk_sigma, share);
     shares.push_back(gaussian_blur(share, params.map_sigma));
     for_rows(height, [&](int y) {
       for (int x = 0; x < width; ++x) total.at(x, y, 0) += shares[k].at(x, y, 0);
@@ -176,7 +178,7 @@ Candidate select(const HalfPair& pair, const Image& brightness, const std::vecto
   }
   Candidate out = make_candidate(width, height, candidates[0].half[0].channels());
   const auto value = [](Real v) { return v; };
-  const auto root = [](Real v) { return std::sqrt(v); };  // Minkowski, as in BlendedFit
+  const auto root = [](Real v) { return std::sqrt(v); };  // biases are averaged, not their squares; see BlendedFit
   for (std::size_t k = 0; k < candidates.size(); ++k) {
     for (std::size_t h = 0; h < 2; ++h) add_share(candidates[k].half[h], shares[k], total, value, out.half[h]);
     add_share(candidates[k].squared_bias, shares[k], total, root, out.squared_bias);
@@ -196,20 +198,20 @@ std::size_t select_channels(std::size_t candidates, std::size_t color_channels) 
          std::max(moments + likelihood, candidate_channels(color_channels));
 }
 
-std::array<Image, 2> select_correction(const HalfPair& pair, const std::array<Image, 2>& own,
+std::array<Image, 2> select_correction(const HalfPair& pair, const std::array<Image, 2>& halves,
                                        const Corrections& corrections, const SelectParams& params,
                                        std::size_t max_bytes) {
-  const int width = pair.width(), height = pair.height(), channels = own[0].channels();
+  const int width = pair.width(), height = pair.height(), channels = halves[0].channels();
   std::array<Image, 2> out{Image(width, height, channels), Image(width, height, channels)};
   const std::size_t pixels =
       std::min(max_bytes / correction_bytes_per_pixel(channels, corrections.count), largest_tile);
-  for (const Tile& tile : make_tiles(out[0].bounds(), select_halo(params) + corrections.reach, 1, pixels)) {
+  for (const Tile& tile : make_tiles(out[0].bounds(), select_halo(params) + corrections.halo, 1, pixels)) {
     const Rect& r = tile.padded;
     const HalfPair part{
         {crop(pair.color[0], r, 0, channels), crop(pair.color[1], r, 0, channels)}, {}, {}, pair.epsilon};
-    std::vector<Candidate> candidates{{{crop(own[0], r), crop(own[1], r)}, {}, {}, {}}};
-    for (std::array<Image, 2>& half : corrections.make(candidates[0].half, r))
-      candidates.push_back({std::move(half), {}, {}, {}});
+    std::vector<Candidate> candidates{{{crop(halves[0], r), crop(halves[1], r)}, {}, {}, {}}};
+    for (std::array<Image, 2>& corrected : corrections.make(candidates[0].half, r))
+      candidates.push_back({std::move(corrected), {}, {}, {}});
     const Candidate best = select(part, mean_of_halves(candidates[0].half, 3), candidates, params);
     for (std::size_t h = 0; h < 2; ++h) paste(best.half[h], inside(tile), out[h], tile.core.x0, tile.core.y0);
   }

@@ -4,12 +4,13 @@
 
 namespace polyrecon {
 
-/// A blurred prior, made as sharp as our own result: p + k1 L1 p + k2 L2 p, with L_d the sum of the four neighbours at
-/// distance d less four times the pixel, the discrete Laplacian (border pixels repeated), never below 0 by it. k1 and
-/// k2 are one pair for the image, by least squares against own; terms are relative to the brighter of the two squared.
-/// Own, as against the samples, does not hold the noise that a prior may have kept, which would pass for sharpness.
-/// Nothing is done where L1 alone does not ask for sharpening, k1 < 0: a prior may be as sharp as it likes.
-/// 3 channels, finite, of one size; epsilon as in the error measure, radiance squared.
-Image sharpen_to(Image prior, const Image& own, double epsilon);
+/// Sharpens a blurred prior p to the sharpness of the reconstruction f: p + k1 L1 p + k2 L2 p. L_d is the discrete
+/// Laplacian at distance d: the sum of the four neighbours at that distance less four times the pixel, with border
+/// pixels repeated. k1 and k2 are one pair for the image, found by least squares against f with each term relative to
+/// the larger of p^2 and f^2. They are fitted to f and not to the samples, since noise of the samples that the prior
+/// kept would look like sharpness. The result is negative only where p is. A prior that is at least as sharp as f, that
+/// is k1 >= 0 for L1 alone, is returned unchanged. Both images have 3 channels, finite values and one size.
+/// epsilon: added to the squares; as in HalfPair.
+Image sharpen_to(Image prior, const Image& reconstruction, double epsilon);
 
 }  // namespace polyrecon

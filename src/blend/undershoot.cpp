@@ -29,12 +29,13 @@ Real least_over(const Image& image, int channel, const Rect& area) {
   return least;
 }
 
-/// Raises the beauty's channel and, by their shares, that of the layers.
+/// Raises a channel of the beauty by `by` and the same colour of the AOVs by their shares.
 void raise(const Image& input, const Rect& around, int channel, Real by, int x, int y, Image& image) {
   image.at(x, y, channel) += by;
   const double beauty = sum_over(input, channel, around);
   if (beauty == 0) return;
-  // Part of the beauty is 0 to 1 of it; a layer that is none (an albedo) may be any multiple of a dark corner.
+  // A part of the beauty is 0 to 1 of it. The limits are for layers that are not a part, such as an albedo, which may
+  // be any multiple of the beauty in a dark corner.
   for (int layer = 1; layer < ColorLayout(image.channels()).layers(); ++layer) {
     const int k = ColorLayout::channel(layer, channel);
     image.at(x, y, k) +=
@@ -51,7 +52,7 @@ std::size_t raise_undershoot(const Image& input, Image& image) {
       const Rect around = intersect(grow({x, y, x + 1, y + 1}, radius), image.bounds());
       bool any = false;
       for (int c = 0; c < 3; ++c) {
-        if (image.at(x, y, c) >= input.at(x, y, c)) continue;  // not below its own input: no need to look around
+        if (image.at(x, y, c) >= input.at(x, y, c)) continue;  // not below all inputs, as its own is one of them
         const Real least = least_over(input, c, around);
         if (image.at(x, y, c) >= least) continue;
         raise(input, around, c, least - image.at(x, y, c), x, y, image);

@@ -14,26 +14,26 @@ using test::image_of;
 double at(const Image& image, int x, int y, int c) { return static_cast<double>(image.at(x, y, c)); }
 
 TEST(NoiseReach, IsFiveStandardDeviationsWhereNoiseIsAlikeAllOver) {
-  const Image reach = noise_reach(Image(20, 15, 3, Real(0.04)));
+  const Image bound = noise_bound(Image(20, 15, 3, Real(0.04)));
   for (const auto& [x, y] : {std::pair{10, 7}, std::pair{0, 0}, std::pair{19, 14}})
-    EXPECT_NEAR(at(reach, x, y, 1), 1, 1e-5);
-  EXPECT_EQ(test::max_magnitude(noise_reach(Image(20, 15, 3))), 0);
-  EXPECT_NEAR(at(noise_reach(Image(1, 1, 3, Real(0.04))), 0, 0, 2), 1, 1e-6);
+    EXPECT_NEAR(at(bound, x, y, 1), 1, 1e-5);
+  EXPECT_EQ(test::max_magnitude(noise_bound(Image(20, 15, 3))), 0);
+  EXPECT_NEAR(at(noise_bound(Image(1, 1, 3, Real(0.04))), 0, 0, 2), 1, 1e-6);
 }
 
 /// Noise ends at an edge: up to it the quiet side counts, beyond it each pixel's own.
 TEST(NoiseReach, BesideNoiseIsThatOfTheQuietSide) {
-  const Image reach = noise_reach(image_of(40, 20, 3, [](int x, int, int) { return x < 20 ? 1e-6 : 1; }));
-  EXPECT_NEAR(at(reach, 19, 10, 0), 0.005, 1e-5);
-  EXPECT_NEAR(at(reach, 20, 10, 0), 5, 1e-5);
+  const Image bound = noise_bound(image_of(40, 20, 3, [](int x, int, int) { return x < 20 ? 1e-6 : 1; }));
+  EXPECT_NEAR(at(bound, 19, 10, 0), 0.005, 1e-5);
+  EXPECT_NEAR(at(bound, 20, 10, 0), 5, 1e-5);
 }
 
 /// A pixel that no spike has met yet, among others that some have, may be as wrong as they.
 TEST(NoiseReach, AmongSpikesIsTheirs) {
   test::Random random(3);
-  const Image reach = noise_reach(image_of(60, 60, 3, [&](int, int, int) { return random.uniform() < 0.2 ? 1 : 0; }));
+  const Image bound = noise_bound(image_of(60, 60, 3, [&](int, int, int) { return random.uniform() < 0.2 ? 1 : 0; }));
   for (int y = 0; y < 60; ++y)
-    for (int x = 0; x < 60; ++x) EXPECT_GT(at(reach, x, y, 0), 0.1);
+    for (int x = 0; x < 60; ++x) EXPECT_GT(at(bound, x, y, 0), 0.1);
 }
 
 TEST(NoiseReach, TurnsWithTheImage) {
@@ -42,7 +42,7 @@ TEST(NoiseReach, TurnsWithTheImage) {
   const auto transposed = [](const Image& image) {
     return image_of(image.height(), image.width(), 3, [&](int x, int y, int c) { return image.at(y, x, c); });
   };
-  EXPECT_LT(test::max_difference(noise_reach(transposed(variance)), transposed(noise_reach(variance))), 1e-5);
+  EXPECT_LT(test::max_difference(noise_bound(transposed(variance)), transposed(noise_bound(variance))), 1e-5);
 }
 
 struct Case {
@@ -72,9 +72,9 @@ TEST(BindToNoise, LeavesWhatIsWithinReach) {
 
 TEST(BindToNoise, BringsTheMeanToTheEndOfTheReach) {
   Case c = make_case();
-  Image reach(8, 6, 3, Real(1));
-  reach.at(3, 2, 1) = Real(0.25);  // half of the distance, in green
-  const BoundEnergy lost = bind_to_noise(c.pair, reach, 10, c.result);
+  Image bound(8, 6, 3, Real(1));
+  bound.at(3, 2, 1) = Real(0.25);  // half of the distance, in green
+  const BoundEnergy lost = bind_to_noise(c.pair, bound, 10, c.result);
   EXPECT_EQ(lost.pixels, 1u);
   const std::vector<double> expected{0, 0.25, 0, 0, 0.125, 0};
   ASSERT_EQ(lost.energy.size(), expected.size());
@@ -118,7 +118,7 @@ TEST(BindToNoise, LayersThatAddUpStillDo) {
   pair.color = {image(), image()};
   pair.variance = Image(9, 7, 3, Real(1e-3));
   Candidate result{{image(), image()}, Image(9, 7, 3), Image(9, 7, 3), Image(9, 7, 1)};
-  EXPECT_GT(bind_to_noise(pair, noise_reach(pair.variance), 10, result).pixels, 30u);
+  EXPECT_GT(bind_to_noise(pair, noise_bound(pair.variance), 10, result).pixels, 30u);
   for (const Image& half : result.half)
     for (int c = 0; c < 3; ++c)
       for (std::size_t i = 0; i < half.pixels(); ++i)

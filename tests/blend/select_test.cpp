@@ -36,7 +36,7 @@ TEST(Select, TakesTheClearlyBetterCandidateInEachHalfOfTheImage) {
   const Candidate out =
       select(pair, truth, {candidate_of(bad_left, bad_left, 1), candidate_of(bad_right, bad_right, 3)}, SelectParams{});
   // Risk is averaged over 4 pixels and shares over 1.5: away from the seam by both reaches the choice is all one.
-  const int margin = gaussian_reach(4) + gaussian_reach(1.5);
+  const int margin = gaussian_radius(4) + gaussian_radius(1.5);
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x) {
       if (std::abs(x - 40) <= margin) continue;
@@ -170,7 +170,7 @@ TEST(SelectCorrection, TheTilesDoNotShow) {
     const std::array<Image, 2> blurred{gaussian_blur(own[0], sigma), gaussian_blur(own[1], sigma)};
     return std::vector<std::array<Image, 2>>{{test::times(own[0], 1.0001), test::times(own[1], 1.0001)}, blurred};
   };
-  const Corrections corrections{2, gaussian_reach(sigma), make};
+  const Corrections corrections{2, gaussian_radius(sigma), make};
   const auto work = [&](std::size_t side) {
     const std::size_t bytes = side * side * correction_bytes_per_pixel(3, 2);
     return select_correction(pair, pair.color, corrections, SelectParams{}, bytes);
