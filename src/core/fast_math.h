@@ -7,13 +7,15 @@
 
 namespace polyrecon {
 
-/// exp(-x) for x in [0, 80] to a relative error below 3e-7 (Cody-Waite reduction, degree 6 polynomial). Inline and free
-/// of branches so that loops over it vectorise, which std::exp prevents. Same bits on every machine that rounds alike.
+/// exp(-x) for x in [0, 80] with a relative error below 3e-7 (tests/core/fast_math_test.cpp), by Cody-Waite reduction
+/// and a polynomial of degree 6. It is inline and without branches so that loops over it vectorise, which std::exp
+/// prevents. It has the same bits on all machines with IEEE rounding.
 inline float exp_minus(float x) {
   const float t = x * -1.44269504f;
   const float shifted = t + 12582912.0f;  // 1.5 * 2^23 rounds t to the nearest integer
   const float rounded = shifted - 12582912.0f;
-  // ln 2 in two parts, the first short enough for an exact product: t itself has lost digits where x is large.
+  // ln 2 in two parts, the first with few enough digits for an exact product. t is not used, as it has lost digits
+  // where x is large.
   const float r = (-x - rounded * 0.693359375f) + rounded * 2.12194440e-4f;
   float p = 1.0f / 720;
   p = p * r + 1.0f / 120;

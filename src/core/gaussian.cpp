@@ -19,10 +19,10 @@ POLYRECON_SIMD void divide(const double* sum, const double* weight, Real* out, i
 }
 
 void blur_columns(const Image& in, const std::vector<double>& taps, int c, int y, Image& out) {
-  const int reach = static_cast<int>(taps.size()) - 1, width = in.width();
+  const int radius = static_cast<int>(taps.size()) - 1, width = in.width();
   std::vector<double> sum(static_cast<std::size_t>(width), 0.0);
   double weight = 0;
-  for (int k = std::max(-reach, -y); k <= std::min(reach, in.height() - 1 - y); ++k) {
+  for (int k = std::max(-radius, -y); k <= std::min(radius, in.height() - 1 - y); ++k) {
     const double tap = taps[static_cast<std::size_t>(std::abs(k))];
     accumulate(in.row(c, y + k), tap, sum.data(), width);
     weight += tap;
@@ -31,11 +31,11 @@ void blur_columns(const Image& in, const std::vector<double>& taps, int c, int y
   divide(sum.data(), weights.data(), out.row(c, y), width);
 }
 
-/// Sums of a row's values times the taps around each.
+/// Sums of the values around each pixel of a row, times the taps.
 std::vector<double> row_sums(const Real* in, const std::vector<double>& taps, int width) {
-  const int reach = static_cast<int>(taps.size()) - 1;
+  const int radius = static_cast<int>(taps.size()) - 1;
   std::vector<double> sum(static_cast<std::size_t>(width), 0.0);
-  for (int k = -reach; k <= reach; ++k) {
+  for (int k = -radius; k <= radius; ++k) {
     const int begin = std::max(0, -k), end = std::min(width, width - k);
     if (begin >= end) continue;
     accumulate(in + begin + k, taps[static_cast<std::size_t>(std::abs(k))], sum.data() + begin, end - begin);
@@ -45,11 +45,11 @@ std::vector<double> row_sums(const Real* in, const std::vector<double>& taps, in
 
 }  // namespace
 
-int gaussian_reach(double sigma) { return static_cast<int>(std::ceil(3 * sigma)); }
+int gaussian_radius(double sigma) { return static_cast<int>(std::ceil(3 * sigma)); }
 
 Image gaussian_blur(const Image& image, double sigma) {
   std::vector<double> taps;
-  for (int k = 0; k <= gaussian_reach(sigma); ++k) taps.push_back(std::exp(-0.5 * k * k / (sigma * sigma)));
+  for (int k = 0; k <= gaussian_radius(sigma); ++k) taps.push_back(std::exp(-0.5 * k * k / (sigma * sigma)));
   Image between(image.width(), image.height(), image.channels()), out = between;
   const std::vector<Real> ones(static_cast<std::size_t>(image.width()), Real(1));
   const std::vector<double> weights = row_sums(ones.data(), taps, image.width());

@@ -5,11 +5,11 @@
 
 namespace polyrecon {
 
-/// Pixels that gaussian_blur reaches: the kernel is cut at three standard deviations.
-int gaussian_reach(double sigma);
+/// Radius of the kernel of gaussian_blur, which is cut at three standard deviations.
+int gaussian_radius(double sigma);
 
-/// Every channel convolved with a Gaussian of standard deviation sigma (pixels), normalised over the taps that lie
-/// inside the image, so that a constant stays a constant up to the border.
+/// Convolves every channel with a Gaussian of standard deviation sigma (pixels). The kernel is normalised over the taps
+/// that are inside the image, so a constant stays a constant up to the border.
 Image gaussian_blur(const Image& image, double sigma);
 
 }  // namespace polyrecon

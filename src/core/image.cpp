@@ -14,7 +14,7 @@ Image::Image(int width, int height, int channels, Real fill) : width_(width), he
 
 namespace {
 
-/// Channel `channel` of the part `from` of source to the place (x, y) of target's channel `to`.
+/// Copies channel `channel` of the part `from` of source to channel `to` of target, at (x, y).
 void copy_plane(const Image& source, int channel, const Rect& from, Image& target, int to, int x, int y) {
   for (int row = 0; row < from.height(); ++row) {
     const Real* begin = source.row(channel, from.y0 + row) + from.x0;

@@ -7,10 +7,10 @@
 
 namespace polyrecon {
 
-/// Relative error of rounding to a half float, at most.
+/// Largest relative error of rounding to a half float.
 constexpr double half_float_rounding = 0x1p-11;
 
-/// A value as it is stored; what is greater than the greatest finite sample becomes that one.
+/// Converts a value to a sample; values above the largest finite sample become that.
 inline Real storable(double value) {
   constexpr double most = std::numeric_limits<Real>::max();
   return static_cast<Real>(std::min(value, most));

@@ -11,11 +11,11 @@ inline Rect intersect(const Rect& a, const Rect& b) {
   return {std::max(a.x0, b.x0), std::max(a.y0, b.y0), std::min(a.x1, b.x1), std::min(a.y1, b.y1)};
 }
 
-/// r with a margin of n pixels added on every side.
+/// r extended by n pixels on every side.
 inline Rect grow(const Rect& r, int n) { return {r.x0 - n, r.y0 - n, r.x1 + n, r.y1 + n}; }
 
-/// The blocks of size x size pixels, aligned to multiples of size, that cover area; row by row, each cut to area.
-/// Alignment does not depend on where area begins, so a tile sees the same blocks as the whole frame.
+/// The blocks of size x size pixels, aligned to multiples of size, that cover area, row by row and each cut to area.
+/// The alignment does not depend on where area begins, so a tile has the same blocks as the whole frame.
 std::vector<Rect> aligned_blocks(const Rect& area, int size);
 
 }  // namespace polyrecon

@@ -16,7 +16,7 @@ bool pixel_usable(const Image& image, std::size_t i) {
   return true;
 }
 
-/// Mean of the good neighbours of (x, y) into `mean`; false if there are none.
+/// Computes the mean of the good neighbours of (x, y). Returns false if there are none.
 bool neighbour_mean(const Image& image, const std::vector<unsigned char>& bad, int x, int y,
                     std::vector<double>& mean) {
   mean.assign(static_cast<std::size_t>(image.channels()), 0.0);
@@ -44,7 +44,7 @@ bool has_usable_pixel(const Image& image) {
   return false;
 }
 
-std::size_t repair_nonfinite(Image& image, int reach) {
+std::size_t repair_nonfinite(Image& image, int depth) {
   if (image.empty()) return 0;
   std::vector<unsigned char> bad(image.pixels(), 0);
   for_rows(image.height(), [&](int y) {
@@ -55,7 +55,7 @@ std::size_t repair_nonfinite(Image& image, int reach) {
     holes.push_back(static_cast<std::size_t>(hole - bad.begin()));
   const std::size_t replaced = holes.size();
   std::vector<double> mean;
-  for (int ring = 0; ring < reach && !holes.empty(); ++ring) {
+  for (int ring = 0; ring < depth && !holes.empty(); ++ring) {
     std::vector<std::size_t> repaired, rest;
     for (const std::size_t i : holes) {
       const int x = static_cast<int>(i % static_cast<std::size_t>(image.width()));

@@ -6,17 +6,17 @@
 
 namespace polyrecon {
 
-/// Largest magnitude that counts as a value: its square and sums of squares still fit into a float.
+/// Largest magnitude of a usable value. Its square and sums of squares fit into a float.
 constexpr Real largest_value = Real(1e15);
 
-/// True for a finite value of a magnitude that can be computed with.
+/// Whether a value is finite and its magnitude at most largest_value.
 bool usable(Real value);
 
 /// Whether some pixel is usable in all channels.
 bool has_usable_pixel(const Image& image);
 
-/// Replaces unusable pixels by the mean of the usable ones around them, growing inwards from the border of a hole; at
-/// most `reach` pixels deep, deeper ones become 0. Returns how many pixels were replaced.
-std::size_t repair_nonfinite(Image& image, int reach);
+/// Replaces unusable pixels by the mean of the usable ones next to them, from the border of a hole inwards. Pixels more
+/// than `depth` pixels inside a hole become 0. Returns the number of replaced pixels.
+std::size_t repair_nonfinite(Image& image, int depth);
 
 }  // namespace polyrecon

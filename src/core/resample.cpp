@@ -13,7 +13,7 @@ Image half_resolution(const Image& image) {
     const int y1 = std::min(2 * y + 1, image.height() - 1);
     for (int c = 0; c < image.channels(); ++c)
       for (int x = 0; x < out.width(); ++x) {
-        // At an odd border the one pixel or row that is there counts twice, which is its mean.
+        // At the border of an odd size the last row or column counts twice, which gives the mean over fewer pixels.
         const int x1 = std::min(2 * x + 1, image.width() - 1);
         out.at(x, y, c) = Real(0.25) * (image.at(2 * x, 2 * y, c) + image.at(x1, 2 * y, c) + image.at(2 * x, y1, c) +
                                         image.at(x1, y1, c));
@@ -25,8 +25,8 @@ Image half_resolution(const Image& image) {
 Image double_resolution(const Image& image, int width, int height) {
   Image out(width, height, image.channels());
   for_rows(height, [&](int y) {
-    // The centre of fine pixel y stands at coarse coordinate y/2 - 1/4: 3/4 of its own coarse pixel, 1/4 of the next
-    // one.
+    // The centre of fine pixel y is at coarse coordinate y / 2 - 1 / 4: 3/4 of the coarse pixel that contains it and
+    // 1/4 of the next one.
     const int y0 = y / 2, y1 = std::clamp(y % 2 == 0 ? y0 - 1 : y0 + 1, 0, image.height() - 1);
     for (int c = 0; c < image.channels(); ++c)
       for (int x = 0; x < width; ++x) {
@@ -39,8 +39,8 @@ Image double_resolution(const Image& image, int width, int height) {
   return out;
 }
 
-Image at_most_wide(const Image& image, int widest) {
-  const int factor = (image.width() + widest - 1) / widest;
+Image at_most_wide(const Image& image, int max_width) {
+  const int factor = (image.width() + max_width - 1) / max_width;
   if (factor <= 1) return image;
   Image out((image.width() + factor - 1) / factor, (image.height() + factor - 1) / factor, image.channels());
   for (int c = 0; c < out.channels(); ++c)

@@ -4,14 +4,15 @@
 
 namespace polyrecon {
 
-/// Half the resolution (rounded up): each pixel the mean of the 2 x 2 (at the border fewer) pixels it covers.
+/// The image at half the resolution, rounded up. Each pixel is the mean of the 2 x 2 pixels that it covers (fewer at
+/// the border).
 Image half_resolution(const Image& image);
 
-/// Twice the resolution, cut to width x height: bilinear between the centres of the coarse pixels, constant beyond
-/// them.
+/// The image at twice the resolution, cut to width x height: bilinear between the centres of the coarse pixels and
+/// constant beyond them.
 Image double_resolution(const Image& image, int width, int height);
 
-/// Means over square blocks, as large as it takes for the picture to be at most so many pixels wide.
-Image at_most_wide(const Image& image, int widest);
+/// The image reduced to a width of at most max_width pixels. Each pixel is the mean of a square block of pixels.
+Image at_most_wide(const Image& image, int max_width);
 
 }  // namespace polyrecon

@@ -13,14 +13,14 @@
 namespace polyrecon {
 namespace {
 
-constexpr double smoothing_sigma = 2;  // pixels over which what single pixels tell is averaged
+constexpr double smoothing_sigma = 2;  // pixels
 
-/// One channel of the result, and what is known of its error there; variances over (yhat^2 + 0.01), averaged.
+/// The terms of the error of one channel, relative to energy.
 struct ChannelErrors {
-  Image energy;    ///< yhat^2 + 0.01.
-  Image variance;  ///< (f_A - f_B)^2 / 4.
-  Image noise;     ///< Of the input's mean, unsmoothed.
-  Image bound;     ///< noise, averaged.
+  Image energy;    ///< relmse_denominator(yhat).
+  Image variance;  ///< (f_A - f_B)^2 / 4, averaged.
+  Image noise;     ///< Noise variance of the input's mean, not averaged.
+  Image bound;     ///< The same, averaged.
 };
 
 double noise_of_mean(const HalfPair& pair, const Image& variance, int x, int y, int c) {

@@ -12,7 +12,7 @@
 namespace polyrecon {
 namespace {
 
-/// One value per pixel in double: the water level is a ratio of sums over millions of them.
+/// One value per pixel, in double because the water level is a ratio of sums over millions of pixels.
 struct Plane {
   int width = 0, height = 0;
   std::vector<double> v;
@@ -22,10 +22,10 @@ struct Plane {
   const double* row(int y) const { return v.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(width); }
 };
 
-/// Passes the wish to stop on, but counts no steps: the rows of a helper are no progress of their own.
-class Silent final : public Progress {
+/// Forwards cancellation but reports no steps, as the rows of a helper are not steps of the sample map.
+class CancelOnly final : public Progress {
  public:
-  explicit Silent(const Progress& outer) : outer_(outer) {}
+  explicit CancelOnly(const Progress& outer) : outer_(outer) {}
   bool cancelled() const override { return outer_.cancelled(); }
 
  private:
@@ -33,11 +33,11 @@ class Silent final : public Progress {
 };
 
 void each_row(int height, Progress& progress, const std::function<void(int)>& body) {
-  Silent silent(progress);
-  parallel_for(static_cast<std::size_t>(height), silent, [&](std::size_t y) { body(static_cast<int>(y)); });
+  CancelOnly cancel_only(progress);
+  parallel_for(static_cast<std::size_t>(height), cancel_only, [&](std::size_t y) { body(static_cast<int>(y)); });
 }
 
-/// Sum of term(pixel index) over the plane, with the same bits for any number of threads.
+/// Sum of term(pixel index) over the plane; has the same bits for any number of threads.
 template <typename Term>
 double sum_pixels(const Plane& p, Term term) {
   return ordered_sum(static_cast<std::size_t>(p.height), [&](std::size_t y) {
@@ -56,7 +56,7 @@ std::vector<double> gaussian(int radius) {
   return k;
 }
 
-/// Separable convolution with k; what lies outside the image counts as zero.
+/// Separable convolution with k; values outside the image are zero.
 Plane convolve(const Plane& in, const std::vector<double>& k, Progress& progress) {
   const int radius = static_cast<int>(k.size() / 2), w = in.width, h = in.height;
   Plane across(w, h), out(w, h);
@@ -77,19 +77,19 @@ Plane convolve(const Plane& in, const std::vector<double>& k, Progress& progress
   return out;
 }
 
-/// The window of a pixel: K_ij normalised over the i inside the image, applied either way.
+/// The Gaussian window K_ij around pixel j, normalised over the pixels i inside the image.
 class Window {
  public:
   Window(int width, int height, int radius, Progress& progress)
       : kernel_(gaussian(radius)), weight_(ones(width, height, progress)) {}
 
-  /// sum_i K_ij in_i: the mean over the window of j.
+  /// sum_i K_ij in_i for every j: the mean over the window of j.
   Plane mean(const Plane& in, Progress& progress) const {
     Plane out = convolve(in, kernel_, progress);
     for (std::size_t i = 0; i < out.v.size(); ++i) out.v[i] /= weight_.v[i];
     return out;
   }
-  /// sum_j K_ij in_j: what every j hands to the pixels of its window; keeps the total.
+  /// sum_j K_ij in_j for every i: each j distributes its value over its window, so the total is kept.
   Plane spread(const Plane& in, Progress& progress) const {
     Plane shares = in;
     for (std::size_t j = 0; j < shares.v.size(); ++j) shares.v[j] /= weight_.v[j];
@@ -107,11 +107,11 @@ class Window {
   Plane weight_;
 };
 
-/// Of the error map, every value finite and not negative.
+/// The parts of the error map that the sample map uses; every value is finite and not negative.
 struct ErrorParts {
   Plane variance, noise;
-  double relative_mse = 0;  ///< Mean over the pixels where it is known.
-  std::size_t unknown = 0;
+  double relative_mse = 0;  ///< Mean over the pixels with a finite error.
+  std::size_t unknown = 0;  ///< Pixels without one.
 };
 
 ErrorParts split_error(const ErrorMap& error) {
@@ -154,7 +154,7 @@ Plane counts_or(const Image& sample_count, double assumed, int width, int height
   return n;
 }
 
-/// Cost per sample with mean 1, smoothed over the window: a renderer's clock is noisy from pixel to pixel.
+/// Cost per sample with mean 1, averaged over the window since the times that renderers measure are noisy per pixel.
 Plane relative_cost(const Image& cost, const Window& window, int width, int height, Progress& progress) {
   Plane c(width, height);
   std::fill(c.v.begin(), c.v.end(), 1.0);
@@ -182,7 +182,7 @@ struct Filling {
   double spent(double t) const {
     return sum_pixels(s, [&](std::size_t i) { return c.v[i] * extra(i, t); });
   }
-  /// The share of the error that is left; 1 where no sample helps.
+  /// The part of the error that is left at level t; 1 if no sample reduces it.
   double left(double t) const {
     const double all = sum_pixels(s, [&](std::size_t i) { return V.v[i]; });
     if (!(all > 0)) return 1;
@@ -192,8 +192,8 @@ struct Filling {
   }
 };
 
-/// Levels between which the filling changes: below lo nothing is given, above hi nothing more. lo > hi: nothing to
-/// give.
+/// Levels between which the filling changes: below lo no pixel gets samples, above hi no pixel gets more. lo > hi if no
+/// pixel ever gets samples.
 struct Levels {
   double lo = std::numeric_limits<double>::infinity(), hi = 0;
 };
@@ -214,7 +214,7 @@ double lowest_level(Levels r, Reached reached, Progress& progress) {
   constexpr double tolerance = 4 * std::numeric_limits<double>::epsilon();
   while (r.hi - r.lo > tolerance * r.hi) {
     if (progress.cancelled()) throw Error(ExitCode::Interrupted, "interrupted");
-    // The levels of bright and dark pixels can lie tens of powers of ten apart: halve the exponent, not the value.
+    // Bisects the exponent, as the levels of bright and dark pixels can differ by tens of powers of ten.
     double middle = std::sqrt(r.lo) * std::sqrt(r.hi);
     if (middle <= r.lo || middle >= r.hi) middle = r.lo + (r.hi - r.lo) / 2;
     if (middle <= r.lo || middle >= r.hi) break;
@@ -223,12 +223,12 @@ double lowest_level(Levels r, Reached reached, Progress& progress) {
   return r.hi;
 }
 
-/// V_i: what pixel i's noise does to the windows around it, up to a common factor.
-Plane weight_of_samples(const ErrorParts& parts, const Window& window, Progress& progress) {
+/// V_i of make_sample_map, up to a common factor.
+Plane error_of_noise(const ErrorParts& parts, const Window& window, Progress& progress) {
   Plane V = window.spread(parts.variance, progress);
   Plane both = window.spread(parts.noise, progress);
   for (std::size_t i = 0; i < both.v.size(); ++i) both.v[i] = std::sqrt(both.v[i]) * std::sqrt(V.v[i]);
-  // The noise may be unknown, or zero where the error is not.
+  // Where the noise is unknown, or zero although there is an error, V is that of the variance alone.
   return sum_pixels(both, [&](std::size_t i) { return both.v[i]; }) > 0 ? both : V;
 }
 
@@ -244,7 +244,7 @@ void check_shapes(const ErrorMap& error, const Image& sample_count, const Image&
     throw Error(ExitCode::BadInput, "the cost image has another size than the error map");
 }
 
-/// Fills samples, importance and their figures from the filling at level t.
+/// Fills samples, importance, total, min and max of the map from the filling at level t.
 void store(const Filling& f, double t, SampleMap& map) {
   Real* samples = map.samples.plane(0);
   Real* importance = map.importance.plane(0);
@@ -286,7 +286,7 @@ SampleMap make_sample_map(const ErrorMap& error, const Image& sample_count, cons
 
   const Window window(width, height, params.radius, progress);
   Filling f{Plane(width, height), counts_or(sample_count, params.assumed_samples, width, height),
-            relative_cost(cost, window, width, height, progress), weight_of_samples(parts, window, progress),
+            relative_cost(cost, window, width, height, progress), error_of_noise(parts, window, progress),
             params.max_samples};
   for (std::size_t i = 0; i < f.s.v.size(); ++i) f.s.v[i] = std::sqrt(f.V.v[i] * f.n.v[i] / f.c.v[i]);
 

@@ -25,7 +25,7 @@ constexpr double color_exponent = 0.7, feature_exponent = 0.5;  // q_c, q_f
 constexpr double compressed_part = 0.4, compressed_to = 0.95;   // p_c, p_t
 constexpr double feature_width = 0.082;                         // w, degrees
 
-// ---- Colour spaces (section 4.1). White is that of the matrix: linear RGB (1, 1, 1).
+// ---- Colour spaces (section 4.1). White is linear RGB (1, 1, 1).
 
 Eigen::Matrix3d rgb_to_xyz() {
   Eigen::Matrix3d m;
@@ -53,7 +53,7 @@ const Color& white() {
   return xyz;
 }
 
-/// Linear RGB -> Y Cx Cz: a linear opponent space, where the eye's contrast sensitivity is applied.
+/// Linear RGB to Y Cx Cz, the linear opponent space in which contrast sensitivity is applied.
 Color opponent_of(const Color& rgb) {
   const Color xyz = xyz_of(rgb);
   const double x = xyz[0] / white()[0], y = xyz[1] / white()[1], z = xyz[2] / white()[2];
@@ -65,7 +65,7 @@ Color rgb_of_opponent(const Color& ycc) {
   return rgb_of_xyz({x * white()[0], y * white()[1], z * white()[2]});
 }
 
-/// Linear RGB -> L*a*b* with the Hunt effect: colours look less colourful in the dark.
+/// Linear RGB to L*a*b* with the Hunt effect, by which dark colours look less colourful.
 Color hunt_lab_of(const Color& rgb) {
   constexpr double delta = 6.0 / 29.0;
   const Color xyz = xyz_of(rgb);
@@ -78,10 +78,10 @@ Color hunt_lab_of(const Color& rgb) {
   return {lightness, 0.01 * lightness * 500 * (f[0] - f[1]), 0.01 * lightness * 200 * (f[1] - f[2])};
 }
 
-/// HyAB distance: city block in lightness, Euclidean in chroma.
+/// HyAB distance: the difference in lightness plus the Euclidean distance in chroma.
 double hyab(const Color& a, const Color& b) { return std::abs(a[0] - b[0]) + std::hypot(a[1] - b[1], a[2] - b[2]); }
 
-/// Colour difference, 0 to 1: small differences are spread over most of the range.
+/// Colour difference, 0 to 1, compressed so that small differences take most of the range.
 double color_error(const Color& a, const Color& b) {
   static const double largest = std::pow(hyab(hunt_lab_of({0, 1, 0}), hunt_lab_of({0, 0, 1})), color_exponent);
   const double error = std::pow(hyab(hunt_lab_of(a), hunt_lab_of(b)), color_exponent), knee = compressed_part * largest;
@@ -89,7 +89,7 @@ double color_error(const Color& a, const Color& b) {
                       : compressed_to + (error - knee) / (largest - knee) * (1 - compressed_to);
 }
 
-// ---- Filters: every one is separable; a line of taps from -radius to radius.
+// ---- Filters. All are separable into lines of taps from -radius to radius.
 
 using Taps = std::vector<double>;
 
@@ -104,7 +104,7 @@ Taps scaled(Taps line, double factor) {
   return line;
 }
 
-/// Sum of the positive taps, or of the negative ones' magnitudes.
+/// Sum of the positive taps, or of the magnitudes of the negative ones.
 double sum_of(const Taps& line, bool positive) {
   double sum = 0;
   for (const double t : line)
@@ -112,14 +112,14 @@ double sum_of(const Taps& line, bool positive) {
   return sum;
 }
 
-/// Each sign's taps sum to one.
+/// Scales positive and negative taps so that the magnitudes of each sum to 1.
 Taps balanced(Taps line) {
   const double positive = sum_of(line, true), negative = sum_of(line, false);
   for (double& t : line) t /= t > 0 ? positive : negative;
   return line;
 }
 
-/// The image convolved along x or y; beyond the border its last pixel goes on.
+/// The image convolved along x or y; border pixels are repeated.
 Image convolve(const Image& image, const Taps& line, bool along_x) {
   const int radius = static_cast<int>(line.size() / 2), w = image.width(), h = image.height();
   Image out(w, h, 1);
@@ -140,13 +140,13 @@ Image convolve(const Image& image, const Taps& x, const Taps& y) {
   return convolve(convolve(image, x, true), y, false);
 }
 
-/// One Gaussian of a contrast sensitivity function: a sqrt(pi / b) exp(-pi^2 d^2 / b), d in degrees (table 1).
+/// One Gaussian of a contrast sensitivity function, a sqrt(pi / b) exp(-pi^2 d^2 / b) with d in degrees (table 1).
 struct Sensitivity {
   double a, b;
 };
 
-/// Filter of a channel: a sum of Gaussians, normalised together.
-Image see(const Image& channel, const std::vector<Sensitivity>& gaussians) {
+/// A channel filtered by its contrast sensitivity function, a normalised sum of Gaussians.
+Image filter_channel(const Image& channel, const std::vector<Sensitivity>& gaussians) {
   constexpr double widest = 0.04;
   const int radius = static_cast<int>(std::ceil(3 * std::sqrt(widest / (2 * pi * pi)) * pixels_per_degree));
   std::vector<std::pair<double, Taps>> lines;
@@ -167,7 +167,7 @@ Image see(const Image& channel, const std::vector<Sensitivity>& gaussians) {
   return out;
 }
 
-/// How strong edges and points are, from the achromatic channel (section 4.2).
+/// Strength of edges and points in the achromatic channel (section 4.2).
 struct Features {
   Image edges, points;
 };
@@ -192,13 +192,13 @@ Features features_of(const Image& achromatic) {
 
 // ---- One exposure: two pictures of linear RGB in 0..1.
 
-/// What a picture is compared by: its colours as seen from the distance, and its features.
-struct Seen {
+/// A picture as a viewer perceives it: colours after contrast sensitivity filtering, and features.
+struct Perceived {
   Image rgb;
   Features features;
 };
 
-Seen look(const Image& rgb) {
+Perceived perceive(const Image& rgb) {
   std::array<Image, 3> ycc{Image(rgb.width(), rgb.height(), 1), Image(rgb.width(), rgb.height(), 1),
                            Image(rgb.width(), rgb.height(), 1)};
   Image achromatic(rgb.width(), rgb.height(), 1);
@@ -207,20 +207,20 @@ Seen look(const Image& rgb) {
     for (std::size_t k = 0; k < 3; ++k) ycc[k].plane(0)[i] = static_cast<Real>(c[k]);
     achromatic.plane(0)[i] = static_cast<Real>((c[0] + 16) / 116);
   }
-  ycc[0] = see(ycc[0], {{1, 0.0047}});
-  ycc[1] = see(ycc[1], {{1, 0.0053}});
-  ycc[2] = see(ycc[2], {{34.1, 0.04}, {13.5, 0.025}});
-  Seen seen{Image(rgb.width(), rgb.height(), 3), features_of(achromatic)};
+  ycc[0] = filter_channel(ycc[0], {{1, 0.0047}});
+  ycc[1] = filter_channel(ycc[1], {{1, 0.0053}});
+  ycc[2] = filter_channel(ycc[2], {{34.1, 0.04}, {13.5, 0.025}});
+  Perceived perceived{Image(rgb.width(), rgb.height(), 3), features_of(achromatic)};
   for (std::size_t i = 0; i < rgb.pixels(); ++i) {
     const Color c = rgb_of_opponent({ycc[0].plane(0)[i], ycc[1].plane(0)[i], ycc[2].plane(0)[i]});
     for (int k = 0; k < 3; ++k)
-      seen.rgb.plane(k)[i] = static_cast<Real>(std::clamp(c[static_cast<std::size_t>(k)], 0.0, 1.0));
+      perceived.rgb.plane(k)[i] = static_cast<Real>(std::clamp(c[static_cast<std::size_t>(k)], 0.0, 1.0));
   }
-  return seen;
+  return perceived;
 }
 
-/// Raises each pixel of largest to the difference of a and b there.
-void raise_to_difference(Image& largest, const Seen& a, const Seen& b) {
+/// Replaces each pixel of largest by the difference of a and b if that is larger.
+void raise_to_difference(Image& largest, const Perceived& a, const Perceived& b) {
   for_rows(largest.height(), [&](int y) {
     for (int x = 0; x < largest.width(); ++x) {
       const std::size_t i = largest.index(x, y);
@@ -242,14 +242,14 @@ constexpr double k0 = 0.6 * 0.6 * 2.51, k1 = 0.6 * 0.03, k3 = 0.6 * 0.6 * 2.43, 
 
 double tone(double x) { return std::clamp((k0 * x * x + k1 * x) / (k3 * x * x + k4 * x + k5), 0.0, 1.0); }
 
-/// The radiance that the tone curve takes to level.
+/// The radiance that the tone curve maps to `level`.
 double radiance_at(double level) {
   const double a = k0 - k3 * level, b = k1 - k4 * level, c = -k5 * level;
   return (-b + std::sqrt(b * b - 4 * a * c)) / (2 * a);
 }
 
-/// In stops: from the one that shows the brightest pixel of the reference to the one that shows its median, both at 85
-/// %.
+/// Exposures in stops, from the one that maps the brightest pixel of the reference to 85 % to the one that maps its
+/// median luminance there.
 std::vector<double> exposures_of(const Image& reference) {
   std::vector<double> luminance(reference.pixels());
   for (std::size_t i = 0; i < luminance.size(); ++i)
@@ -291,7 +291,7 @@ Image flip(const Image& image, const Image& reference, Progress& progress) {
   Image largest(x.width(), x.height(), 1);
   for (const double stops : exposures_of(r)) {
     if (progress.cancelled()) throw Error(ExitCode::Interrupted, "interrupted");
-    raise_to_difference(largest, look(exposed(r, stops)), look(exposed(x, stops)));
+    raise_to_difference(largest, perceive(exposed(r, stops)), perceive(exposed(x, stops)));
   }
   return largest;
 }

@@ -207,7 +207,7 @@ Result reconstruct(Frame& frame, const std::vector<TimedNeighbour>& neighbours, 
   const std::vector<double> totals = color_totals(frame);
   // Of the noise as it is told: where an outlier goes from one half, the other may still be as wrong as that noise. An
   // estimate knows regions, no single pixels.
-  const Image reach = params.parts.noise_bound && noise.measured ? noise_reach(pair.variance) : Image();
+  const Image reach = params.parts.noise_bound && noise.measured ? noise_bound(pair.variance) : Image();
   const auto outliers = timed(report, progress, "outliers", rows * 2, [&]() -> std::vector<Outlier> {
     if (!params.steps.outliers) return {};
     return remove_outliers(pair, prepared.independent_halves, outlier_params(noise), progress);

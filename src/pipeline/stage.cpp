@@ -144,7 +144,7 @@ int stage_halo(const Params& params) {
   // The guide's noise is final its blur inside a tile, every candidate fit_halo further in, the choice select_halo
   // more.
   const int fits = std::max(fit_halo(first_fit_params(params)), fit_halo(fit_params(params, params.later_bandwidths)));
-  return gaussian_reach(residual_sigma) + fits + select_halo(params.selection);
+  return gaussian_radius(residual_sigma) + fits + select_halo(params.selection);
 }
 
 std::size_t smallest_tile_pixels(const Params& params) {

@@ -10,7 +10,7 @@
 namespace polyrecon {
 namespace {
 
-constexpr double way_back = 1;  // pixels by which a point may miss itself
+constexpr double max_miss = 1;  // pixels between a point and where the vectors lead back to
 
 int nearest(double position, int size) { return std::clamp(static_cast<int>(std::lround(position)), 0, size - 1); }
 
@@ -18,8 +18,8 @@ bool inside(double x, double y, const Image& image) {
   return x > -0.5 && y > -0.5 && x < image.width() - 0.5 && y < image.height() - 0.5;
 }
 
-/// One step from the places in one frame to those in the next one on the same side. channel: 0 for the frame before, 2
-/// for the one after.
+/// Advances the places from one frame to the next one in the same direction. channel: first of the two motion channels,
+/// 0 for the frame before and 2 for the one after.
 void step(const Image& from, const Image& to, int channel, Places& places) {
   for_rows(places.position.height(), [&](int y) {
     for (int x = 0; x < places.position.width(); ++x) {
@@ -29,7 +29,7 @@ void step(const Image& from, const Image& to, int channel, Places& places) {
       const double x0 = px, y0 = py;
       double x1 = x0, y1 = y0;
       if (!from.empty()) {
-        // The nearest vector, not a mean of several: across an edge that would be the motion of neither side.
+        // The nearest vector: across an edge, a mean of several would be the motion of neither side.
         const int u = nearest(x0, from.width()), v = nearest(y0, from.height());
         x1 += static_cast<double>(from.at(u, v, channel));
         y1 += static_cast<double>(from.at(u, v, channel + 1));
@@ -42,7 +42,7 @@ void step(const Image& from, const Image& to, int channel, Places& places) {
       const int u = nearest(x1, to.width()), v = nearest(y1, to.height());
       const double dx = x1 + static_cast<double>(to.at(u, v, 2 - channel)) - x0;
       const double dy = y1 + static_cast<double>(to.at(u, v, 3 - channel)) - y0;
-      seen = dx * dx + dy * dy < way_back * way_back;
+      seen = dx * dx + dy * dy < max_miss * max_miss;
     }
   });
 }
@@ -53,8 +53,8 @@ const Neighbour* find(const std::vector<TimedNeighbour>& neighbours, int offset,
   return nullptr;
 }
 
-/// Weights of the pixels around a place, along one axis: of pixel floor(place) - 1 and the three after it.
-std::array<double, 4> cubic(double t) {
+/// Weights of pixel floor(place) - 1 and the three pixels after it, along one axis. t: place - floor(place).
+std::array<double, 4> cubic_weights(double t) {
   return {((-0.5 * t + 1) * t - 0.5) * t, (1.5 * t - 2.5) * t * t + 1, ((-1.5 * t + 2) * t + 0.5) * t,
           (0.5 * t - 0.5) * t * t};
 }
@@ -95,7 +95,7 @@ Image sample_at(const Image& image, const Places& places, const Rect& area, bool
       if (!places.seen[places.position.index(x, y)]) continue;
       const double px = places.position.at(x, y, 0), py = places.position.at(x, y, 1);
       const int u = static_cast<int>(std::floor(px)), v = static_cast<int>(std::floor(py));
-      const auto weights = [&](double t) { return sharp ? cubic(t) : std::array<double, 4>{0, 1 - t, t, 0}; };
+      const auto weights = [&](double t) { return sharp ? cubic_weights(t) : std::array<double, 4>{0, 1 - t, t, 0}; };
       const std::array<double, 4> wx = weights(px - u), wy = weights(py - v);
       for (int c = 0; c < image.channels(); ++c) {
         double sum = 0;

@@ -7,22 +7,23 @@
 
 namespace polyrecon {
 
-/// Where each pixel's point is in a neighbouring frame.
+/// Where the point that each pixel shows is in a neighbouring frame.
 struct Places {
-  int offset = 0;  ///< Of that frame.
+  int offset = 0;  ///< Of the neighbouring frame, in frames.
   const Neighbour* frame = nullptr;
-  Image position;                   ///< 2 channels: column and row there, in pixels, fractional.
-  std::vector<unsigned char> seen;  ///< 0 where the point is hidden there, or outside the picture.
+  Image position;                   ///< 2 channels: column and row in that frame, in pixels, fractional.
+  std::vector<unsigned char> seen;  ///< Per pixel, 0 where the point is hidden in that frame or outside of it.
 };
 
-/// Follows the motion vectors from frame to frame. A point counts as seen as long as the way back, by the vectors of
-/// the frame that was reached, ends within a pixel of where it began. Where a frame has no vectors the point is taken
-/// to stand still. A side ends at the first frame that is not there, or has another size or other layers than pair.
-/// motion: of the frame in hand, as Frame::motion. Every offset at most once.
+/// Follows the motion vectors from frame to frame, backward and forward in time. A point is seen in a frame if the
+/// vectors of that frame lead back to within a pixel of where the point was. Where a frame has no vectors, points are
+/// taken not to move. A direction ends at the first frame that is missing, or whose size or layers differ from pair's.
+/// motion: as Frame::motion, of the current frame.
+/// neighbours: each offset at most once.
 std::vector<Places> follow(const Image& motion, const HalfPair& pair, const std::vector<TimedNeighbour>& neighbours);
 
-/// A neighbour's image at the places of the pixels of area, where they are seen, else 0. sharp: by the cubic of Catmull
-/// and Rom (1974), which keeps detail; else linear, which keeps the sign.
+/// An image of a neighbour, sampled at the places of the pixels of area; 0 where a pixel is not seen. sharp: cubic
+/// interpolation (Catmull and Rom 1974), which keeps detail; otherwise linear, which keeps the sign.
 Image sample_at(const Image& image, const Places& places, const Rect& area, bool sharp);
 
 }  // namespace polyrecon

@@ -17,17 +17,18 @@ namespace polyrecon {
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
-constexpr double ratio_sigma = 2;     // pixels over which variances are compared: a pixel's own says too little
-constexpr double shared_sigma = 8;    // pixels over which it is seen whether two frames share their noise
-constexpr double shared_below = 0.7;  // differences this far below what independent noise brings mean that they do
+constexpr double ratio_sigma = 2;   // pixels; variances are averaged before they are compared, as single ones are noisy
+constexpr double shared_sigma = 8;  // pixels; squared differences are averaged to find whether frames share their noise
+// Frames share their noise where squared differences are below this part of what independent noise makes.
+constexpr double shared_below = 0.7;
 constexpr double tiny = 1e-30;
-constexpr int band_rows = 256;  // worked at once
+constexpr int band_rows = 256;  // height of a band of the frame
 
-/// An estimate of the frame in hand from other frames; zero where it is not valid.
+/// An estimate of the current frame from other frames; zero where it is not valid.
 struct Estimate {
   std::array<Image, 2> color;
   Image variance;                    ///< Of one half, 3 channels.
-  std::vector<unsigned char> valid;  ///< One byte a pixel.
+  std::vector<unsigned char> valid;  ///< One byte per pixel.
 };
 
 Estimate estimate_from(const Places& places, const Rect& area) {
@@ -42,7 +43,7 @@ Estimate estimate_from(const Places& places, const Rect& area) {
   return out;
 }
 
-/// The mean of two estimates where both are valid, else the one that is.
+/// The mean of two estimates where both are valid, else the valid one.
 Estimate combine(Estimate a, const Estimate& b) {
   for_rows(a.variance.height(), [&](int y) {
     for (int x = 0; x < a.variance.width(); ++x) {
@@ -60,7 +61,7 @@ Estimate combine(Estimate a, const Estimate& b) {
   return a;
 }
 
-/// The estimate from the frames k before and k after; empty where there are none.
+/// The estimate from the frames k before and k after; empty if there are none.
 Estimate estimate_at(const std::vector<Places>& all, int k, const Rect& area) {
   Estimate out;
   for (const Places& places : all)
@@ -69,7 +70,8 @@ Estimate estimate_at(const std::vector<Places>& all, int k, const Rect& area) {
   return out;
 }
 
-/// Channels: difference RGB, its noise variance summed over RGB, 1; all zero where the estimate is not valid.
+/// The difference of a half from its estimate. Channels: difference RGB, the sum over RGB of its noise variance, and 1;
+/// all zero where the estimate is not valid.
 Image differences(const HalfPair& pair, const Estimate& estimate, std::size_t half) {
   Image out(pair.width(), pair.height(), 5);
   for_rows(out.height(), [&](int y) {
@@ -94,7 +96,7 @@ double squared(const Image& d, std::size_t i) {
   return sum;
 }
 
-/// exp(-(change - accept) / softness) over all scales, 1 channel.
+/// The product over all scales of exp(-max(0, change - accept) / softness), 1 channel.
 Image gate(const Image& difference, const TemporalParams& p) {
   Image excess(difference.width(), difference.height(), 1);
   const auto add = [&](const Image& d, const Image& floor, double kept) {
@@ -102,14 +104,14 @@ Image gate(const Image& difference, const TemporalParams& p) {
       for (int x = 0; x < d.width(); ++x) {
         const std::size_t i = d.index(x, y);
         if (!(d.plane(4)[i] > 0)) continue;
-        // Both are sums over the valid pixels only, with the same weights.
+        // Difference and noise are sums over the valid pixels only, with the same weights.
         const double noise = std::max(static_cast<double>(d.plane(3)[i]), static_cast<double>(floor.plane(3)[i]));
         const double change = squared(d, i) / std::max(kept * noise, tiny);
         excess.plane(0)[i] += static_cast<Real>(std::max(0.0, change - p.accept) / p.softness);
       }
     });
   };
-  // A single pixel's variance may be far too low: half of what its neighbours say counts at least.
+  // The variance of a single pixel may be far too low, so half of the average around it is the least that counts.
   Image around = gaussian_blur(difference, 1);
   for (std::size_t i = 0; i < around.pixels(); ++i) around.plane(3)[i] *= Real(0.5);
   add(difference, around, 1);
@@ -131,8 +133,8 @@ Image sum_of_channels(const Image& image) {
   return out;
 }
 
-/// What part of the noise the estimate shares with the frame in hand, 0 to 1, 1 channel: independent noises bring a
-/// squared difference of the sum of their variances, one and the same brings none.
+/// The part of the noise that the estimate shares with the current frame, 0 to 1, 1 channel. The squared difference of
+/// independent noise is the sum of the variances; that of shared noise is 0.
 Image shared_noise(const Image& difference) {
   Image moments(difference.width(), difference.height(), 2);
   for (std::size_t i = 0; i < moments.pixels(); ++i) {
@@ -148,9 +150,9 @@ Image shared_noise(const Image& difference) {
   return out;
 }
 
-/// Running sums of one half.
+/// Running sums of one half over the pixel itself (with w = 1) and the estimates.
 struct Sums {
-  Image color, variance, shared, weight;  ///< sum w y, sum w^2 Var, sum w shared (neighbours only), sum w
+  Image color, variance, shared, weight;  ///< sum w y, sum w^2 Var, sum w shared (estimates only), sum w
 };
 
 void add_estimate(const Estimate& estimate, std::size_t half, const Image& weight, const Image& shared, Sums& sums) {
@@ -167,8 +169,8 @@ void add_estimate(const Estimate& estimate, std::size_t half, const Image& weigh
   });
 }
 
-/// By how much the squared difference is above what noise brings, 1 channel: squared error of the estimate that comes
-/// from neither frame's noise, such as a texture's between the pixels.
+/// The squared error e^2 of an estimate that is not noise, 1 channel: the part of the squared difference that noise
+/// does not explain, such as the error of a texture sampled between its pixels.
 Image excess_error(const Image& difference) {
   Image excess(difference.width(), difference.height(), 1);
   for (std::size_t i = 0; i < excess.pixels(); ++i)
@@ -178,17 +180,16 @@ Image excess_error(const Image& difference) {
   return excess;
 }
 
-/// Weight of an estimate for one half, from what the difference of the other half shows: its variance and other error
-/// beside the variance of the pixel itself.
+/// Weight of an estimate for one half, from the difference of the other half.
 Image weight_of(const HalfPair& pair, const Estimate& estimate, const Image& difference, const TemporalParams& params) {
   Image weight = gate(difference, params);
-  const Image own = gaussian_blur(sum_of_channels(pair.variance), ratio_sigma);
-  const Image theirs = gaussian_blur(sum_of_channels(estimate.variance), ratio_sigma);
+  const Image variance = gaussian_blur(sum_of_channels(pair.variance), ratio_sigma);
+  const Image estimate_variance = gaussian_blur(sum_of_channels(estimate.variance), ratio_sigma);
   const Image excess = excess_error(difference);
   for_rows(weight.height(), [&](int y) {
     for (int x = 0; x < weight.width(); ++x) {
-      const double v = theirs.at(x, y, 0) + excess.at(x, y, 0), o = own.at(x, y, 0);
-      weight.at(x, y, 0) *= static_cast<Real>(std::min(v > 0 ? o / v : params.max_weight, params.max_weight));
+      const double error = estimate_variance.at(x, y, 0) + excess.at(x, y, 0), v = variance.at(x, y, 0);
+      weight.at(x, y, 0) *= static_cast<Real>(std::min(error > 0 ? v / error : params.max_weight, params.max_weight));
     }
   });
   return weight;
@@ -210,13 +211,13 @@ std::array<Sums, 2> join_area(const HalfPair& pair, const std::vector<Places>& p
   return sums;
 }
 
-/// The averages; pixels without noise keep their value, which is exact.
+/// Divides the sums by their weights. Pixels without noise keep their value, which is exact.
 void average(const std::array<Sums, 2>& sums, HalfPair& pair) {
-  const Image own = pair.variance;
+  const Image variance = pair.variance;
   for_rows(pair.height(), [&](int y) {
     for (int x = 0; x < pair.width(); ++x) {
-      const std::size_t i = own.index(x, y);
-      if (!(own.plane(0)[i] > 0 || own.plane(1)[i] > 0 || own.plane(2)[i] > 0)) continue;
+      const std::size_t i = variance.index(x, y);
+      if (!(variance.plane(0)[i] > 0 || variance.plane(1)[i] > 0 || variance.plane(2)[i] > 0)) continue;
       for (int c = 0; c < 3; ++c) pair.variance.plane(c)[i] = 0;
       for (std::size_t h = 0; h < 2; ++h) {
         const Real weight = sums[h].weight.plane(0)[i], others = weight - 1;
@@ -224,17 +225,17 @@ void average(const std::array<Sums, 2>& sums, HalfPair& pair) {
           pair.color[h].plane(c)[i] = sums[h].color.plane(c)[i] / weight;
         const Real shared = others > 0 ? sums[h].shared.plane(0)[i] / others : Real(0);
         for (int c = 0; c < 3; ++c)
-          pair.variance.plane(c)[i] +=
-              Real(0.5) * (shared * own.plane(c)[i] + (1 - shared) * sums[h].variance.plane(c)[i] / (weight * weight));
+          pair.variance.plane(c)[i] += Real(0.5) * (shared * variance.plane(c)[i] +
+                                                    (1 - shared) * sums[h].variance.plane(c)[i] / (weight * weight));
       }
     }
   });
 }
 
-int reach_of(const TemporalParams& params) {
+int halo_of(const TemporalParams& params) {
   double widest = shared_sigma;
   for (const double sigma : params.scales) widest = std::max(widest, sigma);
-  return gaussian_reach(widest);
+  return gaussian_radius(widest);
 }
 
 }  // namespace
@@ -245,11 +246,11 @@ JoinCounts join_neighbours(const Image& motion, const std::vector<TimedNeighbour
   JoinCounts counts{places.size(), 0};
   if (places.empty()) return counts;
   const HalfPair before{pair.color, pair.variance, {}, pair.epsilon};
-  // In bands, since the estimates and their blurs are several times the size of the frame.
+  // In bands, since the estimates and their blurs take several times the memory of the frame.
   for (int y = 0; y < pair.height(); y += band_rows) {
     if (progress.cancelled()) throw Error(ExitCode::Interrupted, "interrupted");
     const Rect band{0, y, pair.width(), std::min(y + band_rows, pair.height())};
-    const Rect area = intersect(grow(band, reach_of(params)), pair.variance.bounds());
+    const Rect area = intersect(grow(band, halo_of(params)), pair.variance.bounds());
     HalfPair part = crop(before, area);
     const std::array<Sums, 2> sums = join_area(part, places, area, params);
     average(sums, part);

@@ -7,9 +7,9 @@
 
 namespace polyrecon {
 
-/// A frame as the frames before and after it need it.
+/// A frame prepared for use as a neighbour in time.
 struct Neighbour {
-  HalfPair pair;  ///< Without features; outliers removed.
+  HalfPair pair;  ///< Without features; outliers are removed.
   Image motion;   ///< As Frame::motion; empty where there is none.
 };
 

@@ -18,7 +18,7 @@ TEST(GaussianBlur, KeepsAConstantUpToTheBorder) {
 
 TEST(GaussianBlur, AnImpulseBecomesTheProductOfTwoNormalisedGaussians) {
   const double sigma = 1.5;
-  const int reach = gaussian_reach(sigma), size = 4 * reach + 1, middle = size / 2;  // no border in sight
+  const int reach = gaussian_radius(sigma), size = 4 * reach + 1, middle = size / 2;  // no border in sight
   EXPECT_EQ(reach, 5);                                                               // ceil(4.5)
   Image impulse(size, size, 1);
   impulse.at(middle, middle, 0) = 1;
