@@ -122,10 +122,10 @@ class Slurm(unittest.TestCase):
             {f"shot.{frame:04d}.exr" for frame in (3, 23, 24)},
         )
         found = self.report()
-        self.assertEqual((found["finished"], found["unfinished"]), (24, "27-28"))
+        self.assertEqual((found["finished"], found["unfinished"]), (24, "27,28"))
         self.assertEqual(sorted(found["reasons"]), ["27", "28"])
         self.assertIn("shot.0028.exr", found["reasons"]["28"])
-        self.assertEqual(len(found["attempts_that_failed"]), 1)
+        self.assertEqual(len(found["failed_attempts"]), 1)
 
     def test_tasks_ask_for_what_the_model_says(self):
         running = self.submit("--dry-run", "--sbatch=--comment=a b", "--", "--quality", "best")
