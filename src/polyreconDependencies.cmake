@@ -1,4 +1,5 @@
-# What the library is built on; included by the build and by the installed package (it is static: its users link these).
+# The libraries that polyrecon is built on. The installed CMake package includes this file too, as users of the static
+# library link them.
 find_package(Eigen3 REQUIRED)
 find_package(TBB REQUIRED)
 find_package(OpenEXR CONFIG REQUIRED)
@@ -8,7 +9,8 @@ pkg_check_modules(OpenColorIO REQUIRED IMPORTED_TARGET OpenColorIO)  # Debian sh
 find_package(fmt CONFIG REQUIRED)
 find_package(nlohmann_json CONFIG REQUIRED)
 
-# Debian's OpenImageIO names OpenCV's headers, which its own headers do not need, whether they are installed or not.
+# Debian's OpenImageIO target names the include folder of OpenCV even if that is not installed, which would be an error.
+# OpenImageIO's headers do not need it.
 get_target_property(oiio_includes OpenImageIO::OpenImageIO INTERFACE_INCLUDE_DIRECTORIES)
 set(existing_includes "")
 foreach(folder IN LISTS oiio_includes)

@@ -1,5 +1,5 @@
-# `cpack` in a build folder makes two Debian packages: polyrecon (program, man pages, completions) and libpolyrecon-dev
-# (static library, headers, CMake package). dpkg-shlibdeps (package dpkg-dev) finds what the program depends on.
+# Settings of `cpack`, which makes two Debian packages: polyrecon (program, man pages, completions) and libpolyrecon-dev
+# (static library, headers, CMake package). dpkg-shlibdeps (package dpkg-dev) finds the program's dependencies.
 set(documents ${CMAKE_CURRENT_LIST_DIR}/copyright ${CMAKE_CURRENT_LIST_DIR}/changelog)
 install(FILES ${documents} DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/polyrecon COMPONENT program)
 install(FILES ${documents} DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/libpolyrecon-dev COMPONENT library)
@@ -22,9 +22,9 @@ set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION graphics)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS fonts-dejavu-core)  # the letters in previews
 set(CPACK_COMPONENT_PROGRAM_DESCRIPTION "rebuilds clean images from noisy Monte Carlo renders
-polyrecon reads a noisy render and the feature passes beside it, fits small
-polynomials to overlapping windows and blends them. It tells how wrong each
-pixel may still be and where a renderer's next samples help most.")
+polyrecon reads a noisy render with its feature passes, fits polynomials to
+overlapping windows and blends them. It estimates the error of each pixel and
+where a renderer's next samples help most.")
 
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME libpolyrecon-dev)
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libdevel)

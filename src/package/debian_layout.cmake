@@ -1,5 +1,5 @@
-# What Debian wants otherwise than an ordinary install: manuals and changelogs compressed (always to the same bits), and
-# zsh's completions of packages in a folder of their own. cpack runs this on the files that it is going to pack.
+# cpack runs this script on the files before it packs them. Debian wants manuals and changelogs compressed (gzip -n gives
+# the same bits in every build), and the zsh completions of packages in the folder vendor-completions.
 file(GLOB_RECURSE documents "${CPACK_TEMPORARY_DIRECTORY}/*.1" "${CPACK_TEMPORARY_DIRECTORY}/changelog")
 foreach(document IN LISTS documents)
   execute_process(COMMAND gzip -9n ${document} COMMAND_ERROR_IS_FATAL ANY)

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""What `cmake --install` and `cpack` make, as their users meet it: install_test.py PROGRAM BUILD_FOLDER SAMPLES
+"""Uses what `cmake --install` and `cpack` make: install_test.py PROGRAM BUILD_FOLDER SAMPLES
 
-run.sh beside it goes on where this ends: it installs the Debian packages in a fresh Debian.
+run.sh in this folder also installs the Debian packages, in a fresh Debian.
 """
 
 import gzip
@@ -34,7 +34,7 @@ class Folder(unittest.TestCase):
 
 
 class Install(Folder):
-    def test_a_program_of_somebody_else_builds_against_the_installed_library(self):
+    def test_a_foreign_program_builds_against_the_installed_library(self):
         prefix, build = self.folder / "prefix", self.folder / "build"
         run("cmake", "--install", BUILD, "--prefix", prefix)
         for name in ("bin/polyrecon", "share/man/man1/polyrecon.1", "share/zsh/site-functions/_polyrecon"):
@@ -73,7 +73,7 @@ class Install(Folder):
             loaded = subprocess.run([program, *words], env=debug, capture_output=True, text=True).stderr
             self.assertEqual("libOpenImageIO.so" in loaded, expected, words)
         (module,) = prefix.rglob(MODULE)
-        # A signal handler removes the temporary files that the program knows of: the module must not have its own.
+        # A signal handler removes the temporary files in the program's list; the module must not have another list.
         self.assertNotIn("remove_temporaries", run("nm", "--demangle", module))
         module.unlink()
         run(program, "inspect", clean)
@@ -89,12 +89,12 @@ class DebianPackages(Folder):
         self.packages = {path.name.split("_")[0]: path for path in self.folder.glob("*.deb")}
 
     def unpacked(self):
-        """The program of its package, and its module."""
+        """The program and its module in the unpacked package."""
         run("dpkg-deb", "--extract", self.packages["polyrecon"], self.folder / "root")
         (module,) = (self.folder / "root").rglob(MODULE)
         return self.folder / "root/usr/bin/polyrecon", module
 
-    def test_they_hold_what_debian_expects(self):
+    def test_files_are_where_debian_expects_them(self):
         self.assertEqual(sorted(self.packages), ["libpolyrecon-dev", "polyrecon"])
         names = {}
         for package, path in self.packages.items():
@@ -124,7 +124,7 @@ class DebianPackages(Folder):
         self.assertTrue(any(name.endswith("/polyreconConfig.cmake") for name in library), library)
         self.assertFalse(set(names["polyrecon"]) & {name for name in library if not name.endswith("/")})
 
-    def test_their_dependencies_are_packages_of_debian_and_enough_to_run(self):
+    def test_dependencies_are_debian_packages_and_complete(self):
         depends = run("dpkg-deb", "--field", self.packages["polyrecon"], "Depends")
         for word in (
             "libc6",
@@ -136,14 +136,14 @@ class DebianPackages(Folder):
             "fonts-dejavu-core",
         ):
             self.assertIn(word, depends)
-        # Every library that the program and its module load belongs to one of them.
+        # Every library that the program and its module load belongs to a package named there.
         needed = re.findall(r"NEEDED\)\s+Shared library: \[(\S+)\]", run("readelf", "--dynamic", *self.unpacked()))
         self.assertIn("libOpenImageIO.so", "".join(needed))
         for library in needed:
             owners = re.findall(r"^([\w.+-]+)(?::\w+)?: ", run("dpkg-query", "--search", f"*/{library}"), re.M)
             self.assertTrue(any(owner in depends for owner in owners), (library, owners, depends))
 
-    def test_the_packed_program_and_pages_are_whole(self):
+    def test_packed_program_and_pages_work(self):
         program, module = self.unpacked()
         self.assertEqual(run(program, "--version"), run(PROGRAM, "--version"))
         self.assertNotIn(".symtab", run("readelf", "--sections", program, module))

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Man pages under mandoc, and the completion scripts in the shells themselves: manual_test.py PROGRAM SHARE
+"""Checks man pages with mandoc, and completions in the shells: manual_test.py PROGRAM SHARE
 
-bash and zsh are typed to on a terminal; fish has a command that lists its completions.
+The test types to bash and zsh on a terminal; fish has a command that lists completions.
 """
 
 import os
@@ -20,11 +20,11 @@ PROGRAM, SHARE = (pathlib.Path(word).resolve() for word in sys.argv[1:3])
 COMMANDS = re.findall(
     r"^  ([a-z]+)  ", subprocess.run([PROGRAM, "--help"], capture_output=True, text=True).stdout, re.M
 )
-SECONDS = 90  # that a shell may take to answer; on a busy machine zsh reads its completions for half a minute
+SECONDS = 90  # until a shell must have answered; on a busy machine zsh takes half a minute to read its completions
 
 
 class Terminal:
-    """A shell on a terminal of its own, in a folder with one file."""
+    """A shell on a new terminal, in a folder with one file."""
 
     def __init__(self, words, folder):
         self.pid, self.descriptor = pty.fork()
@@ -35,7 +35,7 @@ class Terminal:
         self.seen = ""
 
     def type(self, keys, until):
-        """Types keys and waits until the shell has written a text that the keys do not hold; returns whether it did."""
+        """Types keys and waits for a text that is not in the keys; returns whether the shell wrote it."""
         self.seen = ""
         os.write(self.descriptor, keys.encode())
         end = time.monotonic() + SECONDS
@@ -79,13 +79,13 @@ class Manual(unittest.TestCase):
         self.assertGreaterEqual(len(COMMANDS), 6)
         pages = [SHARE / "man" / "man1" / f"polyrecon{suffix}.1" for suffix in ["", *("-" + c for c in COMMANDS)]]
         for page in pages:
-            # The one warning that is left: the pages carry no date, so that they are the same in every build.
+            # The pages have no date, so that they are the same in every build; mandoc warns of it.
             lint = subprocess.run(
                 ["mandoc", "-T", "lint", "-W", "warning", page], capture_output=True, text=True
             ).stdout
             self.assertEqual([line for line in lint.splitlines() if "missing date" not in line], [])
 
-    def test_a_page_tells_what_the_help_tells(self):
+    def test_a_page_has_the_options_of_the_help(self):
         page = SHARE / "man" / "man1" / "polyrecon-denoise.1"
         text = subprocess.run(["mandoc", "-T", "ascii", "-O", "width=200", page], capture_output=True, text=True).stdout
         text = re.sub(r".\x08", "", text)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""`pip install .` into a fresh environment, and the commands that it gives: pip_test.py SOURCE_FOLDER PROGRAM"""
+"""Installs the drivers with `pip install .` in a fresh environment: pip_test.py SOURCE_FOLDER PROGRAM"""
 
 import ast
 import pathlib
@@ -35,7 +35,7 @@ class Installed(unittest.TestCase):
     def setUpClass(cls):
         cls.folder = pathlib.Path(tempfile.mkdtemp())
         cls.addClassCleanup(shutil.rmtree, cls.folder)
-        # A copy: setuptools leaves its traces beside what it builds from.
+        # Built from a copy, as setuptools writes into the source folder.
         source = cls.folder / "source"
         source.mkdir()
         for name in ("pyproject.toml", "README.md", "LICENSE"):
@@ -44,10 +44,10 @@ class Installed(unittest.TestCase):
         environment = cls.folder / "environment"
         venv.create(environment, with_pip=True, system_site_packages=True)
         cls.bin = environment / "bin"
-        # The dependencies are Debian's packages here; that they are declared is checked below.
+        # The dependencies are Debian's packages; test_what_is_imported_is_declared checks that pip knows them.
         run(cls.bin / "python3", "-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-deps", source)
 
-    def test_everything_is_there(self):
+    def test_all_files_are_installed(self):
         code = "import pathlib, polyrecon_pipelines; print(pathlib.Path(polyrecon_pipelines.__file__).parent)"
         installed = pathlib.Path(run(self.bin / "python3", "-c", code).strip())
         self.assertTrue(installed.is_relative_to(self.folder), installed)
@@ -69,7 +69,9 @@ class Installed(unittest.TestCase):
                     imported |= {alias.name.split(".")[0] for alias in node.names}
                 elif isinstance(node, ast.ImportFrom) and node.level == 0:
                     imported.add(node.module.split(".")[0])
-        siblings = {path.stem for path in PIPELINES.rglob("*.py")}  # of the scripts that a renderer runs
+        siblings = {
+            path.stem for path in PIPELINES.rglob("*.py")
+        }  # scripts that a renderer runs import each other by these names
         foreign = imported - set(sys.stdlib_module_names) - GIVEN_BY_THE_RENDERER - siblings
         self.assertLessEqual({MODULES.get(name, name) for name in foreign}, set(PROJECT["dependencies"]))
 

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Installs the two Debian packages in a fresh Debian 12 and uses them there: a frame is denoised, and a program is built
-# against the library. Needs root, debootstrap and the network; takes minutes, so it is no part of tests/run.sh.
+# Installs the two Debian packages in a fresh Debian 12, denoises a frame there and builds a program against the library.
+# Needs root, debootstrap and the network. Takes minutes, so tests/run.sh does not run it.
 #
-#     tests/packaging/run.sh [FOLDER]      # FOLDER: where the Debian goes; default build/debian
+#     tests/packaging/run.sh [FOLDER]      # FOLDER: for the Debian system; default build/debian
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 root=$(realpath -m "${1:-build/debian}")
@@ -13,7 +13,7 @@ cmake --preset release
 cmake --build --preset release
 rm -rf build/packages
 cpack --config build/release/CPackConfig.cmake -G DEB -B build/packages
-# Who distributes the packages names a real maintainer by -DCPACK_PACKAGE_CONTACT; the default is a local one.
+# Set a real maintainer with -DCPACK_PACKAGE_CONTACT before you distribute packages; lintian warns of the default.
 if command -v lintian >/dev/null; then
   lintian --fail-on error --suppress-tags bogus-mail-host,bogus-mail-host-in-debian-changelog,root-in-contact \
     build/packages/*.deb
@@ -27,8 +27,7 @@ cp build/packages/*.deb samples/glass_16.exr samples/glass_ref.exr "$root/try/"
 cp -r tests/packaging/consumer "$root/try/"
 cp /etc/resolv.conf "$root/etc/resolv.conf"
 
-# oiiotool comes with libpolyrecon-dev, as a dependency.
-# Nothing of this environment goes in: it may name tools that are not there, such as a compiler launcher.
+# Runs a command in the Debian system, with an empty environment: ours may name programs that are not installed there.
 inside() {
   chroot "$root" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C.UTF-8 DEBIAN_FRONTEND=noninteractive \
     ${http_proxy:+http_proxy="$http_proxy"} bash -euc "cd /try; $1"
@@ -48,4 +47,4 @@ inside 'apt-get install -y -qq --no-install-recommends g++ cmake ninja-build ./l
   oiiotool -a --fail 0 --hardfail 0 theirs.exr clean.exr --diff'
 echo "== removing"
 inside 'dpkg --purge polyrecon libpolyrecon-dev >/dev/null; test ! -e /usr/bin/polyrecon; test ! -e /usr/include/polyrecon'
-echo "done: packages in build/packages, what they made in $root/try"
+echo "done: the packages are in build/packages, their results in $root/try"

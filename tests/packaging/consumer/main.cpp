@@ -1,4 +1,4 @@
-// Denoises one frame by the library's three calls: consumer IN.exr OUT.exr
+// Denoises a frame with the three calls of the library, read, reconstruct and write: consumer IN.exr OUT.exr
 
 #include <cstdio>
 #include <exception>
