@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "polyrecon/image.h"
+#include "polyrecon/roles.h"
 
 namespace polyrecon {
 
@@ -21,11 +22,10 @@ struct Pass {
   bool noise_is_told() const { return !variance.empty() || has_halves(); }
 };
 
-enum class FeatureKind { Normal, Albedo, Depth, Visibility };
-
-/// A pass that guides the reconstruction: f of equation (2). Normal and albedo have 3 channels, depth and visibility 1.
+/// A pass that guides the reconstruction: f of equation (2). Its role is a feature, which says how many channels it
+/// has.
 struct Feature {
-  FeatureKind kind = FeatureKind::Normal;
+  Role role = Role::Normal;
   Pass pass;
 };
 

@@ -1,15 +1,12 @@
 // Layers of a file: groups of channels, and what each is to the method.
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
-namespace polyrecon {
+#include "polyrecon/roles.h"
 
-/// What a layer is to the method. Color is a further colour pass, which may be reconstructed as an AOV. Other is data
-/// that is copied unchanged (identifiers, positions, masks).
-enum class Role { Beauty, Prior, Alpha, Albedo, Normal, Depth, Visibility, SampleCount, Motion, Color, Other };
+namespace polyrecon {
 
 /// Whether a layer holds the mean of a pass or accompanies the layer that does.
 enum class Companion { Mean, VarianceOfMean, VarianceOfSample, SecondMoment, HalfA, HalfB };
@@ -31,13 +28,7 @@ struct Layer {
   int rank = 0;     ///< Of several layers with one role in one view layer, the one of lowest rank is used.
 };
 
-/// The role as --map spells it: "beauty", "sample-count".
-const char* name_of(Role role);
-
 /// The companion in words: "variance of the mean", "half A".
 const char* name_of(Companion companion);
-
-/// The role that --map spells like this; none for an unknown word.
-std::optional<Role> role_from(const std::string& name);
 
 }  // namespace polyrecon

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "polyrecon/image.h"
+#include "polyrecon/roles.h"
 
 namespace polyrecon {
 
@@ -54,9 +55,9 @@ struct TemporalParams {
 /// The steps of the method that may run.
 struct Steps {
   bool decide = true;  ///< Whether steps that the frame does not need are left out; if not, all allowed steps run.
-  bool normal = true, albedo = true, depth = true, visibility = true;  ///< Use of the feature passes.
-  bool prefilter = true;                                               ///< Prefilter of noisy feature passes.
-  bool outliers = true;  ///< Removal of fireflies, and redistribution of their energy.
+  RoleSet features = feature_roles();  ///< Feature passes that may take part in the fit.
+  bool prefilter = true;               ///< Prefilter of noisy feature passes.
+  bool fireflies = true;               ///< Removal of fireflies, and redistribution of their energy.
 };
 
 /// Presets: Draft is the fastest, Best the slowest.

@@ -72,8 +72,10 @@ double noise_at(const Pass& pass, int c, std::size_t i) {
   return std::isfinite(variance) ? variance : 0;
 }
 
+bool is_depth(const Feature& feature) { return info_of(feature.role).transform == FeatureTransform::BoundedDepth; }
+
 bool usable_value(const Feature& feature, Real value) {
-  return usable(value) && !(feature.kind == FeatureKind::Depth && static_cast<double>(value) >= sky_depth);
+  return usable(value) && !(is_depth(feature) && static_cast<double>(value) >= sky_depth);
 }
 
 /// Where a channel's values lie but for spikes: from the 0.5 % quantile to that of 99.5 %, and as far again on either
@@ -138,42 +140,14 @@ double median_depth(const Image& depth) {
   return static_cast<double>(*middle);
 }
 
-bool allowed(FeatureKind kind, const Steps& steps) {
-  switch (kind) {
-    case FeatureKind::Normal:
-      return steps.normal;
-    case FeatureKind::Albedo:
-      return steps.albedo;
-    case FeatureKind::Depth:
-      return steps.depth;
-    case FeatureKind::Visibility:
-      return steps.visibility;
-  }
-  return true;
-}
-
-const char* kind_name(FeatureKind kind) {
-  switch (kind) {
-    case FeatureKind::Normal:
-      return "normal";
-    case FeatureKind::Albedo:
-      return "albedo";
-    case FeatureKind::Depth:
-      return "depth";
-    case FeatureKind::Visibility:
-      return "visibility";
-  }
-  return "";
-}
-
 /// Whether a feature takes part, and why (or why not).
 Decision decide_on_feature(const FeatureLook& look, const Feature& feature, const Steps& steps) {
-  const std::string step = std::string("feature ") + kind_name(feature.kind);
+  const std::string step = std::string("feature ") + name_of(feature.role);
   const Image& mean = feature.pass.mean;
-  if (!allowed(feature.kind, steps)) return {step, false, "not asked for"};
+  if (!steps.features.has(feature.role)) return {step, false, "not asked for"};
   if (look.usable_pixels == 0) return {step, false, "no finite value"};
   if (!steps.decide) return {step, true, "asked for"};
-  const bool has_sky = feature.kind == FeatureKind::Depth && look.usable_pixels < mean.pixels();
+  const bool has_sky = is_depth(feature) && look.usable_pixels < mean.pixels();
   if (look.all.high - look.all.low <= 1e-6 * look.all.largest() && !has_sky)
     return {step, false, "constant", Spared::Columns, mean.channels()};
   if (look.noise > 0.9 * look.variance) return {step, false, "nothing but noise", Spared::Columns, mean.channels()};
@@ -355,7 +329,7 @@ Preparation look_at(const Frame& frame, const Steps& steps) {
     const Decision prefilter = decide_on_prefilter(decision.step, feature.pass, look, steps);
     use.prefilter = prefilter.run;
     if (const double largest = look.usual.largest(); largest > 0) use.scale = std::exp2(-std::ilogb(largest));
-    if (feature.kind == FeatureKind::Depth) use.half_depth = median_depth(feature.pass.mean);
+    if (is_depth(feature)) use.half_depth = median_depth(feature.pass.mean);
     out.features.push_back(use);
     out.decisions.push_back(prefilter);
   }

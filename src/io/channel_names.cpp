@@ -242,27 +242,7 @@ bool all_uint(const std::vector<FileInfo>& files, const Layer& layer) {
   });
 }
 
-bool fits(Role role, const Layer& layer) {
-  const std::size_t n = layer.channels.size();
-  switch (role) {
-    case Role::Beauty:
-    case Role::Prior:
-      return n == 3 || n == 1;
-    case Role::Albedo:
-    case Role::Normal:
-      return n == 3;
-    case Role::Depth:
-    case Role::Visibility:
-      return n >= 1 && n <= 3;
-    case Role::Alpha:
-    case Role::SampleCount:
-      return n == 1;
-    case Role::Motion:
-      return n == 4;
-    default:
-      return true;
-  }
-}
+bool fits(Role role, const Layer& layer) { return info_of(role).layer_channels.allow(layer.channels.size()); }
 
 bool is_color(const Layer& layer) {
   return layer.channels.size() == 3 && channel_order(channel_suffix(layer.channels[0])) == 0;
@@ -409,23 +389,12 @@ std::optional<double> number_in(const FileInfo& file, const std::string& attribu
   return std::nullopt;
 }
 
-constexpr std::array kRoleNames{"beauty",     "prior",        "alpha",  "albedo", "normal", "depth",
-                                "visibility", "sample-count", "motion", "color",  "other"};
-
 }  // namespace
-
-const char* name_of(Role role) { return kRoleNames[static_cast<std::size_t>(role)]; }
 
 const char* name_of(Companion companion) {
   static constexpr std::array names{
       "mean", "variance of the mean", "variance of one sample", "second moment", "half A", "half B"};
   return names[static_cast<std::size_t>(companion)];
-}
-
-std::optional<Role> role_from(const std::string& name) {
-  const auto found = std::find(kRoleNames.begin(), kRoleNames.end(), name);
-  if (found == kRoleNames.end()) return std::nullopt;
-  return static_cast<Role>(found - kRoleNames.begin());
 }
 
 std::optional<PassClass> classify_pass(const std::string& pass) {

@@ -224,13 +224,20 @@ void choose_aovs(LayerChoice& choice, const ReadOptions& options) {
     if (index < 0) no_such_layer(source, name);
     const Layer& layer = source.layers[static_cast<std::size_t>(index)];
     const PartInfo& part = part_of(source, layer);
-    if (!part.readable() || (layer.channels.size() != 3 && layer.channels.size() != 1))
+    if (!part.readable() || !info_of(Role::Color).layer_channels.allow(layer.channels.size()))
       throw Error(ExitCode::BadInput, fmt::format("{}: layer {} is no colour layer", source.path, layer.name));
     if (!(part.data_window == window))
       throw Error(ExitCode::BadInput,
                   fmt::format("{}: the data window of layer {} is not the beauty's", source.path, layer.name));
     choice.passes.push_back(with_companions(source, Role::Color, index));
   }
+}
+
+std::vector<const char*> mapped_roles() {
+  std::vector<const char*> names;
+  for (const RoleInfo& info : role_table())
+    if (info.chosen) names.push_back(info.name);
+  return names;
 }
 
 void describe_choice(LayerChoice& choice) {
@@ -259,13 +266,12 @@ RoleMapping parse_mapping(const std::string& text) {
     word.resize(word.size() - ending.size());
   }
   const auto role = role_from(word);
-  if (equals == std::string::npos || equals + 1 == text.size() || !role || *role == Role::Color || *role == Role::Other)
+  if (equals == std::string::npos || equals + 1 == text.size() || !role || !info_of(*role).chosen)
     throw Error(
         ExitCode::Usage,
-        fmt::format(
-            "--map {}: expected ROLE=LAYER with a role of beauty, prior, alpha, albedo, normal, depth, "
-            "visibility, sample-count, motion, variance, half-a, half-b or ROLE-variance, ROLE-half-a, ROLE-half-b",
-            text));
+        fmt::format("--map {}: expected ROLE=LAYER with a role of {}, variance, half-a, half-b or ROLE-variance, "
+                    "ROLE-half-a, ROLE-half-b",
+                    text, fmt::join(mapped_roles(), ", ")));
   mapping.role = *role;
   mapping.layer = text.substr(equals + 1);
   return mapping;
@@ -281,12 +287,11 @@ LayerChoice choose_layers(const std::string& path, const ReadOptions& options) {
   if (beauty < 0) no_beauty(source);
   choice.passes.push_back(with_companions(source, Role::Beauty, beauty));
   drop_misfits(choice, choice.passes.front());
-  for (const Role role : {Role::Normal, Role::Albedo, Role::Depth, Role::Visibility, Role::Prior, Role::SampleCount,
-                          Role::Motion, Role::Alpha}) {
-    if (role == Role::Motion && !options.motion) continue;
-    const int mean = find_mean(source, role);
+  for (const RoleInfo& info : role_table()) {
+    if (!info.chosen || info.role == Role::Beauty || (info.on_request && !options.motion)) continue;
+    const int mean = find_mean(source, info.role);
     if (mean < 0) continue;
-    PassChoice pass = with_companions(source, role, mean);
+    PassChoice pass = with_companions(source, info.role, mean);
     drop_misfits(choice, pass);
     if (pass.mean >= 0) choice.passes.push_back(pass);
   }

@@ -118,8 +118,8 @@ std::vector<std::string> missing_roles(const FrameSource& source) {
     return c == Companion::VarianceOfMean || c == Companion::VarianceOfSample || c == Companion::SecondMoment;
   };
   std::vector<std::string> missing;
-  for (const Role role : {Role::Beauty, Role::Normal, Role::Albedo, Role::Depth, Role::Visibility, Role::SampleCount})
-    if (!is_chosen(source, role, mean)) missing.emplace_back(name_of(role));
+  for (const RoleInfo& info : role_table())
+    if (info.expected && !is_chosen(source, info.role, mean)) missing.emplace_back(info.name);
   if (!is_chosen(source, Role::Beauty, variance)) missing.emplace_back("variance");
   if (!is_chosen(source, Role::Beauty, half)) missing.emplace_back("half buffers");
   return missing;

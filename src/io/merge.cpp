@@ -101,10 +101,9 @@ bool is_second_depth(const Render& first, const Layer& layer) {
 }
 
 Fate fate_of(const Render& first, const Layer& layer) {
-  if (layer.companion != Companion::Mean || layer.role == Role::SampleCount) return Fate::Dropped;
-  if (layer.role == Role::Other || layer.role == Role::Motion || all_uint(first, layer) ||
-      is_second_depth(first, layer))
-    return Fate::Kept;
+  const Values values = info_of(layer.role).values;
+  if (layer.companion != Companion::Mean || values == Values::Count) return Fate::Dropped;
+  if (values == Values::Exact || all_uint(first, layer) || is_second_depth(first, layer)) return Fate::Kept;
   return Fate::Merged;
 }
 

@@ -80,21 +80,6 @@ Image cropped(Image image, const Rect& from, const Rect& to) {
   return crop(image, {to.x0 - from.x0, to.y0 - from.y0, to.x1 - from.x0, to.y1 - from.y0});
 }
 
-/// Channels that a role has in a Frame.
-int channels_of(Role role) {
-  switch (role) {
-    case Role::Alpha:
-    case Role::Depth:
-    case Role::Visibility:
-    case Role::SampleCount:
-      return 1;
-    case Role::Motion:
-      return 4;
-    default:
-      return 3;
-  }
-}
-
 Image repeated(const Image& gray, int channels) {
   Image out(gray.width(), gray.height(), channels);
   for (int c = 0; c < channels; ++c) std::copy_n(gray.plane(0), gray.pixels(), out.plane(c));
@@ -212,14 +197,12 @@ class FrameBuilder {
     FrameShape shape{window_.area(), static_cast<int>(reader_.samples() / window_.area()), 3};
     for (const PassChoice& pass : passes_) {
       if (pass.role == Role::Color) shape.color_channels += 3;
-      const bool feature = pass.role == Role::Normal || pass.role == Role::Albedo || pass.role == Role::Depth ||
-                           pass.role == Role::Visibility;
-      if (feature) shape.feature_channels += channels_of(pass.role);
-      if (feature && pass.role != Role::Depth && pass.variance < 0 && pass.half_a < 0)
-        shape.channels += channels_of(pass.role);  // for a variance that is estimated (noise/variance.h)
+      const RoleInfo& info = info_of(pass.role);
+      if (info.feature) shape.feature_channels += info.channels;
+      if (noise_is_estimated(pass.role, pass.variance >= 0 || pass.half_a >= 0)) shape.channels += info.channels;
       if (pass.role == Role::Prior)
         for (const int index : {pass.mean, pass.variance, pass.half_a, pass.half_b})
-          shape.prior_channels += index < 0 ? 0 : channels_of(pass.role);
+          shape.prior_channels += index < 0 ? 0 : info.channels;
     }
     return shape;
   }
@@ -267,7 +250,7 @@ class FrameBuilder {
   }
 
   Pass take_pass(PlannedPass& planned) {
-    const int channels = channels_of(planned.choice.role);
+    const int channels = info_of(planned.choice.role).channels;
     Pass pass;
     pass.name = layer(planned.choice.mean).name;
     pass.mean = take(planned.mean, planned.choice.mean, channels);
@@ -279,36 +262,28 @@ class FrameBuilder {
 
   void place(PlannedPass& planned) {
     Frame& frame = result_.frame;
-    switch (planned.choice.role) {
+    const RoleInfo& info = info_of(planned.choice.role);
+    if (info.feature) {
+      frame.features.push_back({info.role, take_pass(planned)});
+      return;
+    }
+    switch (info.role) {
       case Role::Beauty:
         frame.beauty = take_pass(planned);
         break;
       case Role::Prior:
         frame.prior = take_pass(planned);
         break;
-      case Role::Normal:
-        frame.features.push_back({FeatureKind::Normal, take_pass(planned)});
-        break;
-      case Role::Albedo:
-        frame.features.push_back({FeatureKind::Albedo, take_pass(planned)});
-        break;
-      case Role::Depth:
-        frame.features.push_back({FeatureKind::Depth, take_pass(planned)});
-        break;
-      case Role::Visibility:
-        frame.features.push_back({FeatureKind::Visibility, take_pass(planned)});
-        break;
       case Role::Color:
         frame.aovs.push_back(take_pass(planned));
         break;
       case Role::Alpha:
-        if (!alpha_) frame.alpha = take(planned.mean, planned.choice.mean, 1);
+        if (!alpha_) frame.alpha = take(planned.mean, planned.choice.mean, info.channels);
         break;
       case Role::Motion:
-        frame.motion = from_blender(take(planned.mean, planned.choice.mean, 4));
+        frame.motion = from_blender(take(planned.mean, planned.choice.mean, info.channels));
         break;
-      case Role::SampleCount:
-      case Role::Other:
+      default:  // sample counts, which are taken first
         break;
     }
   }

@@ -171,8 +171,6 @@ Image variance_from_halves(const Pass& beauty) {
 
 bool noise_is_measured(const Frame& frame) { return frame.beauty.noise_is_told(); }
 
-bool variance_is_estimated(FeatureKind kind, bool known) { return !known && kind != FeatureKind::Depth; }
-
 Image estimate_variance(const Image& y, const Image& features, Progress& progress) {
   Image fits((y.width() + fit_stride - 1) / fit_stride, (y.height() + fit_stride - 1) / fit_stride, y.channels());
   parallel_for(static_cast<std::size_t>(fits.height()), progress, [&](std::size_t row) {
@@ -206,7 +204,7 @@ NoiseVariance noise_variance(const Frame& frame, Progress& progress) {
 
 void estimate_feature_variance(Frame& frame, Progress& progress) {
   for (Feature& feature : frame.features) {
-    if (!variance_is_estimated(feature.kind, feature.pass.noise_is_told())) continue;
+    if (!noise_is_estimated(feature.role, feature.pass.noise_is_told())) continue;
     Image mean = feature.pass.mean;
     repair_nonfinite(mean, 2);
     feature.pass.variance = estimate_variance(mean, Image(mean.width(), mean.height(), 0), progress);

@@ -32,12 +32,9 @@ NoiseVariance noise_variance(const Frame& frame, Progress& progress);
 /// channels. features: finite, of y's size, may have no channels. Returns y's shape, y's unit squared.
 Image estimate_variance(const Image& y, const Image& features, Progress& progress);
 
-/// Whether the noise of a feature is estimated: where it is not known from the file, but for depth, which gains nothing
-/// from it.
-bool variance_is_estimated(FeatureKind kind, bool known);
-
-/// Sets the variance of the features whose noise is estimated. Renderers carry features through reflections, depth of
-/// field and motion blur, which makes them noisy; a model that takes this noise for detail keeps noise in the beauty.
+/// Sets the variance of the features whose noise is estimated (noise_is_estimated, polyrecon/roles.h). Renderers carry
+/// features through reflections, depth of field and motion blur, which makes them noisy; a model that takes this noise
+/// for detail keeps noise in the beauty.
 void estimate_feature_variance(Frame& frame, Progress& progress);
 
 }  // namespace polyrecon

@@ -7,8 +7,6 @@
 #include "core/color_layout.h"
 #include "features/prepare.h"
 #include "maps/error_map.h"
-#include "polyrecon/error.h"
-#include "noise/variance.h"
 #include "outliers/restore.h"
 #include "pipeline/stage.h"
 #include "polyrecon/error.h"
@@ -68,7 +66,7 @@ FrameShape shape_of(const Frame& frame) {
     add(feature.pass);
     const int channels = feature.pass.mean.channels();
     shape.feature_channels += channels;
-    if (variance_is_estimated(feature.kind, feature.pass.noise_is_told())) shape.channels += channels;
+    if (noise_is_estimated(feature.role, feature.pass.noise_is_told())) shape.channels += channels;
   }
   return shape;
 }

@@ -103,7 +103,7 @@ void note_fits(const FitCounters& counters, Report& report) {
 }
 
 void note_outliers(const std::vector<Outlier>& outliers, const Steps& steps, Report& report) {
-  if (!steps.outliers) {
+  if (!steps.fireflies) {
     report.decisions.push_back({"firefly removal", false, "not asked for"});
     return;
   }
@@ -165,7 +165,7 @@ std::shared_ptr<const Neighbour> prepare_neighbour(const Frame& frame, int numbe
   preparation.stream = 64 * (std::uint64_t{static_cast<std::uint32_t>(number)} + 1);
   Prepared prepared =
       prepare(colors, preparation, noise.variance, params.prefilter, params.reconstruct_alpha, progress);
-  if (params.steps.outliers)
+  if (params.steps.fireflies)
     remove_outliers(prepared.pair, prepared.independent_halves, outlier_params(noise), progress);
   if (params.parts.variance_floor) prepared.pair.variance = floor_variance(prepared.pair.variance);
   return std::make_shared<Neighbour>(Neighbour{std::move(prepared.pair), frame.motion});
@@ -209,7 +209,7 @@ Result reconstruct(Frame& frame, const std::vector<TimedNeighbour>& neighbours, 
   // estimate knows regions, no single pixels.
   const Image reach = params.parts.noise_bound && noise.measured ? noise_bound(pair.variance) : Image();
   const auto outliers = timed(report, progress, "outliers", rows * 2, [&]() -> std::vector<Outlier> {
-    if (!params.steps.outliers) return {};
+    if (!params.steps.fireflies) return {};
     return remove_outliers(pair, prepared.independent_halves, outlier_params(noise), progress);
   });
   if (params.parts.variance_floor)

@@ -40,13 +40,13 @@ class Settings {
   std::vector<Setting> list_;
 };
 
-bool has_feature(const Frame& frame, FeatureKind kind) {
-  return std::any_of(frame.features.begin(), frame.features.end(), [&](const Feature& f) { return f.kind == kind; });
+bool has_feature(const Frame& frame, Role role) {
+  return std::any_of(frame.features.begin(), frame.features.end(), [&](const Feature& f) { return f.role == role; });
 }
 
 bool may_be_cleaned(const Feature& feature) {
   const bool told = feature.pass.noise_is_told();
-  return told || variance_is_estimated(feature.kind, told);
+  return told || noise_is_estimated(feature.role, told);
 }
 
 void add_numbers(const Frame& frame, Settings& list) {
@@ -75,19 +75,12 @@ void add_bandwidths(Settings& list) {
 }
 
 void add_inputs(const Frame& frame, Settings& list) {
-  const auto without = [&](FeatureKind kind, const char* name, bool Steps::*member) {
-    if (has_feature(frame, kind))
-      list.vary("features", std::string("without ") + name, [&](Setting& s) { s.params.steps.*member = false; });
-  };
-  without(FeatureKind::Normal, "normal", &Steps::normal);
-  without(FeatureKind::Albedo, "albedo", &Steps::albedo);
-  without(FeatureKind::Depth, "depth", &Steps::depth);
-  without(FeatureKind::Visibility, "visibility", &Steps::visibility);
+  for (const RoleInfo& info : role_table())
+    if (has_feature(frame, info.role))
+      list.vary("features", std::string("without ") + info.name,
+                [&](Setting& s) { s.params.steps.features.erase(info.role); });
   if (!frame.features.empty())
-    list.vary("features", "without features", [](Setting& s) {
-      Steps& e = s.params.steps;
-      e.normal = e.albedo = e.depth = e.visibility = false;
-    });
+    list.vary("features", "without features", [](Setting& s) { s.params.steps.features.clear(); });
   if (frame.beauty.has_halves())
     list.vary("halves", "without half buffers", [](Setting& s) { s.without_halves = true; });
   if (!frame.prior.mean.empty()) list.vary("prior", "without prior", [](Setting& s) { s.without_prior = true; });
@@ -105,7 +98,7 @@ void add_parts(const Frame& frame, Settings& list) {
   });
   without("choice by wide regions", [](Setting& s) { s.params.selection.risk_sigma = 20; });
   without("one stage, one level", [](Setting& s) { s.params.stages = s.params.levels = 1; });
-  without("no firefly removal", [](Setting& s) { s.params.steps.outliers = false; });
+  without("no firefly removal", [](Setting& s) { s.params.steps.fireflies = false; });
   without("no variance floor", [](Setting& s) { s.params.parts.variance_floor = false; });
   if (std::any_of(frame.features.begin(), frame.features.end(), may_be_cleaned))
     without("no feature prefilter", [](Setting& s) { s.params.steps.prefilter = false; });

@@ -33,7 +33,7 @@ Frame crop(const Frame& frame, const Rect& r) {
   Frame out;
   out.data_window = r;
   out.beauty = crop(frame.beauty, r);
-  for (const Feature& feature : frame.features) out.features.push_back({feature.kind, crop(feature.pass, r)});
+  for (const Feature& feature : frame.features) out.features.push_back({feature.role, crop(feature.pass, r)});
   for (const Pass& aov : frame.aovs) out.aovs.push_back(crop(aov, r));
   out.prior = crop(frame.prior, r);
   if (!frame.alpha.empty()) out.alpha = polyrecon::crop(frame.alpha, r);

@@ -26,7 +26,7 @@ Prepared prepared(const Frame& frame, bool with_alpha = true) {
 }
 
 /// The reason for which the only feature of the scene was dropped; empty if it was not.
-std::string reason_of(const Image& mean, FeatureKind kind, const Image& variance = {}) {
+std::string reason_of(const Image& mean, Role kind, const Image& variance = {}) {
   Frame frame = make_scene(width, height, 0.1, 1).frame;
   frame.features = {{kind, {"f", mean, variance, {}, {}}}};
   const Preparation out = look_at(frame);
@@ -35,32 +35,31 @@ std::string reason_of(const Image& mean, FeatureKind kind, const Image& variance
 }
 
 TEST(LookAt, DropsFeaturesThatSayNothing) {
-  EXPECT_EQ(reason_of(Image(width, height, 3, Real(0.5)), FeatureKind::Albedo), "constant");
-  EXPECT_EQ(reason_of(Image(width, height, 1), FeatureKind::Visibility), "constant");
-  EXPECT_EQ(reason_of(Image(width, height, 3, nan), FeatureKind::Normal), "no finite value");
-  EXPECT_EQ(reason_of(Image(width, height, 1, Real(1e10)), FeatureKind::Depth), "no finite value");  // all sky
+  EXPECT_EQ(reason_of(Image(width, height, 3, Real(0.5)), Role::Albedo), "constant");
+  EXPECT_EQ(reason_of(Image(width, height, 1), Role::Visibility), "constant");
+  EXPECT_EQ(reason_of(Image(width, height, 3, nan), Role::Normal), "no finite value");
+  EXPECT_EQ(reason_of(Image(width, height, 1, Real(1e10)), Role::Depth), "no finite value");  // all sky
   test::Random random(2);
   const Image noise = image_of(width, height, 1, [&](int, int, int) { return random.normal(); });
-  EXPECT_EQ(reason_of(noise, FeatureKind::Visibility, Image(width, height, 1, Real(1))), "nothing but noise");
+  EXPECT_EQ(reason_of(noise, Role::Visibility, Image(width, height, 1, Real(1))), "nothing but noise");
 }
 
 TEST(LookAt, KeepsFeaturesThatVary) {
   const Image ramp = image_of(width, height, 1, [](int x, int, int) { return x; });
-  EXPECT_EQ(reason_of(ramp, FeatureKind::Visibility), "");
-  EXPECT_EQ(reason_of(ramp, FeatureKind::Visibility, Image(width, height, 1, Real(1))), "");
+  EXPECT_EQ(reason_of(ramp, Role::Visibility), "");
+  EXPECT_EQ(reason_of(ramp, Role::Visibility, Image(width, height, 1, Real(1))), "");
   Image holes = ramp;
   holes.at(3, 3, 0) = nan;
-  EXPECT_EQ(reason_of(holes, FeatureKind::Visibility), "");
+  EXPECT_EQ(reason_of(holes, Role::Visibility), "");
   // One depth everywhere, and sky: the outline is what it says.
-  EXPECT_EQ(reason_of(image_of(width, height, 1, [](int x, int, int) { return x < 9 ? 4 : 1e10; }), FeatureKind::Depth),
-            "");
+  EXPECT_EQ(reason_of(image_of(width, height, 1, [](int x, int, int) { return x < 9 ? 4 : 1e10; }), Role::Depth), "");
 }
 
 /// The sun in a mirror: one pixel of an albedo that is thousands, and its noise with it.
 TEST(LookAt, ASpikeIsNeitherTheScaleOfAFeatureNorItsNoise) {
   Frame frame = make_scene(width, height, 0.1, 1).frame;
   Feature& albedo = frame.features.front();
-  ASSERT_EQ(albedo.kind, FeatureKind::Albedo);
+  ASSERT_EQ(albedo.role, Role::Albedo);
   albedo.pass.variance = Image(width, height, 3, Real(1e-4));
   const Preparation before = look_at(frame);
   for (int c = 0; c < 3; ++c) {
@@ -141,7 +140,7 @@ TEST(Prepare, FeaturesAtAnyScaleAreTheSameNumbers) {
 TEST(Prepare, ASkyAt1e10IsBoundedAndApartFromWhatIsNear) {
   Frame frame = make_scene(width, height, 0.1, 1).frame;
   frame.features = {
-      {FeatureKind::Depth,
+      {Role::Depth,
        {"Depth", image_of(width, height, 1, [](int x, int, int) { return x < 16 ? 2 + 0.1 * x : 1e10; }), {}, {}, {}}}};
   const Image depth = prepared(frame).pair.features[0];
   // The median of the 16 near depths 2 .. 3.5 (the upper one) is 2.8: 2 / 4.8 at the left, 1 in the sky.

@@ -165,7 +165,7 @@ TEST(Case18, PrefilteredFeaturesOfAnyScaleGiveTheSameBits) {
   const Scene scene = make_scene(48, 40, 0.3, 12);
   Frame frame = scene.frame;  // without depth, which is divided by its median
   frame.features.erase(std::remove_if(frame.features.begin(), frame.features.end(),
-                                      [](const Feature& f) { return f.kind == FeatureKind::Depth; }),
+                                      [](const Feature& f) { return f.role == Role::Depth; }),
                        frame.features.end());
   const Image plain = run(frame).beauty;
   for (const double factor : {0x1p-20, 0x1p20, 0x1p-40})
@@ -188,10 +188,10 @@ TEST(Case18, HardFeaturesAreFinite) {
   for (const double size : {1e-44, 1e-38, 1e-30, 1e10, 1e14}) {
     Frame frame = scene.frame;
     frame.features.push_back(
-        {FeatureKind::Visibility,
+        {Role::Visibility,
          {"hard", image_of(40, 36, 1, [&](int, int, int) { return size * random.uniform(); }), {}, {}, {}}});
     frame.features.push_back(
-        {FeatureKind::Depth,
+        {Role::Depth,
          {"sky", image_of(40, 36, 1, [&](int x, int, int) { return x < 10 ? 1e10 : 3 + 0.1 * x; }), {}, {}, {}}});
     const Result result = run(frame);
     EXPECT_TRUE(finite(result)) << size;

@@ -78,14 +78,14 @@ Frame random_frame(Random& random) {
   Frame frame;
   frame.data_window = {0, 0, width, height};
   frame.beauty = noisy_pass("Combined", random_radiance(width, height, 3, random), noise(), random);
-  constexpr FeatureKind kinds[] = {FeatureKind::Normal, FeatureKind::Albedo, FeatureKind::Depth,
-                                   FeatureKind::Visibility};
+  std::vector<RoleInfo> kinds;
+  for (const RoleInfo& info : role_table())
+    if (info.feature) kinds.push_back(info);
   for (int k = random.below(6); k > 0; --k) {
-    const FeatureKind kind = kinds[random.below(4)];
-    const int channels = kind == FeatureKind::Normal || kind == FeatureKind::Albedo ? 3 : 1;
+    const RoleInfo& kind = kinds[static_cast<std::size_t>(random.below(static_cast<int>(kinds.size())))];
     const bool clean = random.uniform() < 0.5;
-    frame.features.push_back(
-        {kind, noisy_pass("feature", random_radiance(width, height, channels, random), clean ? 0 : noise(), random)});
+    frame.features.push_back({kind.role, noisy_pass("feature", random_radiance(width, height, kind.channels, random),
+                                                    clean ? 0 : noise(), random)});
     if (random.uniform() < 0.2) frame.features.push_back(frame.features.back());
   }
   for (int k = random.below(3); k > 0; --k) {

@@ -295,10 +295,5 @@ TEST(ChannelNames, SamplesInMetadata) {
   EXPECT_EQ(samples_in_metadata(file, ""), 16);
 }
 
-TEST(ChannelNames, RolesByWord) {
-  EXPECT_EQ(role_from("sample-count"), Role::SampleCount);
-  EXPECT_FALSE(role_from("Beauty!"));
-}
-
 }  // namespace
 }  // namespace polyrecon

@@ -73,15 +73,15 @@ TEST(ReadFrame, FillsEveryRoleAndCompanionOfASinglePartFile) {
   }
   EXPECT_TRUE(holds(frame.alpha, 0, part.window, 3));
   ASSERT_THAT(frame.features, SizeIs(4));
-  EXPECT_EQ(frame.features[0].kind, FeatureKind::Normal);
+  EXPECT_EQ(frame.features[0].role, Role::Normal);
   EXPECT_TRUE(holds(frame.features[0].pass.mean, 2, part.window, 42));
   EXPECT_TRUE(holds(frame.features[0].pass.variance, 2, part.window, 45));
   EXPECT_FALSE(frame.features[0].pass.has_halves());
-  EXPECT_EQ(frame.features[1].kind, FeatureKind::Albedo);
-  EXPECT_EQ(frame.features[2].kind, FeatureKind::Depth);
+  EXPECT_EQ(frame.features[1].role, Role::Albedo);
+  EXPECT_EQ(frame.features[2].role, Role::Depth);
   EXPECT_EQ(frame.features[2].pass.mean.channels(), 1);
   EXPECT_TRUE(holds(frame.features[2].pass.half_b, 0, part.window, 62));
-  EXPECT_EQ(frame.features[3].kind, FeatureKind::Visibility);
+  EXPECT_EQ(frame.features[3].role, Role::Visibility);
   EXPECT_TRUE(holds(frame.sample_count, 0, part.window, 64));
   EXPECT_TRUE(frame.prior.mean.empty());
   EXPECT_EQ(read.source.alpha_layer, "V.Combined");
@@ -344,7 +344,7 @@ TEST(ReadFrame, OnePassAFileIsGathered) {
   ASSERT_THAT(read.frame.features, SizeIs(3));
   EXPECT_TRUE(holds(read.frame.features[0].pass.mean, 0, window, 50));
   EXPECT_TRUE(holds(read.frame.features[1].pass.mean, 0, window, 40));
-  EXPECT_EQ(read.frame.features[2].kind, FeatureKind::Depth);
+  EXPECT_EQ(read.frame.features[2].role, Role::Depth);
   EXPECT_THAT(read.notes, Contains(HasSubstr("sceneAlbedo.exr")));
 }
 

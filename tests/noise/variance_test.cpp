@@ -155,7 +155,7 @@ TEST(NoiseVariance, FeaturesBeyondWhatTheModelHoldsAreLeftOut) {
   Image full;
   for (int more = 1; more <= 5; ++more) {
     const Image noise = test::image_of(40, 36, 3, [&](int, int, int) { return random.normal(); });
-    frame.features.push_back({FeatureKind::Albedo, {"More", noise, {}, {}, {}}});
+    frame.features.push_back({Role::Albedo, {"More", noise, {}, {}, {}}});
     const Image out = variance_of(frame).variance;
     if (more == 3) full = out;
     if (more > 3) {
@@ -189,10 +189,9 @@ TEST(FeatureVariance, IsEstimatedOfWhatComesWithoutButForDepth) {
   const double sigma = 0.05;
   test::Random random(31);
   const auto noisy = [&](int x, int, int) { return 0.2 + 0.002 * x + sigma * random.normal(); };
-  for (const FeatureKind kind :
-       {FeatureKind::Albedo, FeatureKind::Normal, FeatureKind::Depth, FeatureKind::Visibility}) {
-    const int channels = kind == FeatureKind::Albedo || kind == FeatureKind::Normal ? 3 : 1;
-    frame.features.push_back({kind, {"", test::image_of(width, height, channels, noisy), {}, {}, {}}});
+  for (const Role role : {Role::Albedo, Role::Normal, Role::Depth, Role::Visibility}) {
+    const int channels = info_of(role).channels;
+    frame.features.push_back({role, {"", test::image_of(width, height, channels, noisy), {}, {}, {}}});
   }
   const std::vector<Image> found = feature_variances(frame);
   const Image truth(width, height, 3, Real(sigma * sigma));
@@ -205,8 +204,8 @@ TEST(FeatureVariance, IsEstimatedOfWhatComesWithoutButForDepth) {
 TEST(FeatureVariance, WhatTheFileTellsStays) {
   Frame frame;
   const Image mean(width, height, 3, Real(0.5)), variance(width, height, 3, Real(0.125));
-  frame.features.push_back({FeatureKind::Albedo, {"", mean, variance, {}, {}}});
-  frame.features.push_back({FeatureKind::Normal, {"", mean, {}, mean, mean}});
+  frame.features.push_back({Role::Albedo, {"", mean, variance, {}, {}}});
+  frame.features.push_back({Role::Normal, {"", mean, {}, mean, mean}});
   const std::vector<Image> found = feature_variances(frame);
   EXPECT_TRUE(test::same_bits(found[0], variance));
   EXPECT_TRUE(found[1].empty());
@@ -215,7 +214,7 @@ TEST(FeatureVariance, WhatTheFileTellsStays) {
 TEST(FeatureVariance, CleanTextureHasNone) {
   Frame frame;
   const auto texture = [](int x, int y, int c) { return 0.5 + 0.3 * std::sin(0.9 * x + 0.2 * c) * std::cos(0.7 * y); };
-  frame.features.push_back({FeatureKind::Albedo, {"", test::image_of(width, height, 3, texture), {}, {}, {}}});
+  frame.features.push_back({Role::Albedo, {"", test::image_of(width, height, 3, texture), {}, {}, {}}});
   const double of_texture = 0.3 * 0.3 / 4;
   EXPECT_LT(mean_ratio(feature_variances(frame)[0], Image(width, height, 3, Real(of_texture))), 0.02);
 }

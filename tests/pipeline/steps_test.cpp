@@ -92,7 +92,8 @@ TEST(Steps, AConstantFeatureIsTakenOnlyWhereItIsAskedFor) {
 TEST(Steps, WhatIsNotAllowedDoesNotRun) {
   const test::Scene scene = test::make_scene(48, 32, 0.1, 3);
   Params params = params_for(Quality::Draft);
-  params.steps.outliers = params.steps.normal = params.steps.prefilter = false;
+  params.steps.fireflies = params.steps.prefilter = false;
+  params.steps.features.erase(Role::Normal);
   Frame frame = scene.frame;
   const Report report = reconstruct(frame, params, silent_progress()).report;
   for (const char* step : {"firefly removal", "feature normal", "feature albedo prefilter"}) {

@@ -42,14 +42,14 @@ inline Scene make_scene(int width, int height, double noise, std::uint64_t seed)
   beauty.variance = image_of(width, height, 3, [&](int x, int y, int c) { return sigma(x, y, c) * sigma(x, y, c); });
   scene.frame.data_window = {0, 0, width, height};
   scene.frame.features = {
-      {FeatureKind::Albedo, {"Albedo", image_of(width, height, 3, albedo), {}, {}, {}}},
-      {FeatureKind::Normal,
+      {Role::Albedo, {"Albedo", image_of(width, height, 3, albedo), {}, {}, {}}},
+      {Role::Normal,
        {"Normal",
         image_of(width, height, 3, [&](int x, int y, int c) { return c == (on_disk(x, y) ? 0 : 2) ? 1 : 0; }),
         {},
         {},
         {}}},
-      {FeatureKind::Depth,
+      {Role::Depth,
        {"Depth",
         image_of(width, height, 1,
                  [&](int x, int y, int) {

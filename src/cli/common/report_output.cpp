@@ -84,6 +84,7 @@ Json roles_json(const FrameSource& source) {
     roles.push_back({{"role", name_of(choice.role)},
                      {"holds", name_of(choice.companion)},
                      {"layer", choice.layer},
+                     {"in_fit", info_of(choice.role).in_fit},
                      {"why", choice.why}});
   return roles;
 }

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <sstream>
 #include <vector>
 
@@ -12,8 +11,14 @@
 namespace polyrecon {
 namespace {
 
-constexpr std::array<const char*, 8> names{"normal",    "albedo",    "depth",  "visibility",
-                                           "prefilter", "fireflies", "levels", "stages"};
+/// The features, then the other steps.
+std::vector<std::string> step_names() {
+  std::vector<std::string> names;
+  for (const RoleInfo& info : role_table())
+    if (info.feature) names.emplace_back(info.name);
+  for (const char* step : {"prefilter", "fireflies", "levels", "stages"}) names.emplace_back(step);
+  return names;
+}
 
 std::vector<std::string> words_of(const std::string& list) {
   std::vector<std::string> words;
@@ -27,9 +32,9 @@ std::vector<std::string> words_of(const std::string& list) {
 CLI::Option* add_steps_option(CLI::App& app, std::string& text) {
   app.add_option("--effects", text)->group("");  // the former name, hidden
   return app
-      .add_option(
-          "--steps", text,
-          "auto: what the frame calls for; all; or only those of a list: " + fmt::format("{}", fmt::join(names, ",")))
+      .add_option("--steps", text,
+                  "auto: what the frame calls for; all; or only those of a list: " +
+                      fmt::format("{}", fmt::join(step_names(), ",")))
       ->type_name("auto|all|LIST");
 }
 
@@ -37,19 +42,16 @@ void apply_steps(const std::string& text, Params& params) {
   if (text.empty() || text == "auto") return;
   params.steps.decide = false;
   if (text == "all") return;
-  const std::vector<std::string> words = words_of(text);
+  const std::vector<std::string> words = words_of(text), names = step_names();
   for (const std::string& word : words)
     if (std::find(names.begin(), names.end(), word) == names.end())
       throw Error(ExitCode::Usage,
                   fmt::format("--steps: no step '{}'; there are {} (or auto, all)", word, fmt::join(names, ", ")));
   const auto listed = [&](const char* name) { return std::find(words.begin(), words.end(), name) != words.end(); };
-  Steps& e = params.steps;
-  e.normal = listed("normal");
-  e.albedo = listed("albedo");
-  e.depth = listed("depth");
-  e.visibility = listed("visibility");
-  e.prefilter = listed("prefilter");
-  e.outliers = listed("fireflies");
+  for (const RoleInfo& info : role_table())
+    if (info.feature && !listed(info.name)) params.steps.features.erase(info.role);
+  params.steps.prefilter = listed("prefilter");
+  params.steps.fireflies = listed("fireflies");
   if (!listed("levels")) params.levels = 1;
   if (!listed("stages")) params.stages = 1;
 }

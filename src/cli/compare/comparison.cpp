@@ -13,7 +13,7 @@ namespace {
 
 bool is_color(const Layer& layer) {
   return layer.channels.size() == 3 && layer.companion == Companion::Mean &&
-         (layer.role == Role::Beauty || layer.role == Role::Prior || layer.role == Role::Color);
+         info_of(layer.role).values == Values::Radiance;
 }
 
 /// The variance of the reference's own mean; empty where the file has none.

@@ -1,0 +1,72 @@
+#include "polyrecon/roles.h"
+
+#include <algorithm>
+
+namespace polyrecon {
+namespace {
+
+enum class Noise { Estimated, IfKnown };
+
+constexpr RoleInfo feature(Role role, const char* name, int channels, ChannelCounts layer_channels, Noise noise,
+                           FeatureTransform transform = FeatureTransform::Scaled) {
+  RoleInfo info{role, name, channels, layer_channels, Values::Average};
+  info.expected = info.in_fit = info.feature = true;
+  info.noise_is_estimated = noise == Noise::Estimated;
+  info.transform = transform;
+  return info;
+}
+
+constexpr RoleInfo color(Role role, const char* name, bool chosen, bool expected) {
+  RoleInfo info{role, name, 3, {1, 3}, Values::Radiance, chosen, expected};
+  info.in_fit = true;
+  return info;
+}
+
+constexpr RoleInfo alpha() {
+  RoleInfo info{Role::Alpha, "alpha", 1, {1}, Values::Average};
+  info.in_fit = true;
+  return info;
+}
+
+// To add a feature pass: its role in the enumeration (roles.h) and its row here, in the same place; its names in the
+// files of io/renderers/; a test. Everything else (reading, --map, --steps, inspect, sweep, memory) reads this table.
+constexpr std::array<RoleInfo, role_count> table{
+    color(Role::Beauty, "beauty", true, true),
+    feature(Role::Normal, "normal", 3, {3}, Noise::Estimated),
+    feature(Role::Albedo, "albedo", 3, {3}, Noise::Estimated),
+    // An estimate of the depth's noise gains nothing.
+    feature(Role::Depth, "depth", 1, {1, 2, 3}, Noise::IfKnown, FeatureTransform::BoundedDepth),
+    feature(Role::Visibility, "visibility", 1, {1, 2, 3}, Noise::Estimated),
+    color(Role::Prior, "prior", true, false),
+    RoleInfo{Role::SampleCount, "sample-count", 1, {1}, Values::Count, true, true},
+    RoleInfo{Role::Motion, "motion", 4, {4}, Values::Exact, true, false, true},
+    alpha(),
+    color(Role::Color, "color", false, false),
+    RoleInfo{Role::Other, "other", 0, ChannelCounts::any(), Values::Exact, false},
+};
+
+constexpr bool rows_are_in_order() {
+  for (std::size_t i = 0; i < role_count; ++i)
+    if (index_of(table[i].role) != i || table[i].name == nullptr) return false;
+  return true;
+}
+static_assert(rows_are_in_order(), "the table needs a row for each role, in the order of the enumeration");
+
+}  // namespace
+
+const std::array<RoleInfo, role_count>& role_table() { return table; }
+
+std::optional<Role> role_from(const std::string& name) {
+  const auto found = std::find_if(table.begin(), table.end(), [&](const RoleInfo& info) { return info.name == name; });
+  if (found == table.end()) return std::nullopt;
+  return found->role;
+}
+
+RoleSet feature_roles() {
+  RoleSet roles;
+  for (const RoleInfo& info : table)
+    if (info.feature) roles.insert(info.role);
+  return roles;
+}
+
+}  // namespace polyrecon
