@@ -3,13 +3,14 @@
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "cli/commands.h"
 #include "cli/common/checks.h"
-#include "cli/common/choice.h"
+#include "cli/common/option_set.h"
 #include "cli/common/read_limits.h"
 #include "core/parallel.h"
 #include "io/exr/file.h"
@@ -28,7 +29,7 @@ struct MergeCommandOptions {
 void run(const MergeCommandOptions& o) {
   std::vector<std::string> inputs = o.inputs;
   inputs.insert(inputs.end(), o.merge.half_b.begin(), o.merge.half_b.end());
-  if (inputs.size() < 2) throw Error(ExitCode::Usage, "merge needs two renders or more");
+  if (inputs.size() < 2) throw Error(ExitCode::Usage, "merge needs at least two renders");
   for (const std::string& input : inputs) require_readable(input);
   require_outputs(inputs, {{"-o", o.output}});
   set_codec_threads(processors());
@@ -39,7 +40,7 @@ void run(const MergeCommandOptions& o) {
   text += fmt::format("\n  mean, variance and halves: {}\n", fmt::join(result.merged, ", "));
   if (!result.kept.empty()) text += fmt::format("  from the first file:       {}\n", fmt::join(result.kept, ", "));
   if (!result.dropped.empty())
-    text += fmt::format("  left out:                  {}\n", fmt::join(result.dropped, ", "));
+    text += fmt::format("  not merged:                {}\n", fmt::join(result.dropped, ", "));
   for (const std::string& note : result.notes) text += fmt::format("  note: {}\n", note);
   std::fputs(text.c_str(), stdout);
 }
@@ -48,24 +49,28 @@ void run(const MergeCommandOptions& o) {
 
 void setup_merge(CLI::App& app, Command& chosen) {
   const auto o = std::make_shared<MergeCommandOptions>();
-  CLI::App* sub = app.add_subcommand("merge", "Joins renders of one frame into mean, variance and half buffers");
+  CLI::App* sub = app.add_subcommand("merge", "Merges renders of one frame into mean, variance and half buffers");
   sub->add_option("inputs", o->inputs, "Subsets of one sample sequence, or renders with different seeds")
       ->required()
       ->type_name("FILE...");
   sub->add_option("-o,--output", o->output, "EXR to write")->required()->type_name("FILE");
   sub->add_option(
          "--half-b", o->merge.half_b,
-         "Renders of half B; FILE... is half A then. The halves are averaged alike whatever their sample counts: "
-         "unbiased where each half's values chose the counts of the other")
+         "Renders of half B; FILE... are then half A. Both halves weigh the same whatever their sample counts, which "
+         "keeps the mean unbiased where each half chose the sample counts of the other")
       ->type_name("FILE...");
-  sub->add_option("--samples", o->merge.samples,
-                  "Samples per pixel of each render, where the files mislead: subsets by Blender 5 tell the whole's")
+  sub->add_option(
+         "--samples", o->merge.samples,
+         "Samples per pixel of each render, if the files are wrong: subsets by Blender 5 contain the number of "
+         "the whole")
       ->check(CLI::PositiveNumber)
       ->type_name("N");
-  add_choice<bool>(*sub, "--compression", o->merge.compress, {{"zip", true}, {"none", false}},
-                   "Of the output: zip, or none for a file that is soon deleted");
+  OptionSet set(*sub);
+  const std::map<std::string, bool> compressions{{"zip", true}, {"none", false}};
+  set.add_choice(Changes::Result, "--compression", o->merge.compress, compressions,
+                 "Compression of the output: zip, or none for a file that is deleted soon");
   sub->add_flag("-q,--quiet", o->quiet, "Print nothing but errors");
-  add_read_limits(*sub, o->merge.limits);
+  add_read_limits(set, o->merge.limits);
   sub->footer(
       "Examples:\n"
       "  polyrecon merge part*.exr -o merged.exr\n"

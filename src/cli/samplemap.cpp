@@ -7,6 +7,7 @@
 #include "cli/commands.h"
 #include "cli/common/checks.h"
 #include "cli/common/map_files.h"
+#include "cli/common/option_set.h"
 #include "cli/common/progress_output.h"
 #include "cli/common/sample_map_options.h"
 
@@ -16,13 +17,14 @@ namespace {
 struct SamplemapOptions {
   std::string error_map, output;
   SampleMapOptions map;
-  double samples = 0;  ///< 0: as the error map tells.
+  double samples = 0;  ///< Samples per pixel so far; 0: those in the error map.
   bool quiet = false;
 };
 
 void run(const SamplemapOptions& o) {
   check_sample_map_options(o.map);
   require_readable(o.error_map);
+  if (!o.map.cost.empty()) require_readable(o.map.cost);
   require_outputs({o.error_map, o.map.cost}, {{"-o", o.output}});
   ErrorMapFile error = read_error_map(o.error_map);
   const Image& map = error.map.relative_mse;
@@ -38,13 +40,15 @@ void run(const SamplemapOptions& o) {
 
 void setup_samplemap(CLI::App& app, Command& chosen) {
   const auto o = std::make_shared<SamplemapOptions>();
-  CLI::App* sub = app.add_subcommand("samplemap", "Tells from an error map where the next samples go");
+  CLI::App* sub =
+      app.add_subcommand("samplemap", "Computes from an error map how many more samples each pixel should get");
   sub->add_option("-e,--error-map", o->error_map, "Error map that denoise wrote")->required()->type_name("FILE");
   sub->add_option("-o,--output", o->output, "Sample map to write")->required()->type_name("FILE");
-  sub->add_option("--samples", o->samples, "Samples per pixel already taken, where the error map does not tell")
+  sub->add_option("--samples", o->samples, "Samples per pixel so far, if the error map does not contain them")
       ->check(CLI::PositiveNumber);
   sub->add_flag("-q,--quiet", o->quiet, "Print nothing but errors");
-  add_sample_map_options(*sub, o->map);
+  OptionSet set(*sub);
+  add_sample_map_options(set, o->map);
   sub->footer(
       "Examples:\n"
       "  polyrecon samplemap --error-map error.exr --budget 32 -o samples.exr\n"

@@ -96,7 +96,7 @@ std::string front_section(const Sweep& sweep) {
   for (const std::size_t i : front_of(input))
     plot.front.emplace_back(input.trials[i].seconds, input.trials[i].score.relative_mse);
   return "<h2>Accuracy against time</h2>\n<p class='soft'>Further left is faster, further down more accurate. The line "
-         "joins the settings that no other one beats in both. Each setting but draft, best and the steps differs from "
+         "joins the settings that no other one beats in both. Each setting but the presets differs from "
          "standard in one thing.</p>\n" +
          svg_of(plot);
 }

@@ -112,9 +112,9 @@ void add_parts(const Frame& frame, Settings& list) {
 }  // namespace
 
 const std::vector<std::string>& setting_groups() {
-  static const std::vector<std::string> groups{"quality",  "steps",  "stages",   "levels", "stride",
-                                               "radius",   "order",  "coverage", "patch",  "bandwidths",
-                                               "features", "halves", "prior",    "parts"};
+  static const std::vector<std::string> groups{"quality",  "presets", "stages",   "levels", "stride",
+                                               "radius",   "order",   "coverage", "patch",  "bandwidths",
+                                               "features", "halves",  "prior",    "parts"};
   return groups;
 }
 
@@ -126,8 +126,8 @@ std::vector<Setting> settings_for(const Frame& frame, const std::vector<std::str
   add_bandwidths(list);
   add_inputs(frame, list);
   add_parts(frame, list);
-  for (const Step& step : ladder())
-    if (step.name != "standard") list.add({step.name, "steps", step.params});
+  for (const Preset& preset : presets())
+    if (preset.name != "standard") list.add({preset.name, "presets", preset.params});
   std::vector<Setting> settings{{"standard", "quality", params_for(Quality::Standard)}};
   for (Setting& setting : list.take()) settings.push_back(std::move(setting));
   return settings;
@@ -144,7 +144,7 @@ Frame frame_for(const Frame& frame, const Setting& setting) {
   return out;
 }
 
-std::array<Step, step_count> ladder() {
+std::array<Preset, preset_count> presets() {
   const Params draft = params_for(Quality::Draft), standard = params_for(Quality::Standard);
   const Params best = params_for(Quality::Best);
   const auto changed = [](Params params, const auto& change) {

@@ -9,31 +9,34 @@
 
 namespace polyrecon {
 
-/// One way to reconstruct a frame, as a sweep tries it.
+/// One way to reconstruct a frame, as a sweep runs it.
 struct Setting {
   std::string name;   ///< "stride 2"; unique within a sweep.
   std::string group;  ///< What is varied: one of setting_groups().
   Params params;
-  bool without_halves = false;  ///< Half buffers of the file are not used: they are split from the mean.
-  bool without_prior = false;   ///< The denoised layer of the file is not used.
+  bool without_halves = false;  ///< Ignore the file's half buffers; halves are then split from the mean.
+  bool without_prior = false;   ///< Ignore the file's denoised layer.
 };
 
-/// Groups of settings that trade time for accuracy, and "parts": each part of the method taken out alone.
+/// Names of the groups: settings that trade time for accuracy, and "parts", where each setting disables one part of
+/// the method.
 const std::vector<std::string>& setting_groups();
 
-/// The settings of the named groups that make a difference for this frame, each once; Quality::Standard, which all but
-/// "quality" and "steps" vary, comes first.
+/// The settings of the named groups that can change the result of this frame, each once. Quality::Standard comes
+/// first; all groups but "quality" and "presets" change one thing of it.
 std::vector<Setting> settings_for(const Frame& frame, const std::vector<std::string>& groups);
 
-/// The frame as a setting wants it.
+/// A copy of the frame without the passes that the setting ignores.
 Frame frame_for(const Frame& frame, const Setting& setting);
 
-/// The ladder that a budget of time or an error to reach is met on (plan.h): from cheap to dear.
-struct Step {
-  std::string name;
+/// Named parameters that --time-budget and --target choose from (sweep/settings_choice.h).
+struct Preset {
+  std::string name;  ///< "draft, stages 2"
   Params params;
 };
-constexpr std::size_t step_count = 8;
-std::array<Step, step_count> ladder();
+constexpr std::size_t preset_count = 8;
+
+/// All presets, roughly from fast to accurate. One of them is Quality::Standard.
+std::array<Preset, preset_count> presets();
 
 }  // namespace polyrecon

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "blend/blend_windows.h"
+#include "core/crop_frame.h"
 #include "core/parallel.h"
 #include "core/rect.h"
 #include "core/relmse.h"
@@ -16,31 +17,17 @@
 namespace polyrecon {
 namespace {
 
-constexpr int tile_size = block_size;    // worked by one thread: blocks are
+constexpr int tile_size = block_size;    // pixels; one thread works on one block
 constexpr double pilot_share = 1.0 / 8;  // of the frame's pixels
-constexpr std::size_t least_tiles = 4;   // of a small frame; fewer say nothing of the rest
-constexpr int tiles_per_thread = 8;      // more say little more
-// "draft, stages 2": the error that a single stage expects of itself is three times too high.
-constexpr std::size_t pilot_step = 2;
-constexpr int phases = 4;  // of the blocks that are worked at once (blend/blend_windows.h)
+constexpr std::size_t least_tiles = 4;   // of a small frame, so that the pilot sees more than one kind of content
+constexpr int tiles_per_thread = 8;      // the most, so that the pilot of a large frame stays short
+// "draft, stages 2". A preset of one stage would not do: the error that a single stage predicts for itself is about
+// three times too high.
+constexpr std::size_t pilot_preset = 2;
+constexpr int phases = 4;  // groups of blocks that are worked one after the other (blend/blend_windows.h)
 
-Pass crop(const Pass& pass, const Rect& r) {
-  const auto part = [&](const Image& image) { return image.empty() ? Image() : polyrecon::crop(image, r); };
-  return {pass.name, part(pass.mean), part(pass.variance), part(pass.half_a), part(pass.half_b)};
-}
-
-Frame crop(const Frame& frame, const Rect& r) {
-  Frame out;
-  out.data_window = r;
-  out.beauty = crop(frame.beauty, r);
-  for (const Feature& feature : frame.features) out.features.push_back({feature.role, crop(feature.pass, r)});
-  for (const Pass& aov : frame.aovs) out.aovs.push_back(crop(aov, r));
-  out.prior = crop(frame.prior, r);
-  if (!frame.alpha.empty()) out.alpha = polyrecon::crop(frame.alpha, r);
-  return out;
-}
-
-/// How noisy a tile looks: relative variance where the file tells it, else the difference of neighbours.
+/// Mean relative variance of a tile's green channel: from the file's variance, else from the half buffers, else from
+/// the differences between neighbouring pixels.
 double noise_of(const Frame& frame, const Rect& r) {
   const Pass& beauty = frame.beauty;
   double sum = 0;
@@ -62,14 +49,15 @@ double noise_of(const Frame& frame, const Rect& r) {
   return sum / static_cast<double>(r.area());
 }
 
-/// count of the tiles, at even ranks of their noise.
+/// Picks `count` tiles at even ranks of their noise.
 std::vector<Rect> choose_tiles(const Frame& frame, std::size_t count) {
   std::vector<Rect> tiles = aligned_blocks({0, 0, frame.width(), frame.height()}, tile_size);
   std::size_t largest = 0;
   for (const Rect& tile : tiles) largest = std::max(largest, tile.area());
   std::vector<std::pair<double, std::size_t>> ranked;
   for (std::size_t i = 0; i < tiles.size(); ++i)
-    if (2 * tiles[i].area() >= largest) ranked.emplace_back(noise_of(frame, tiles[i]), i);  // no slivers
+    if (2 * tiles[i].area() >= largest)
+      ranked.emplace_back(noise_of(frame, tiles[i]), i);  // narrow tiles at the borders are no sample
   std::sort(ranked.begin(), ranked.end());
   count = std::min(count, ranked.size());
   std::vector<Rect> chosen;
@@ -78,9 +66,9 @@ std::vector<Rect> choose_tiles(const Frame& frame, std::size_t count) {
   return chosen;
 }
 
-PlannedStep predict(const Pilot& pilot, std::size_t step, const std::array<StepFigures, step_count>& figures) {
-  return {ladder()[step].name, pilot.seconds * figures[step].seconds / figures[pilot_step].seconds,
-          pilot.relative_mse * figures[step].error / figures[pilot_step].error};
+Prediction predict(const Pilot& pilot, std::size_t preset, const std::array<PresetFigures, preset_count>& figures) {
+  return {presets()[preset].name, pilot.seconds * figures[preset].seconds / figures[pilot_preset].seconds,
+          pilot.relative_mse * figures[preset].error / figures[pilot_preset].error};
 }
 
 }  // namespace
@@ -92,13 +80,13 @@ Pilot run_pilot(const Frame& frame, Progress& progress) {
   const std::vector<Rect> tiles = choose_tiles(
       frame, std::clamp<std::size_t>(wanted, least_tiles, static_cast<std::size_t>(tiles_per_thread * threads)));
   std::vector<double> error(tiles.size()), area(tiles.size());
+  const Params params = presets()[pilot_preset].params;
   const auto start = std::chrono::steady_clock::now();
   progress.begin("pilot", tiles.size());
   parallel_for(tiles.size(), progress, [&](std::size_t i) {
     Frame part = crop(frame, tiles[i]);
     area[i] = static_cast<double>(tiles[i].area());
-    error[i] =
-        area[i] * reconstruct(part, ladder()[pilot_step].params, silent_progress()).report.estimated_relative_mse;
+    error[i] = area[i] * reconstruct(part, params, silent_progress()).report.estimated_relative_mse;
   });
   progress.end();
   Pilot pilot;
@@ -106,36 +94,37 @@ Pilot run_pilot(const Frame& frame, Progress& progress) {
   const double tried = std::accumulate(area.begin(), area.end(), 0.0);
   pilot.share = tried / pixels;
   pilot.relative_mse = std::accumulate(error.begin(), error.end(), 0.0) / tried;
-  // Seconds of one thread for a pixel, then the frame's on as many threads as its blocks can keep busy.
+  // One thread's seconds per pixel, then the frame's seconds on as many threads as its blocks keep busy.
   const double busy = std::min<double>(threads, static_cast<double>(tiles.size()));
   const auto blocks = static_cast<double>(aligned_blocks({0, 0, frame.width(), frame.height()}, block_size).size());
   pilot.seconds = pilot.spent * busy / tried * pixels / std::min<double>(threads, std::max(blocks / phases, 1.0));
   return pilot;
 }
 
-double standard_seconds(const Pilot& pilot, const std::array<StepFigures, step_count>& figures) {
-  return pilot.seconds / figures[pilot_step].seconds;  // the figures are over those of standard
+double standard_seconds(const Pilot& pilot, const std::array<PresetFigures, preset_count>& figures) {
+  return pilot.seconds / figures[pilot_preset].seconds;  // figures are factors of standard's
 }
 
-Plan make_plan(const Pilot& pilot, const PlanRequest& request, const std::array<StepFigures, step_count>& figures) {
+SettingsChoice choose_settings(const Pilot& pilot, const SettingsRequest& request,
+                               const std::array<PresetFigures, preset_count>& figures) {
   std::vector<CostPoint> points;
-  for (const StepFigures& step : figures) points.push_back({step.seconds, step.error});
-  std::vector<PlannedStep> steps;
-  std::vector<std::size_t> index = pareto_front(points);
-  assert(!index.empty());
-  for (const std::size_t i : index) steps.push_back(predict(pilot, i, figures));
-  const auto in_time = [&](const PlannedStep& s) { return !(request.seconds > 0) || s.seconds <= request.seconds; };
-  const auto good = [&](const PlannedStep& s) {
-    return request.relative_mse > 0 && s.relative_mse <= request.relative_mse;
+  for (const PresetFigures& preset : figures) points.push_back({preset.seconds, preset.error});
+  const std::vector<std::size_t> front = pareto_front(points);
+  assert(!front.empty());
+  std::vector<Prediction> predictions;
+  for (const std::size_t preset : front) predictions.push_back(predict(pilot, preset, figures));
+  const auto in_time = [&](const Prediction& p) { return !(request.seconds > 0) || p.seconds <= request.seconds; };
+  const auto accurate = [&](const Prediction& p) {
+    return request.relative_mse > 0 && p.relative_mse <= request.relative_mse;
   };
-  std::size_t chosen = 0;
-  while (chosen + 1 < steps.size() && in_time(steps[chosen + 1]) && !good(steps[chosen])) ++chosen;
-  Plan plan;
-  plan.params = ladder()[index[chosen]].params;
-  plan.step = steps[chosen];
-  if (chosen + 1 < steps.size()) plan.next = steps[chosen + 1];
-  plan.met = in_time(steps[chosen]) && (!(request.relative_mse > 0) || good(steps[chosen]));
-  return plan;
+  std::size_t k = 0;
+  while (k + 1 < predictions.size() && in_time(predictions[k + 1]) && !accurate(predictions[k])) ++k;
+  SettingsChoice choice;
+  choice.params = presets()[front[k]].params;
+  choice.chosen = predictions[k];
+  if (k + 1 < predictions.size()) choice.next = predictions[k + 1];
+  choice.met = in_time(predictions[k]) && (!(request.relative_mse > 0) || accurate(predictions[k]));
+  return choice;
 }
 
 }  // namespace polyrecon

@@ -1,8 +1,8 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "polyrecon/frame.h"
 #include "polyrecon/progress.h"
@@ -10,51 +10,55 @@
 
 namespace polyrecon {
 
-/// What a step of the ladder takes and leaves, over what Quality::Standard does.
-struct StepFigures {
+/// Time and error of a preset, as factors of those of Quality::Standard.
+struct PresetFigures {
   double seconds = 1;  ///< Of the reconstruction.
   double error = 1;    ///< relMSE
 };
 
-/// As measured on the samples; made by tests/bench/accuracy.py.
-const std::array<StepFigures, step_count>& measured_steps();
+/// Figures of all presets, measured on the samples by tests/bench/accuracy.py.
+const std::array<PresetFigures, preset_count>& measured_figures();
 
-/// What draft in two stages did on some tiles of a frame: the machine's speed and the frame's noise.
+/// What a trial run on a part of a frame predicts for the whole frame. The run uses the preset "draft, stages 2".
 struct Pilot {
-  double seconds = 0;       ///< That it is predicted to take on the whole frame.
-  double relative_mse = 0;  ///< That its error map expects.
-  double share = 0;         ///< Of the frame's pixels that were tried.
-  double spent = 0;         ///< Seconds that the pilot itself took.
+  double seconds = 0;       ///< Predicted time of that preset on the whole frame.
+  double relative_mse = 0;  ///< Mean of its error map.
+  double share = 0;         ///< Share of the frame's pixels that were reconstructed, 0..1.
+  double spent = 0;         ///< Seconds that the run took.
 };
 
-/// Reconstructs about an eighth of the frame (at least four tiles) by draft in two stages: tiles of 64 x 64 pixels at
-/// even ranks of their noise, so that quiet and noisy ones are there in their proportion. All threads work, on
-/// different tiles. Throws as reconstruct.
+/// Reconstructs about an eighth of the frame, but at least four tiles, by "draft, stages 2". The tiles of 64 x 64
+/// pixels are taken at even ranks of their noise, so that noise-free and noisy ones occur in their true proportion.
+/// Each tile is the work of one thread. Throws as reconstruct.
 Pilot run_pilot(const Frame& frame, Progress& progress);
 
-/// Seconds that Quality::Standard is predicted to take on the whole frame.
-double standard_seconds(const Pilot& pilot, const std::array<StepFigures, step_count>& figures);
+/// Predicted seconds of Quality::Standard on the whole frame.
+double standard_seconds(const Pilot& pilot, const std::array<PresetFigures, preset_count>& figures);
 
-/// What is asked for; 0: nothing.
-struct PlanRequest {
-  double seconds = 0;       ///< That the reconstruction may take, the pilot not counted.
-  double relative_mse = 0;  ///< That is enough.
+/// Limits that the settings must keep; 0: no limit.
+struct SettingsRequest {
+  double seconds = 0;       ///< Longest time of the reconstruction, without the pilot.
+  double relative_mse = 0;  ///< Largest mean relative MSE.
 };
 
-struct PlannedStep {
+/// A preset with its predicted time and error on a frame.
+struct Prediction {
   std::string name;
-  double seconds = 0, relative_mse = 0;  ///< Predicted.
+  double seconds = 0, relative_mse = 0;
 };
 
-struct Plan {
+struct SettingsChoice {
   Params params;
-  PlannedStep step;
-  std::optional<PlannedStep> next;  ///< The next dearer step that is more accurate.
-  bool met = true;                  ///< False where no step does what was asked for.
+  Prediction chosen;
+  std::optional<Prediction> next;  ///< The next slower preset that is more accurate; none: the most accurate is chosen.
+  bool met = true;                 ///< False where no preset keeps the limits.
 };
 
-/// The most accurate step that is predicted to keep to the seconds, or, with an error asked for, the cheapest that
-/// reaches it (within the seconds where both are asked for). Where none does: the cheapest, or the most accurate one.
-Plan make_plan(const Pilot& pilot, const PlanRequest& request, const std::array<StepFigures, step_count>& figures);
+/// With a limit of error: the fastest preset that is predicted to keep it, but none beyond the limit of time.
+/// Otherwise the most accurate preset within the limit of time. Where no preset keeps the limits, the choice is the
+/// fastest preset or the most accurate one, whichever comes closest. Presets that another one beats in both time and
+/// error are never chosen.
+SettingsChoice choose_settings(const Pilot& pilot, const SettingsRequest& request,
+                               const std::array<PresetFigures, preset_count>& figures);
 
 }  // namespace polyrecon

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Measures what every setting and every part of the method brings on the samples, in error and in time. Runs
 `polyrecon sweep` on each sample, writes the tables of docs/results/accuracy.md, and writes the figures that
---time-budget and --target choose by into src/sweep/step_figures.cpp, which the next build compiles in. The
+--time-budget and --target choose by into src/sweep/preset_figures.cpp, which the next build compiles in. The
 reports of the sweeps stay in out/accuracy/.
 
 Build the release preset first; let nothing else run meanwhile. Under ten minutes on two cores.
@@ -64,7 +64,7 @@ def sweep(options, sample):
     if options.only is None or sample in options.only:
         command = [options.polyrecon, "sweep", "-i", ROOT / "samples" / f"{sample}_16.exr", "--reference"]
         command += [ROOT / "samples" / f"{SAMPLES[sample]}_ref.exr", "-o", options.out / f"{sample}.html"]
-        groups = "quality,steps,stages,levels,stride,radius,order,coverage,patch,bandwidths,features,halves,prior,parts"
+        groups = "quality,presets,stages,levels,stride,radius,order,coverage,patch,bandwidths,features,halves,prior,parts"
         command += ["--csv", table, "--vary", groups, "--quiet"]
         subprocess.run([str(word) for word in command], check=True)
     with open(table, newline="", encoding="utf-8") as file:
@@ -173,7 +173,7 @@ def main():
     options.out.mkdir(parents=True, exist_ok=True)
     found = {sample: sweep(options, sample) for sample in SAMPLES}
     write_tables(ROOT / "docs" / "results" / "accuracy.md", found)
-    write_figures(ROOT / "src" / "sweep" / "step_figures.cpp", found)
+    write_figures(ROOT / "src" / "sweep" / "preset_figures.cpp", found)
 
 
 if __name__ == "__main__":

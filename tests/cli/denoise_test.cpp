@@ -225,7 +225,7 @@ TEST_F(Denoise, TellsRolesThenTheTable) {
   ASSERT_NE(table, std::string::npos);
   EXPECT_LT(beauty, albedo);
   EXPECT_LT(albedo, table);
-  for (const char* row : {"pixels/s", "peak memory", "windows", "fireflies", "fallbacks", "energy", "variance"})
+  for (const char* row : {"pixels/s", "peak memory", "windows", "fireflies", "corrections", "energy", "variance"})
     EXPECT_NE(o.out.find(row), std::string::npos) << row;
 }
 
@@ -255,7 +255,7 @@ TEST_F(Denoise, TheReportHasItsDocumentedKeys) {
                           "pixels_per_second",
                           "peak_memory_bytes",
                           "windows",
-                          "fallbacks",
+                          "corrections",
                           "repaired_pixels",
                           "negative_pixels",
                           "fireflies",

@@ -188,7 +188,7 @@ TEST_F(Case10Sequence, AFrameWithoutAPassIsWorkedAndCounted) {
             [](int x, int y, int c) { return 0.5 + 0.01 * ((7 * x + 3 * y + c) % 5); });
   const Outcome o = denoise({"--report", "out/####.json"});
   EXPECT_EQ(o.code, 0) << o.err;
-  EXPECT_THAT(o.out, HasSubstr("1 without all that the first frame has: 3"));
+  EXPECT_THAT(o.out, HasSubstr("1 without all layers of the first frame: 3"));
   const auto report = nlohmann::json::parse(read_text(path("out/0003.json")));
   EXPECT_THAT(report["notes"].dump(), HasSubstr("no albedo, which frame 1 has"));
   EXPECT_THAT(report["notes"].dump(), HasSubstr("26 x 16 pixels, frame 1 has 24 x 16"));
@@ -238,7 +238,7 @@ TEST_F(Sequence, ABrokenNeighbourIsLeftOutAndAChangedOneIsNoticed) {
   EXPECT_THAT(o.out, HasSubstr("1 written, 1 skipped, 1 failed"));  // frame 2 anew, without frame 3
   const auto report = nlohmann::json::parse(read_text(path("out/0002.json")));
   EXPECT_EQ(report["neighbours"]["frames"], 1);
-  EXPECT_THAT(report["notes"].dump(), HasSubstr("works without its neighbour: shot.0003.exr"));
+  EXPECT_THAT(report["notes"].dump(), HasSubstr("denoised without this neighbour: shot.0003.exr"));
 }
 
 TEST_F(Sequence, TheFrameNumberGoesIntoTheSampleMap) {

@@ -32,7 +32,7 @@ TEST(Settings, StandardComesFirstAndNamesAreUniqueAndValid) {
     const auto& groups = setting_groups();
     EXPECT_NE(std::find(groups.begin(), groups.end(), setting.group), groups.end()) << setting.group;
   }
-  for (const Step& step : ladder()) EXPECT_TRUE(names.count(step.name)) << step.name;
+  for (const Preset& preset : presets()) EXPECT_TRUE(names.count(preset.name)) << preset.name;
 }
 
 TEST(Settings, OnlyTheGroupsThatAreAskedFor) {

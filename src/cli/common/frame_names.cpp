@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <regex>
 #include <set>
+#include <stdexcept>
 #include <system_error>
 
 #include "polyrecon/error.h"
@@ -29,33 +31,47 @@ int number_of(const std::string& all, const std::string& digits) {
   }
 }
 
-/// Text with every sign that means something to a regular expression escaped.
-std::string literal(const std::string& text) {
-  static const std::regex special(R"([.^$|()\[\]{}*+?\\])");
-  return std::regex_replace(text, special, R"(\$&)");
+std::string without_spaces_around(const std::string& text) {
+  const std::size_t first = text.find_first_not_of(' ');
+  return first == std::string::npos ? std::string() : text.substr(first, text.find_last_not_of(' ') - first + 1);
+}
+
+struct FrameRange {
+  long long first, last, step;
+};
+
+FrameRange parse_range(const std::string& all, const std::string& piece) {
+  static const std::regex range(R"((-?[0-9]+)(?:-(-?[0-9]+)(?:[x:]([0-9]+))?)?)");
+  std::smatch match;
+  if (!std::regex_match(piece, match, range))
+    bad_frames(all, fmt::format("'{}' is neither a frame nor a range", piece));
+  const int first = number_of(all, match[1]);
+  const int last = match[2].matched ? number_of(all, match[2]) : first;
+  const int step = match[3].matched ? number_of(all, match[3]) : 1;
+  if (step < 1) bad_frames(all, fmt::format("the step of '{}' is 0", piece));
+  if (last < first) bad_frames(all, fmt::format("'{}' runs backwards", piece));
+  return {first, last, step};
+}
+
+/// A place for a frame's number; C's format may have one digit that sets the length.
+const std::regex& place_of_number() {
+  static const std::regex place(R"(#+|%(?:0([1-9]))?d)");
+  return place;
 }
 
 }  // namespace
 
 std::vector<int> parse_frames(const std::string& text) {
-  static const std::regex range(R"((-?\d+)(?:-(-?\d+)(?:x(\d+))?)?)");
   std::vector<int> frames;
   std::set<int> seen;
   for (std::size_t begin = 0; begin <= text.size();) {
     const std::size_t comma = std::min(text.find(',', begin), text.size());
-    const std::string piece = text.substr(begin, comma - begin);
+    const FrameRange range = parse_range(text, without_spaces_around(text.substr(begin, comma - begin)));
     begin = comma + 1;
-    std::smatch match;
-    if (!std::regex_match(piece, match, range)) bad_frames(text, fmt::format("'{}' is no frame or range", piece));
-    const int first = number_of(text, match[1]);
-    const int last = match[2].matched ? number_of(text, match[2]) : first;
-    const int step = match[3].matched ? number_of(text, match[3]) : 1;
-    if (step < 1) bad_frames(text, "a step of 0");
-    if (last < first) bad_frames(text, fmt::format("'{}' runs backwards", piece));
-    for (long long n = first; n <= last; n += step)
+    for (long long n = range.first; n <= range.last; n += range.step)
       if (seen.insert(static_cast<int>(n)).second) {
         frames.push_back(static_cast<int>(n));
-        if (frames.size() > max_frames) bad_frames(text, fmt::format("more than {} frames", max_frames));
+        if (frames.size() > max_frames) bad_frames(text, fmt::format("there are more than {} frames", max_frames));
       }
   }
   return frames;
@@ -75,47 +91,64 @@ std::string frames_text(std::vector<int> frames) {
 std::optional<FramePattern> FramePattern::parse(const std::string& text) {
   std::error_code ignored;
   if (fs::exists(text, ignored)) return std::nullopt;
-  static const std::regex place(R"(#+|%(?:0(\d))?d)");
+  const auto name_begins = static_cast<std::ptrdiff_t>(text.rfind('/') + 1);  // 0 where there is no folder
+  const std::sregex_iterator first(text.begin(), text.end(), place_of_number()), end;
+  std::optional<std::smatch> last;
+  for (auto place = first; place != end; ++place)
+    if (place->position() >= name_begins) last = *place;
+  if (!last) return std::nullopt;
   FramePattern pattern;
-  auto rest = text.cbegin();
-  for (std::sregex_iterator match(text.begin(), text.end(), place), end; match != end; ++match) {
-    pattern.pieces_.emplace_back(rest, (*match)[0].first);
-    const bool hash = *(*match)[0].first == '#';
-    pattern.digits_.push_back(hash                  ? static_cast<int>((*match)[0].length())
-                              : (*match)[1].matched ? std::stoi((*match)[1])
-                                                    : 1);
-    rest = (*match)[0].second;
+  pattern.sign_counts_ = last->str().front() == '%';
+  pattern.width_ = !pattern.sign_counts_ ? static_cast<int>(last->length())
+                   : (*last)[1].matched  ? std::stoi((*last)[1])
+                                         : 1;
+  std::size_t done = 0;
+  for (auto place = first; place != end; ++place) {
+    if (place->str() != last->str()) continue;
+    const auto at = static_cast<std::size_t>(place->position());
+    pattern.pieces_.push_back(text.substr(done, at - done));
+    done = at + static_cast<std::size_t>(place->length());
+    pattern.in_folder_ = pattern.in_folder_ || place->position() < name_begins;
   }
-  if (pattern.digits_.empty()) return std::nullopt;
-  pattern.pieces_.emplace_back(rest, text.cend());
+  pattern.pieces_.push_back(text.substr(done));
   return pattern;
+}
+
+std::string FramePattern::number(int frame) const {
+  if (sign_counts_) return fmt::format("{:0{}}", frame, width_);
+  return fmt::format("{}{:0{}}", frame < 0 ? "-" : "", std::abs(static_cast<long long>(frame)), width_);
 }
 
 std::string FramePattern::path(int frame) const {
   std::string out = pieces_.front();
-  for (std::size_t k = 0; k < digits_.size(); ++k)
-    // Negative frames as Blender and Nuke write them: the sign stands before the padded number.
-    out += fmt::format("{}{:0{}}{}", frame < 0 ? "-" : "", std::abs(static_cast<long long>(frame)), digits_[k],
-                       pieces_[k + 1]);
+  for (std::size_t k = 1; k < pieces_.size(); ++k) out += number(frame) + pieces_[k];
   return out;
+}
+
+std::optional<int> FramePattern::frame_of(const std::string& candidate) const {
+  const std::size_t begin = pieces_.front().size();
+  if (candidate.compare(0, begin, pieces_.front()) != 0) return std::nullopt;
+  std::size_t end = candidate.find_first_not_of("0123456789", begin + (candidate.substr(begin, 1) == "-" ? 1 : 0));
+  // Digits that follow the place in the pattern are no part of the number.
+  for (end = std::min(end, candidate.size()); end > begin; --end) try {
+      const int frame = std::stoi(candidate.substr(begin, end - begin));
+      if (path(frame) == candidate) return frame;
+    } catch (const std::logic_error&) {  // no number, or one that is too large
+    }
+  return std::nullopt;
 }
 
 std::vector<int> FramePattern::existing_frames() const {
   const std::string shown = path(0);
-  std::string expression;
-  for (std::size_t k = 0; k < pieces_.size(); ++k) expression += (k ? R"((-?\d+))" : "") + literal(pieces_[k]);
+  if (in_folder_)
+    throw Error(ExitCode::Usage, fmt::format("{}: the folder's name has the frame's number too: give --frames", shown));
   const fs::path folder = fs::path(shown).parent_path();
-  const fs::path here = folder.empty() ? fs::path(".") : folder;
-  const std::regex name(expression);
   std::vector<int> frames;
   std::error_code problem;
-  for (fs::directory_iterator entry(here, problem), end; !problem && entry != end; entry.increment(problem)) {
-    const std::string candidate = (folder / entry->path().filename()).string();
-    std::smatch match;
-    if (!std::regex_match(candidate, match, name) || match[1].length() > 9) continue;
-    const int frame = std::stoi(match[1]);
-    if (path(frame) == candidate) frames.push_back(frame);
-  }
+  const fs::directory_iterator none;
+  for (fs::directory_iterator entry(folder.empty() ? fs::path(".") : folder, problem); !problem && entry != none;
+       entry.increment(problem))
+    if (const auto frame = frame_of((folder / entry->path().filename()).string())) frames.push_back(*frame);
   if (frames.empty())
     throw Error(ExitCode::Missing, fmt::format("no file like {}: check the folder, or give --frames", shown));
   std::sort(frames.begin(), frames.end());

@@ -2,33 +2,45 @@
 
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace polyrecon {
 
-/// The frames that "1-10,20-40x2,50" names, in the order given, each once. Throws Error{Usage}.
+/// The frames of "1-10,20-40x2,50", in the order given, each once. A step is written x2 or, as Open Job Description
+/// does, :2. Throws Error{Usage}.
 std::vector<int> parse_frames(const std::string& text);
 
-/// The same frames as text that parse_frames reads: "1-4,9".
+/// The same frames as text that parse_frames reads, in ascending order: "1-4,9".
 std::string frames_text(std::vector<int> frames);
 
-/// The name of a sequence's files: the frame number stands in place of `####` (at least as many digits as signs) or
-/// `%04d`, `%d`, everywhere in the path.
+/// The names of a sequence's files, "shot.####.exr" or "shot.%04d.exr".
+///
+/// `####` stands for at least as many digits, with a minus sign before them where the number is negative, as Blender
+/// writes it: -0005. `%04d` and `%d` are those of C, where the sign counts as a digit, as Nuke writes it: -005. The
+/// last such place in the file's name is the frame's number. Other places, in the name or in its folders, stand for the
+/// number only where their text is the same: "####/shot.####.exr". The drivers follow the same rules
+/// (pipelines/common/frame_names.py); tests/inputs/frame_names.json has examples of each.
 class FramePattern {
  public:
-  /// Nothing where the text holds no such place. A path that exists as it stands is a file, never a pattern.
+  /// Nothing where the file's name has no such place, or where a file of exactly this name exists.
   static std::optional<FramePattern> parse(const std::string& text);
 
   std::string path(int frame) const;
 
-  /// Frames whose file is there, ascending. The place must be in the file's name, not in its folder's.
-  /// Throws Error{Missing} where there are none.
+  /// The frame whose path is `path`; nothing where there is none.
+  std::optional<int> frame_of(const std::string& path) const;
+
+  /// The frames whose files exist, ascending. Throws Error{Missing} where there are none, Error{Usage} where the
+  /// folder's name contains the number.
   std::vector<int> existing_frames() const;
 
  private:
-  std::vector<std::string> pieces_;  ///< Text between the places; one more than digits_.
-  std::vector<int> digits_;          ///< Least number of digits in each place.
+  std::string number(int frame) const;
+
+  std::vector<std::string> pieces_;  ///< The text between the places; one more than there are places.
+  bool in_folder_ = false;           ///< Whether the folder's name has a place too.
+  int width_ = 0;                    ///< Least length of the number.
+  bool sign_counts_ = false;         ///< Whether a minus sign counts towards width_.
 };
 
 /// The last number in a file's name, "shot.0012.exr" -> 12; nothing where there is none.

@@ -2,16 +2,14 @@
 
 namespace polyrecon {
 
-void add_read_limits(CLI::App& app, ReadLimits& limits) {
-  const std::string group = "Limits";
-  app.add_option("--max-pixels", limits.max_pixels, "Refuse files of which a part has more pixels")
+void add_read_limits(OptionSet& set, ReadLimits& limits) {
+  set.begin_group("Limits");
+  set.add(Changes::Run, "--max-pixels", limits.max_pixels, "Refuse files with more pixels in a part")
       ->check(CLI::PositiveNumber)
-      ->capture_default_str()
-      ->group(group);
-  app.add_option("--max-channels", limits.max_channels, "Refuse files of more channels")
+      ->capture_default_str();
+  set.add(Changes::Run, "--max-channels", limits.max_channels, "Refuse files with more channels")
       ->check(CLI::PositiveNumber)
-      ->capture_default_str()
-      ->group(group);
+      ->capture_default_str();
 }
 
 }  // namespace polyrecon

@@ -1,12 +1,11 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
-
+#include "cli/common/option_set.h"
 #include "io/exr/file.h"
 
 namespace polyrecon {
 
-/// --max-pixels and --max-channels: what a file may claim before it is refused.
-void add_read_limits(CLI::App& app, ReadLimits& limits);
+/// Adds --max-pixels and --max-channels: larger files are refused before their pixels are read.
+void add_read_limits(OptionSet& set, ReadLimits& limits);
 
 }  // namespace polyrecon

@@ -2,12 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
 #include <map>
 
-#include "cli/common/checks.h"
-#include "cli/common/choice.h"
 #include "cli/common/layers.h"
 #include "polyrecon/error.h"
 
@@ -17,16 +13,18 @@ namespace {
 const std::map<std::string, SampleMapFormat> formats{
     {"appleseed", SampleMapFormat::Appleseed}, {"luxcore", SampleMapFormat::Luxcore}, {"vray", SampleMapFormat::Vray}};
 
-/// What the renderer has to be told along with the file.
+/// How to use the file in the renderer.
 std::string usage_of(const SampleMap& map, SampleMapFormat format) {
   switch (format) {
     case SampleMapFormat::Appleseed:
-      return fmt::format("; for appleseed's texture_controlled_pixel_renderer set min_samples 0, max_samples {:.0f}",
-                         map.max);
+      return fmt::format(
+          "; in appleseed, set texture_controlled_pixel_renderer's min_samples to 0 and max_samples to {:.0f}",
+          map.max);
     case SampleMapFormat::Luxcore:
-      return "; load it into LuxCore's USER_IMPORTANCE channel, with sampler.sobol.adaptive.userimportanceweight 1";
+      return "; in LuxCore, load it into the USER_IMPORTANCE channel and set "
+             "sampler.sobol.adaptive.userimportanceweight to 1";
     case SampleMapFormat::Vray:
-      return "; use it as V-Ray's render mask texture: V-Ray has no map of counts";
+      return "; in V-Ray, use it as the render mask texture (V-Ray takes no sample counts)";
     case SampleMapFormat::Polyrecon:
       break;
   }
@@ -35,61 +33,49 @@ std::string usage_of(const SampleMap& map, SampleMapFormat format) {
 
 std::string summary(const SampleMap& map, const SampleMapOptions& options) {
   std::string text = fmt::format(
-      "{:.4g} extra samples per pixel (min {:.4g}, max {:.4g}, total {:.6g}), relMSE {:.3g} -> {:.3g} predicted",
+      "{:.4g} extra samples per pixel (min {:.4g}, max {:.4g}, total {:.6g}), predicted relMSE {:.3g} -> {:.3g}",
       map.total / static_cast<double>(map.samples.pixels()), map.min, map.max, map.total, map.error_before,
       map.error_after);
   if (map.unknown_pixels)
-    text += fmt::format("; {} pixels without a finite error count as average", map.unknown_pixels);
+    text += fmt::format("; {} pixels have no finite error and get the average", map.unknown_pixels);
   if (map.total <= 0)
-    text += options.params.target > 0 && map.limit_met ? "; the target is reached already"
-                                                       : "; no error is left that more samples could lower";
+    text += options.params.target > 0 && map.limit_met ? "; the target is already reached"
+                                                       : "; more samples would not lower the error";
   else if (!map.limit_met)
-    text += fmt::format("; {} not met: no pixel takes more than {:.6g} samples (--max-samples)",
-                        options.params.target > 0 ? "the target is" : "the budget is", options.params.max_samples);
+    text += fmt::format("; the {} is not met, because no pixel gets more than {:.6g} samples (--max-samples)",
+                        options.params.target > 0 ? "target" : "budget", options.params.max_samples);
   return text;
 }
 
 }  // namespace
 
-void add_sample_map_options(CLI::App& app, SampleMapOptions& o) {
-  const std::string group = "Sample map";
-  CLI::Option* budget =
-      app.add_option("--budget", o.params.budget, "Extra samples per pixel on average")->check(CLI::PositiveNumber);
-  CLI::Option* target = app.add_option("--target", o.params.target,
-                                       "Mean relative MSE to reach instead of a budget; in denoise without a sample "
-                                       "map: by the cheapest settings")
+std::vector<CLI::Option*> add_sample_map_options(OptionSet& set, SampleMapOptions& o) {
+  set.begin_group("Sample map");
+  CLI::Option* budget = set.add(Changes::Result, "--budget", o.params.budget, "Extra samples per pixel, on average")
                             ->check(CLI::PositiveNumber);
-  target->excludes(budget)->group(group);
-  budget->group(group);
-  app.add_option("--max-samples", o.params.max_samples, "Most extra samples of one pixel")
+  set.add(Changes::Result, "--target", o.params.target,
+          "Mean relative MSE to reach, in place of a budget; denoise without a sample map reaches it by the fastest "
+          "settings")
       ->check(CLI::PositiveNumber)
-      ->capture_default_str()
-      ->group(group);
-  app.add_option(
-         "--cost", o.cost,
-         "Image of the seconds a sample takes in each pixel (a render time pass): the budget then counts seconds, "
-         "in samples of average cost")
-      ->type_name("FILE")
-      ->group(group);
-  app.add_option("--frame", o.frame, "Frame number to write into the map")->capture_default_str()->group(group);
-  app.add_option("--seed", o.seed, "Seed of the next pass to write into the map")->capture_default_str()->group(group);
-  add_choice(app, "--export", o.format, formats, "Write the map for a renderer: appleseed, luxcore or vray")
-      ->group(group);
-}
-
-bool any_sample_map_option(const CLI::App& app) {
-  constexpr std::array<const char*, 6> names{"--budget", "--max-samples", "--cost", "--frame", "--seed", "--export"};
-  return std::any_of(names.begin(), names.end(), [&](const char* name) { return app.count(name) > 0; });
-}
-
-std::string sample_map_settings(const SampleMapOptions& o) {
-  std::string text = o.params.target > 0 ? fmt::format(" --target {:g}", o.params.target)
-                                         : fmt::format(" --budget {:g}", o.params.budget);
-  text += fmt::format(" --max-samples {:g} --frame {} --seed {}", o.params.max_samples, o.frame, o.seed);
-  if (!o.cost.empty()) text += " --cost '" + o.cost + "'";
-  for (const auto& [name, format] : formats)
-    if (format == o.format) text += " --export " + name;
-  return text;
+      ->excludes(budget);
+  CLI::Option* max_samples =
+      set.add(Changes::Result, "--max-samples", o.params.max_samples, "Most extra samples of one pixel")
+          ->check(CLI::PositiveNumber)
+          ->capture_default_str();
+  CLI::Option* cost =
+      set.add(Changes::Result, "--cost", o.cost,
+              "Image of the seconds that a sample takes in each pixel (a render time pass): the budget then counts "
+              "samples of average cost")
+          ->type_name("FILE");
+  CLI::Option* frame = set.add(Changes::Result, "--frame", o.frame,
+                               "Frame number to write into the map; a sequence "
+                               "writes the number of each frame")
+                           ->capture_default_str();
+  CLI::Option* seed = set.add(Changes::Result, "--seed", o.seed, "Seed of the next render to write into the map")
+                          ->capture_default_str();
+  CLI::Option* format = set.add_choice(Changes::Result, "--export", o.format, formats,
+                                       "Write the map in the format of a renderer: appleseed, luxcore or vray");
+  return {budget, max_samples, cost, frame, seed, format};
 }
 
 void check_sample_map_options(const SampleMapOptions& options) {
@@ -99,7 +85,6 @@ void check_sample_map_options(const SampleMapOptions& options) {
     throw Error(ExitCode::Usage, fmt::format("--budget {:g} is above --max-samples {:g}", options.params.budget,
                                              options.params.max_samples));
   validate(options.params);
-  if (!options.cost.empty()) require_readable(options.cost);
 }
 
 std::string make_and_write_sample_map(const std::string& target, const ErrorMap& error, const Image& sample_count,
@@ -109,15 +94,15 @@ std::string make_and_write_sample_map(const std::string& target, const ErrorMap&
     cost = read_cost(options.cost);
     if (!cost.same_shape(error.relative_mse))
       throw Error(ExitCode::BadInput,
-                  fmt::format("{}: is {} x {} pixels, the frame has {} x {}", options.cost, cost.width(), cost.height(),
-                              error.relative_mse.width(), error.relative_mse.height()));
+                  fmt::format("{}: has {} x {} pixels, the frame has {} x {}", options.cost, cost.width(),
+                              cost.height(), error.relative_mse.width(), error.relative_mse.height()));
   }
   const SampleMap map = make_sample_map(error, sample_count, cost, options.params, progress);
   write_sample_map(target, map, windows, {options.params.budget, options.params.target, options.frame, options.seed},
                    options.format);
   std::string text = summary(map, options) + usage_of(map, options.format);
   if (sample_count.empty())
-    text += fmt::format("; the file does not tell its samples per pixel, {:g} are assumed (--samples)",
+    text += fmt::format("; the file contains no sample count, {:g} samples per pixel are assumed (--samples sets it)",
                         options.params.assumed_samples);
   return text;
 }

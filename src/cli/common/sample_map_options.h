@@ -1,9 +1,10 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
+#include <vector>
 
 #include "cli/common/map_files.h"
+#include "cli/common/option_set.h"
 #include "polyrecon/progress.h"
 #include "polyrecon/sample_map.h"
 
@@ -12,25 +13,21 @@ namespace polyrecon {
 /// The options of a sample map that `denoise` and `samplemap` share.
 struct SampleMapOptions {
   SampleMapParams params;
-  std::string cost;  ///< Image file with the cost of a sample per pixel.
+  std::string cost;  ///< Image file with the cost of a sample in each pixel; empty: all cost the same.
   SampleMapFormat format = SampleMapFormat::Polyrecon;
-  int frame = 0;
-  int seed = 0;
+  int frame = 0;  ///< Written into the map.
+  int seed = 0;   ///< Seed of the next render, written into the map.
 };
 
-/// Adds --budget, --target, --max-samples, --cost, --frame, --seed and --export.
-void add_sample_map_options(CLI::App& app, SampleMapOptions& options);
+/// Adds --budget, --target, --max-samples, --cost, --frame, --seed and --export. Returns those that have no meaning
+/// without a sample map: all but --target.
+std::vector<CLI::Option*> add_sample_map_options(OptionSet& set, SampleMapOptions& options);
 
-/// Whether any option that only makes sense with a sample map was given (--target makes sense without).
-bool any_sample_map_option(const CLI::App& app);
-
-/// The options that the map depends on, in the words of the command line, each after a blank.
-std::string sample_map_settings(const SampleMapOptions& options);
-
-/// Throws Error{Usage} for values that contradict each other and Error{Missing} where the cost file is not there.
+/// Throws Error{Usage} for values that contradict each other.
 void check_sample_map_options(const SampleMapOptions& options);
 
-/// Makes the map, writes it to target and returns one line that says what it holds.
+/// Makes the map, writes it to target and returns one line about its samples and errors. Throws Error{Missing} where
+/// the file of costs does not exist.
 std::string make_and_write_sample_map(const std::string& target, const ErrorMap& error, const Image& sample_count,
                                       const MapWindows& windows, const SampleMapOptions& options, Progress& progress);
 

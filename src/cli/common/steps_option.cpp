@@ -29,13 +29,13 @@ std::vector<std::string> words_of(const std::string& list) {
 
 }  // namespace
 
-CLI::Option* add_steps_option(CLI::App& app, std::string& text) {
-  app.add_option("--effects", text)->group("");  // the former name, hidden
-  return app
-      .add_option("--steps", text,
-                  "auto: what the frame calls for; all; or only those of a list: " +
-                      fmt::format("{}", fmt::join(step_names(), ",")))
+void add_steps_option(OptionSet& set, std::string& text) {
+  set.add(Changes::Result, "--steps", text,
+          fmt::format("Steps that run: auto (those that the frame needs), all, or a list of {}",
+                      fmt::join(step_names(), ",")))
       ->type_name("auto|all|LIST");
+  set.add_alias(
+      "--effects", [&text](const std::string& given) { text = given; }, "");
 }
 
 void apply_steps(const std::string& text, Params& params) {

@@ -1,14 +1,14 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 
+#include "cli/common/option_set.h"
 #include "polyrecon/params.h"
 
 namespace polyrecon {
 
-/// Adds --steps to app; text is what was given.
-CLI::Option* add_steps_option(CLI::App& app, std::string& text);
+/// Adds --steps, and its former name --effects as a hidden alias.
+void add_steps_option(OptionSet& set, std::string& text);
 
 /// Sets params from "auto" (or nothing), "all", or a list of steps of which only these run: the features of
 /// polyrecon/roles.h by name, prefilter, fireflies, levels, stages. Throws Error{Usage} naming an unknown step.

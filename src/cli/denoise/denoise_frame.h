@@ -1,27 +1,24 @@
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "cli/denoise/denoise_options.h"
-#include "cli/denoise/frame_files.h"
+#include "cli/denoise/job.h"
 #include "polyrecon/progress.h"
 #include "polyrecon/read_frame.h"
 #include "temporal/neighbour.h"
 
 namespace polyrecon {
 
-/// The options of one frame of several: its number goes into the sample map.
-DenoiseOptions options_for(const FrameFiles& files, const DenoiseOptions& options);
-
-/// A neighbour as reconstruct takes it.
+/// A frame before or after, prepared for reconstruct; several frames in work may share it.
 struct LoadedNeighbour {
   int offset = 0;
   std::shared_ptr<const Neighbour> frame;
 };
 
-/// A frame as it was read.
+/// A frame in memory, with the frames that help it.
 struct LoadedFrame {
   ReadResult in;
   double read_seconds = 0;
@@ -29,10 +26,11 @@ struct LoadedFrame {
 };
 
 /// Throws as read_frame does.
-LoadedFrame load_frame(const std::string& path, const DenoiseOptions& options);
+LoadedFrame load_frame(const std::string& path, const ReadOptions& options);
 
-/// Reconstructs a frame and writes its picture, maps and report; prints roles and the report's table unless quiet.
-/// Throws as reconstruct and write_result do.
-void denoise_frame(const FrameFiles& files, LoadedFrame loaded, const DenoiseOptions& options, Progress& progress);
+/// Reconstructs a frame within max_memory bytes and writes its picture, maps and report. Prints the roles of its layers
+/// and the report unless the job is quiet. Throws as reconstruct and write_result do.
+void denoise_frame(const Job& job, const FrameFiles& files, LoadedFrame loaded, std::size_t max_memory,
+                   Progress& progress);
 
 }  // namespace polyrecon

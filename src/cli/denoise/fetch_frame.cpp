@@ -22,19 +22,19 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds first_pause{50}, longest_pause{2000};
 
-/// What changes as long as somebody writes to a file; all the same where there is none.
-std::pair<std::uintmax_t, fs::file_time_type> trace_of(const std::string& path) {
+/// Size and time of a file, which change while it is being written; constant where there is no file.
+std::pair<std::uintmax_t, fs::file_time_type> size_and_time(const std::string& path) {
   std::error_code ignored;
   return {fs::file_size(path, ignored), fs::last_write_time(path, ignored)};
 }
 
-/// Whether the file itself may still become readable; a layer that it lacks will not come.
-bool may_come(const Error& error, const std::string& path) {
+/// Whether the file may still become readable. A layer that it lacks will not appear.
+bool may_become_readable(const Error& error, const std::string& path) {
   std::error_code ignored;
   return error.code() == ExitCode::BadInput || (error.code() == ExitCode::Missing && !fs::exists(path, ignored));
 }
 
-/// Silent; asks the fetcher's owner whether to stop.
+/// Shows nothing; asks the fetcher's owner whether to stop.
 class Cancellable final : public Progress {
  public:
   explicit Cancellable(const std::function<bool()>& cancelled) : cancelled_(cancelled) {}
@@ -48,17 +48,17 @@ class Cancellable final : public Progress {
 
 template <typename Attempt>
 auto FrameFetcher::wait_for(const std::string& path, double seconds, const Attempt& attempt) {
-  auto trace = trace_of(path);
+  auto last = size_and_time(path);
   auto changed = Clock::now();
   auto pause = first_pause;
   for (;;) try {
       return attempt();
     } catch (const Error& error) {
-      const auto now = trace_of(path);
-      if (now != trace) changed = Clock::now();
-      trace = now;
+      const auto now = size_and_time(path);
+      if (now != last) changed = Clock::now();
+      last = now;
       const std::chrono::duration<double> unchanged = Clock::now() - changed;
-      if (unchanged.count() >= seconds || !may_come(error, path)) throw;
+      if (unchanged.count() >= seconds || !may_become_readable(error, path)) throw;
       if (cancelled_()) throw Error(ExitCode::Interrupted, "interrupted");
       std::this_thread::sleep_for(pause);
       pause = std::min(2 * pause, longest_pause);
@@ -66,12 +66,12 @@ auto FrameFetcher::wait_for(const std::string& path, double seconds, const Attem
 }
 
 std::optional<LoadedFrame> FrameFetcher::fetch(const FrameFiles& files) {
-  return wait_for(files.input, options_.wait, [&] { return fetch_now(files); });
+  return wait_for(files.input, job_.run.wait, [&] { return fetch_now(files); });
 }
 
 std::optional<LoadedFrame> FrameFetcher::fetch_now(const FrameFiles& files) {
-  if (options_.skip_existing && is_finished(files, options_for(files, options_))) return std::nullopt;
-  LoadedFrame loaded = load_frame(files.input, options_);
+  if (job_.run.skip_existing && is_finished(job_, files)) return std::nullopt;
+  LoadedFrame loaded = load_frame(files.input, job_.read);
   if (!files.neighbours.empty()) add_neighbours(files, loaded);
   return loaded;
 }
@@ -87,9 +87,8 @@ void FrameFetcher::add_neighbours(const FrameFiles& files, LoadedFrame& loaded) 
   // The frame itself is a neighbour of the next one.
   Cancellable progress(cancelled_);
   const auto known = prepared_.find(files.input);
-  kept[files.input] = known != prepared_.end()
-                          ? known->second
-                          : prepare_neighbour(loaded.in.frame, files.place, params_of(options_), progress);
+  kept[files.input] =
+      known != prepared_.end() ? known->second : prepare_neighbour(loaded.in.frame, files.place, job_.params, progress);
   prepared_ = std::move(kept);
   loaded.read_seconds += std::chrono::duration<double>(Clock::now() - start).count();
 }
@@ -97,18 +96,18 @@ void FrameFetcher::add_neighbours(const FrameFiles& files, LoadedFrame& loaded) 
 FrameFetcher::Prepared FrameFetcher::neighbour(const NeighbourFile& file, LoadedFrame& loaded) {
   const auto known = prepared_.find(file.path);
   if (known != prepared_.end()) return known->second;
-  const double patience = file.is_worked_too ? options_.wait : 0;
+  const double patience = file.is_worked_too ? job_.run.wait : 0;
   Cancellable progress(cancelled_);
   try {
     return wait_for(file.path, patience, [&] {
-      const LoadedFrame frame = load_frame(file.path, options_);
-      return prepare_neighbour(frame.in.frame, file.number, params_of(options_), progress);
+      const LoadedFrame frame = load_frame(file.path, job_.read);
+      return prepare_neighbour(frame.in.frame, file.number, job_.params, progress);
     });
   } catch (const Error& error) {
     if (error.code() == ExitCode::Interrupted) throw;
     std::error_code ignored;
     if (fs::exists(file.path, ignored))
-      loaded.in.notes.push_back(fmt::format("works without its neighbour: {}", error.what()));
+      loaded.in.notes.push_back(fmt::format("denoised without this neighbour: {}", error.what()));
     return nullptr;
   }
 }

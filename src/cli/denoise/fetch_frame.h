@@ -8,22 +8,21 @@
 #include <utility>
 
 #include "cli/denoise/denoise_frame.h"
-#include "cli/denoise/denoise_options.h"
-#include "cli/denoise/frame_files.h"
+#include "cli/denoise/job.h"
 
 namespace polyrecon {
 
-/// Reads frames one after the other, each with its neighbours in time; neighbours that two frames in succession share
-/// are read once.
+/// Reads frames one after the other, each with its neighbours in time. A neighbour that two successive frames share is
+/// read once.
 class FrameFetcher {
  public:
-  FrameFetcher(const DenoiseOptions& options, std::function<bool()> cancelled)
-      : options_(options), cancelled_(std::move(cancelled)) {}
+  /// `job` must outlive the fetcher.
+  FrameFetcher(const Job& job, std::function<bool()> cancelled) : job_(job), cancelled_(std::move(cancelled)) {}
 
-  /// Reads a frame, or finds that it needs no work (--skip-existing): then there is nothing. A file that is not there,
-  /// not complete or not readable yet is tried again until it was left unchanged for --wait seconds. A neighbour that
-  /// cannot be had is left out, with a note where it is there but broken.
-  /// Throws as read_frame does; Error{Interrupted} when cancelled() says so.
+  /// Reads a frame; returns nothing where --skip-existing finds its outputs finished. A file that is missing,
+  /// incomplete or unreadable is tried again until it has not changed for --wait seconds. A neighbour that cannot be
+  /// read is left out; a note says so if its file exists. Throws as read_frame does; Error{Interrupted} once
+  /// cancelled() is true.
   std::optional<LoadedFrame> fetch(const FrameFiles& files);
 
  private:
@@ -31,13 +30,13 @@ class FrameFetcher {
   std::optional<LoadedFrame> fetch_now(const FrameFiles& files);
   Prepared neighbour(const NeighbourFile& file, LoadedFrame& loaded);
   void add_neighbours(const FrameFiles& files, LoadedFrame& loaded);
-  /// attempt(), again and again as long as the file at path may still become readable and `seconds` have not passed.
+  /// Repeats attempt() while the file at path may become readable and has changed within the last `seconds`.
   template <typename Attempt>
   auto wait_for(const std::string& path, double seconds, const Attempt& attempt);
 
-  const DenoiseOptions& options_;
+  const Job& job_;
   std::function<bool()> cancelled_;
-  std::map<std::string, Prepared> prepared_;  ///< By path; those that the next frame may need.
+  std::map<std::string, Prepared> prepared_;  ///< Neighbours by path, kept for the next frame.
 };
 
 }  // namespace polyrecon

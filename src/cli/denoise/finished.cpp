@@ -18,7 +18,7 @@ bool exists(const std::string& path) {
   return std::filesystem::exists(path, ignored);
 }
 
-bool says(const FileInfo& file, const std::string& attribute, const std::string& value) {
+bool has_attribute(const FileInfo& file, const std::string& attribute, const std::string& value) {
   const AttributeInfo* found = find_attribute(file.parts.front(), attribute);
   return found && found->value == value;
 }
@@ -33,20 +33,21 @@ std::string input_identity(const FrameFiles& files, const FrameSource& source) {
   return text;
 }
 
-bool is_finished(const FrameFiles& files, const DenoiseOptions& options) {
-  for (const std::string* path : {&files.output, &files.error_map, &files.order_map, &files.sample_map, &files.report})
-    if (!path->empty() && !exists(*path)) return false;
-  const FrameSource source = read_frame_header(files.input, options.read).source;
+bool is_finished(const Job& job, const FrameFiles& files) {
+  const OutputPaths& outputs = files.outputs;
+  for (const OutputOption& option : output_options())
+    if (const std::string& path = outputs.*option.path; !path.empty() && !exists(path)) return false;
+  const FrameSource source = read_frame_header(files.input, job.read).source;
   try {
-    const FileInfo output = describe_file(files.output);
-    if (!says(output, "polyrecon/version", POLYRECON_VERSION) ||
-        !says(output, "polyrecon/settings", settings_text(options)) ||
-        !says(output, "polyrecon/input", input_identity(files, source)))
+    const FileInfo picture = describe_file(outputs.picture);
+    if (!has_attribute(picture, "polyrecon/version", POLYRECON_VERSION) ||
+        !has_attribute(picture, "polyrecon/settings", settings_of(job, files)) ||
+        !has_attribute(picture, "polyrecon/input", input_identity(files, source)))
       return false;
-    for (const std::string* path : {&files.output, &files.error_map, &files.order_map, &files.sample_map})
+    for (const std::string* path : {&outputs.picture, &outputs.error_map, &outputs.order_map, &outputs.sample_map})
       if (!path->empty()) decode_file(*path);
   } catch (const Error&) {
-    return false;  // damaged: it is made anew
+    return false;  // a damaged output is written again
   }
   return true;
 }

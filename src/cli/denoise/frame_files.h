@@ -1,38 +1,58 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace polyrecon {
 
-/// The input of a frame before or after, which helps.
-struct NeighbourFile {
-  int offset = 0;  ///< In frames; in a list, in files.
-  int number = 0;  ///< Its frame number; in a list, its place.
-  std::string path;
-  bool is_worked_too = false;  ///< Whether it is itself one of the frames asked for.
+struct DenoiseOptions;
+
+/// The files that `denoise` writes for a frame; a path is empty where the file was not requested.
+struct OutputPaths {
+  std::string picture, error_map, order_map, sample_map, report;
 };
 
-/// The files of one frame that `denoise` reads and writes; a path is empty where it was not asked for.
+/// An option that names an output, and the place of its path.
+struct OutputOption {
+  const char* name;  ///< "--error-map"
+  std::string OutputPaths::*path;
+};
+
+const std::array<OutputOption, 5>& output_options();
+
+/// The input of a frame before or after, whose samples help.
+struct NeighbourFile {
+  int offset = 0;  ///< In frames; in a list of files, in files.
+  int number = 0;  ///< Its frame number; in a list of files, its index.
+  std::string path;
+  bool is_worked_too = false;  ///< Whether the run denoises this frame too.
+};
+
+/// The files of one frame that `denoise` reads and writes.
 struct FrameFiles {
-  std::string input, output, error_map, order_map, sample_map, report;
-  std::optional<int> frame;  ///< Its number in a sequence.
-  int place = 0;             ///< Its number, or its place in a list: what its neighbours' numbers count from.
+  std::string input;
+  OutputPaths outputs;
+  std::optional<int> frame;  ///< Number of the frame; unknown for a file that is no frame of a sequence.
+  int place = 0;             ///< Number, or index in a list of files: its neighbours' numbers count from it.
   std::vector<NeighbourFile> neighbours;
 
-  /// How messages name it: "frame 12", or the input's path.
+  /// Its name in messages: "frame 12", or the input's path.
   std::string label() const;
 };
 
-struct DenoiseOptions;
+/// The frames of a run, in order.
+struct FrameList {
+  std::vector<FrameFiles> frames;
+  bool is_sequence = false;  ///< Frames of a pattern, or a list of files; false for one plain file.
+  int radius = 0;            ///< How many frames before and after help each one.
+};
 
-/// The work that the options ask for, in order: one file, the frames of a pattern, or a list of files whose results go
-/// into a folder or into a pattern that takes the number in each file's name. Throws Error{Usage} where names
-/// contradict each other, Error{Missing} where a pattern without --frames matches no file.
-std::vector<FrameFiles> list_frames(const DenoiseOptions& options);
-
-/// Whether the options ask for more than one plain file: then a frame that fails does not end the work.
-bool is_sequence(const DenoiseOptions& options);
+/// Lists one file, the frames of a pattern, or a list of files whose results go into a folder or into a pattern that
+/// takes the number in each file's name. Looks on the disk for the frames of a pattern without --frames, and for files
+/// whose names look like patterns. Throws Error{Usage} where names contradict each other, Error{Missing} where a
+/// pattern without --frames matches no file.
+FrameList list_frames(const DenoiseOptions& options);
 
 }  // namespace polyrecon

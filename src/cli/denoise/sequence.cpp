@@ -21,31 +21,31 @@
 namespace polyrecon {
 namespace {
 
-/// Whether the next frame may still do better.
+/// Whether the next frame may still succeed.
 bool concerns_one_frame(ExitCode code) {
   return code == ExitCode::BadInput || code == ExitCode::Missing || code == ExitCode::CheckFailed ||
          code == ExitCode::OutOfMemory;
 }
 
-/// Frames that came to nothing, and those that did with less than the others.
+/// Counts the frames that were written, skipped or failed, and those that lacked a layer of the first frame.
 class Outcome {
  public:
-  explicit Outcome(const DenoiseOptions& options) : options_(options) {}
+  explicit Outcome(bool strict) : strict_(strict) {}
 
   /// To be called inside a catch block.
   void failed(const FrameFiles& files, const Error& error) {
-    if (options_.strict || !concerns_one_frame(error.code())) throw;
+    if (strict_ || !concerns_one_frame(error.code())) throw;
     std::fputs(fmt::format("polyrecon: {}: {}\n", files.label(), error.what()).c_str(), stderr);
     failed_.push_back(&files);
   }
   void skipped() { ++skipped_; }
   void written() { ++written_; }
-  void fell_back(const FrameFiles& files) { fallbacks_.push_back(&files); }
+  void lacks_layers(const FrameFiles& files) { lacking_.push_back(&files); }
 
   std::string summary() const {
     std::string text = fmt::format("{} written, {} skipped, {} failed", written_, skipped_, failed_.size());
-    if (!fallbacks_.empty())
-      text += fmt::format("; {} without all that the first frame has: {}", fallbacks_.size(), names(fallbacks_));
+    if (!lacking_.empty())
+      text += fmt::format("; {} without all layers of the first frame: {}", lacking_.size(), names(lacking_));
     return text;
   }
 
@@ -56,7 +56,7 @@ class Outcome {
   }
 
  private:
-  /// Numbers as --frames takes them, else file names.
+  /// The frames as --frames takes them, or their file names where a number is unknown.
   static std::string names(const std::vector<const FrameFiles*>& frames) {
     std::vector<int> numbers;
     std::vector<std::string> inputs;
@@ -67,15 +67,15 @@ class Outcome {
     return numbers.size() == inputs.size() ? frames_text(numbers) : fmt::format("{}", fmt::join(inputs, ", "));
   }
 
-  const DenoiseOptions& options_;
-  std::vector<const FrameFiles*> failed_, fallbacks_;
+  const bool strict_;
+  std::vector<const FrameFiles*> failed_, lacking_;
   std::size_t skipped_ = 0, written_ = 0;
 };
 
 /// Compares every frame with the first one that was read.
 class Consistency {
  public:
-  /// Notes in what way the frame differs; true where it has less.
+  /// Adds a note for each difference. Returns whether the frame lacks a layer.
   bool check(const FrameFiles& files, LoadedFrame& loaded) {
     std::set<std::string> roles;
     for (const RoleChoice& choice : loaded.in.source.chosen)
@@ -89,16 +89,16 @@ class Consistency {
       window_ = window;
       return false;
     }
-    bool less = false;
+    bool lacks = false;
     for (const std::string& role : roles_)
       if (roles.count(role) == 0) {
-        loaded.in.notes.push_back(fmt::format("no {}, which {} has: worked without it", role, first_));
-        less = true;
+        loaded.in.notes.push_back(fmt::format("no {}, which {} has: denoised without it", role, first_));
+        lacks = true;
       }
     if (window.width() != window_.width() || window.height() != window_.height())
       loaded.in.notes.push_back(fmt::format("{} x {} pixels, {} has {} x {}", window.width(), window.height(), first_,
                                             window_.width(), window_.height()));
-    return less;
+    return lacks;
   }
 
  private:
@@ -110,14 +110,14 @@ class Consistency {
 /// Reads one frame while another is computed.
 class ReadAhead {
  public:
-  ReadAhead(const DenoiseOptions& options, const Progress& progress)
-      : fetcher_(options, [this, &progress] { return stop_ || progress.cancelled(); }) {}
+  ReadAhead(const Job& job, const Progress& progress)
+      : fetcher_(job, [this, &progress] { return stop_ || progress.cancelled(); }) {}
   ~ReadAhead() { stop_ = true; }
 
   void begin(const FrameFiles& files) {
     next_ = std::async(std::launch::async, [this, &files] { return fetcher_.fetch(files); });
   }
-  /// Waits for the frame begun last; throws what fetch_frame threw.
+  /// Waits for the frame that was begun last. Throws as FrameFetcher::fetch.
   std::optional<LoadedFrame> take() { return next_.get(); }
 
  private:
@@ -126,65 +126,70 @@ class ReadAhead {
   std::future<std::optional<LoadedFrame>> next_;  // last: its destructor waits for the thread
 };
 
-/// What the frame in hand may use while the next one, taken to be of its size, is read beside it.
+/// The limit of memory for a frame while the next one, which is assumed to have the same size, is read.
 std::size_t memory_beside_next(const Frame& frame, const Params& params) {
   const FrameShape shape = shape_of(frame);
   const std::size_t next = shape.pixels * static_cast<std::size_t>(channels_ahead(shape, params)) * sizeof(Real);
   return params.max_memory > next ? params.max_memory - next : 0;
 }
 
-}  // namespace
-
-void run_sequence(const std::vector<FrameFiles>& frames, const DenoiseOptions& options, RunProgress& progress) {
-  Outcome outcome(options);
-  Consistency consistency;
-  ReadAhead ahead(options, progress);
-  ahead.begin(frames.front());
-  for (std::size_t k = 0; k < frames.size(); ++k) {
-    const FrameFiles& files = frames[k];
-    progress.frame(files.label(), k, frames.size());
-    std::optional<LoadedFrame> loaded;
-    bool failed = false;
-    try {
-      loaded = ahead.take();
-    } catch (const Error& error) {
-      outcome.failed(files, error);
-      failed = true;
-    }
-    if (k + 1 < frames.size()) ahead.begin(frames[k + 1]);
-    if (failed) continue;
-    if (!loaded) {
-      outcome.skipped();
-      continue;
-    }
-    try {
-      if (consistency.check(files, *loaded)) outcome.fell_back(files);
-      DenoiseOptions mine = options_for(files, options);
-      if (k + 1 < frames.size()) mine.max_memory = memory_beside_next(loaded->in.frame, params_of(mine));
-      denoise_frame(files, std::move(*loaded), mine, progress);
-      outcome.written();
-    } catch (const Error& error) {
-      outcome.failed(files, error);
-    }
+/// Denoises frame k, which is read already or being read, and starts reading the next one.
+void run_frame(const Job& job, std::size_t k, ReadAhead& ahead, Consistency& consistency, Outcome& outcome,
+               Progress& progress) {
+  const FrameFiles& files = job.frames[k];
+  const bool is_last = k + 1 == job.frames.size();
+  const auto begin_next = [&] {
+    if (!is_last) ahead.begin(job.frames[k + 1]);
+  };
+  std::optional<LoadedFrame> loaded;
+  try {
+    loaded = ahead.take();
+  } catch (const Error& error) {
+    outcome.failed(files, error);
+    return begin_next();
   }
-  progress.frame("", frames.size(), frames.size());
-  if (!options.quiet) std::fputs((outcome.summary() + "\n").c_str(), stdout);
-  outcome.throw_if_any_failed(frames.size());
+  begin_next();
+  if (!loaded) return outcome.skipped();
+  try {
+    if (consistency.check(files, *loaded)) outcome.lacks_layers(files);
+    const std::size_t memory = is_last ? job.params.max_memory : memory_beside_next(loaded->in.frame, job.params);
+    denoise_frame(job, files, std::move(*loaded), memory, progress);
+    outcome.written();
+  } catch (const Error& error) {
+    outcome.failed(files, error);
+  }
 }
 
-void show_dry_run(const std::vector<FrameFiles>& frames, const DenoiseOptions& options) {
-  Outcome outcome(options);
-  for (const FrameFiles& files : frames) try {
-      const ReadResult plan = read_frame_header(files.input, options.read);
-      const bool skip = options.skip_existing && is_finished(files, options_for(files, options));
-      std::fputs(fmt::format("{}: {} -> {}{}\n", files.label(), files.input, files.output,
+}  // namespace
+
+void run_sequence(const Job& job, RunProgress& progress) {
+  Outcome outcome(job.run.strict);
+  Consistency consistency;
+  ReadAhead ahead(job, progress);
+  ahead.begin(job.frames.front());
+  const std::size_t count = job.frames.size();
+  for (std::size_t k = 0; k < count; ++k) {
+    progress.frame(job.frames[k].label(), k, count);
+    run_frame(job, k, ahead, consistency, outcome, progress);
+  }
+  progress.frame("", count, count);
+  if (!job.run.quiet) std::fputs((outcome.summary() + "\n").c_str(), stdout);
+  outcome.throw_if_any_failed(count);
+}
+
+void show_dry_run(const Job& job) {
+  Outcome outcome(job.run.strict);
+  for (const FrameFiles& files : job.frames) try {
+      read_frame_header(files.input, job.read);  // throws where the frame would fail
+      const bool skip = job.run.skip_existing && is_finished(job, files);
+      std::fputs(fmt::format("{}: {} -> {}{}\n", files.label(), files.input, files.outputs.picture,
                              skip ? ", finished already: skipped" : "")
                      .c_str(),
                  stdout);
     } catch (const Error& error) {
       outcome.failed(files, error);
     }
-  outcome.throw_if_any_failed(frames.size());
+  outcome.throw_if_any_failed(job.frames.size());
 }
 
 }  // namespace polyrecon

@@ -1,20 +1,17 @@
 #pragma once
 
-#include <vector>
-
 #include "cli/common/progress_output.h"
-#include "cli/denoise/denoise_options.h"
-#include "cli/denoise/frame_files.h"
+#include "cli/denoise/job.h"
 
 namespace polyrecon {
 
-/// Works the frames in order; the next one is read while this one is computed. A frame that is missing, damaged or
-/// cannot be reconstructed is reported and left out, the others go on: at the end Error{Missing} lists such frames.
-/// Errors that will meet the next frame too (output, use, a signal) end the work at once, as every error does with
-/// --strict.
-void run_sequence(const std::vector<FrameFiles>& frames, const DenoiseOptions& options, RunProgress& progress);
+/// Denoises the frames of a job in order; the next one is read while one is computed. A frame that is missing, damaged
+/// or cannot be reconstructed is reported and left out, and the others are still denoised; at the end Error{Missing}
+/// lists such frames. An error that concerns all frames (an output, wrong use, a signal) ends the run at once, and so
+/// does any error with --strict.
+void run_sequence(const Job& job, RunProgress& progress);
 
-/// Says what run_sequence would do, from the headers of the files alone; ends as it would.
-void show_dry_run(const std::vector<FrameFiles>& frames, const DenoiseOptions& options);
+/// Prints what a run would do, from the headers of the files alone, and throws as run_sequence.
+void show_dry_run(const Job& job);
 
 }  // namespace polyrecon

@@ -8,8 +8,9 @@
 
 #include "cli/commands.h"
 #include "cli/common/checks.h"
+#include "cli/common/decisions_output.h"
 #include "cli/common/read_limits.h"
-#include "cli/common/report_output.h"
+#include "cli/common/roles_output.h"
 #include "features/prepare.h"
 #include "io/inspect.h"
 #include "noise/variance.h"
@@ -79,7 +80,7 @@ std::vector<Decision> steps_of(const InspectOptions& o, const Inspection& found)
   if (std::none_of(chosen.begin(), chosen.end(), [](const RoleChoice& c) { return c.role == Role::Beauty; })) return {};
   Frame frame = read_frame(o.input, o.read).frame;
   require_usable(frame);
-  const double seconds = standard_seconds(run_pilot(frame, silent_progress()), measured_steps());
+  const double seconds = standard_seconds(run_pilot(frame, silent_progress()), measured_figures());
   estimate_feature_variance(frame,
                             silent_progress());  // after the pilot, whose tiles have theirs estimated by themselves
   std::vector<Decision> decisions = look_at(frame).decisions;
@@ -160,7 +161,8 @@ void setup_inspect(CLI::App& app, Command& chosen) {
   sub->add_option("file", o->input, "Render to look at")->required()->type_name("FILE");
   sub->add_flag("--json", o->json, "Print JSON");
   sub->add_option("--view-layer", o->read.view_layer, "View layer to choose roles from")->type_name("NAME");
-  add_read_limits(*sub, o->read.limits);
+  OptionSet set(*sub);
+  add_read_limits(set, o->read.limits);
   sub->footer(
       "Examples:\n"
       "  polyrecon inspect render.exr\n"

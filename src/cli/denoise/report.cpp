@@ -1,10 +1,13 @@
-#include "cli/common/report_output.h"
+#include "cli/denoise/report.h"
 
 #include <fmt/format.h>
 #include <sys/resource.h>
 
 #include <array>
 #include <cmath>
+
+#include "cli/common/decisions_output.h"
+#include "cli/common/roles_output.h"
 
 namespace polyrecon {
 namespace {
@@ -66,42 +69,6 @@ std::size_t peak_memory() {
   return static_cast<std::size_t>(usage.ru_maxrss) * 1024;  // Linux counts in kilobytes
 }
 
-std::string roles_text(const FrameSource& source) {
-  std::string text;
-  for (const RoleChoice& choice : source.chosen) {
-    const std::string layer = choice.layer.empty() ? "(no name)" : choice.layer;
-    if (choice.companion == Companion::Mean)
-      text += (text.empty() ? "" : "\n") + fmt::format("  {:<26} {} ({})", name_of(choice.role), layer, choice.why);
-    else
-      text += fmt::format("\n  {:<26} {}", fmt::format("  {}", name_of(choice.companion)), layer);
-  }
-  return text + "\n";
-}
-
-Json roles_json(const FrameSource& source) {
-  Json roles = Json::array();
-  for (const RoleChoice& choice : source.chosen)
-    roles.push_back({{"role", name_of(choice.role)},
-                     {"holds", name_of(choice.companion)},
-                     {"layer", choice.layer},
-                     {"in_fit", info_of(choice.role).in_fit},
-                     {"why", choice.why}});
-  return roles;
-}
-
-std::string decision_text(const Decision& decision) {
-  std::string text = fmt::format("{}: {}", decision.run ? "yes" : "no", decision.reason);
-  if (decision.saved_seconds > 0) text += fmt::format(", saves about {:.2g} s", decision.saved_seconds);
-  return text;
-}
-
-Json decisions_json(const std::vector<Decision>& decisions) {
-  Json list = Json::array();
-  for (const Decision& d : decisions)
-    list.push_back({{"step", d.step}, {"run", d.run}, {"reason", d.reason}, {"saved_seconds", d.saved_seconds}});
-  return list;
-}
-
 std::string report_text(const RunReport& run) {
   const Report& r = run.reconstruction;
   std::string text = fmt::format("{} -> {}, {} x {}\n", run.input, run.output, r.width, r.height);
@@ -109,21 +76,22 @@ std::string report_text(const RunReport& run) {
   for (const StageTime& stage : r.stages) text += line(stage.stage, fmt::format("{:.2f} s", stage.seconds));
   text += line("write", fmt::format("{:.2f} s", run.write_seconds));
   text +=
-      line("all", fmt::format("{:.2f} s, {:.0f} pixels/s in the reconstruction", run.seconds, pixels_per_second(r)));
+      line("total", fmt::format("{:.2f} s, {:.0f} pixels/s in the reconstruction", run.seconds, pixels_per_second(r)));
   text += line("peak memory", fmt::format("{:.0f} MB", static_cast<double>(run.peak_memory) / 1e6));
   text += line("variance", r.variance_source);
   for (const Decision& d : r.decisions) text += line(d.step, decision_text(d));
-  if (run.plan) text += line("settings chosen", plan_text(*run.plan, reconstruction_seconds(r)));
+  if (run.chosen) text += line("settings chosen", settings_choice_text(*run.chosen, reconstruction_seconds(r)));
   if (r.neighbours > 0)
     text += line("neighbours in time",
-                 fmt::format("{} frames, {:.2f} of a frame's weight on average", r.neighbours, r.neighbour_weight));
+                 fmt::format("{} frames, mean weight {:.2f} (the frame itself: 1)", r.neighbours, r.neighbour_weight));
   text += line("windows", windows_text(r));
-  text += line("fallbacks", fmt::format("{} rank-deficient windows, {} windows left out, {} pixels left to the input, "
-                                        "{} pixels bound to their noise, {} raised",
-                                        r.rank_deficient_windows, r.dropped_windows, r.pixels_fallen_back_to_input,
-                                        r.bound_pixels, r.raised_pixels));
+  text += line("corrections",
+               fmt::format("{} windows rank-deficient, {} not finite; {} pixels kept noisy, {} clamped to the noise, "
+                           "{} raised to the input",
+                           r.rank_deficient_windows, r.dropped_windows, r.pixels_fallen_back_to_input, r.bound_pixels,
+                           r.raised_pixels));
   text += line("input pixels", fmt::format("{} repaired, {} negative", r.repaired_pixels, r.negative_pixels));
-  text += line("fireflies", fmt::format("{}, energy moved {}", r.outliers, rgb_text(r.outlier_energy)));
+  text += line("fireflies", fmt::format("{}, redistributed energy {}", r.outliers, rgb_text(r.outlier_energy)));
   text += line("energy (mean RGB)", fmt::format("{} -> {} ({:+.3f} %)", rgb_text(r.energy_before),
                                                 rgb_text(r.energy_after), 100 * energy_change(r)));
   text += line("restored gain", fmt::format("{:+.3f} {:+.3f} {:+.3f} %", 100 * r.restored_gain[0],
@@ -144,7 +112,7 @@ Json report_json(const RunReport& run, const FrameSource& source) {
           {"width", r.width},
           {"height", r.height},
           {"roles", roles_json(source)},
-          {"settings_choice", run.plan ? plan_json(*run.plan, reconstruction_seconds(r)) : Json()},
+          {"settings_choice", run.chosen ? settings_choice_json(*run.chosen, reconstruction_seconds(r)) : Json()},
           {"variance_source", r.variance_source},
           {"decisions", decisions_json(r.decisions)},
           {"stages", stages},
@@ -157,11 +125,11 @@ Json report_json(const RunReport& run, const FrameSource& source) {
           {"peak_memory_bytes", run.peak_memory},
           {"neighbours", {{"frames", r.neighbours}, {"mean_weight", number(r.neighbour_weight)}}},
           {"windows", windows_json(r)},
-          {"fallbacks",
-           {{"windows_left_out", r.dropped_windows},
-            {"pixels_left_to_input", r.pixels_fallen_back_to_input},
-            {"pixels_bound", r.bound_pixels},
-            {"pixels_raised", r.raised_pixels}}},
+          {"corrections",
+           {{"windows_not_finite", r.dropped_windows},
+            {"pixels_kept_noisy", r.pixels_fallen_back_to_input},
+            {"pixels_clamped_to_noise", r.bound_pixels},
+            {"pixels_raised_to_input", r.raised_pixels}}},
           {"repaired_pixels", r.repaired_pixels},
           {"negative_pixels", r.negative_pixels},
           {"fireflies", {{"count", r.outliers}, {"energy", rgb(r.outlier_energy)}}},

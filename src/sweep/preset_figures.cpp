@@ -1,10 +1,10 @@
-// Made by tests/bench/accuracy.py from the samples; geometric means over them, in the order of ladder().
+// Written by tests/bench/accuracy.py: geometric means over the samples, in the order of presets().
 #include "sweep/settings_choice.h"
 
 namespace polyrecon {
 
-const std::array<StepFigures, step_count>& measured_steps() {
-  static const std::array<StepFigures, step_count> figures{{
+const std::array<PresetFigures, preset_count>& measured_figures() {
+  static const std::array<PresetFigures, preset_count> figures{{
       {0.177, 1.29},   // draft, order 0
       {0.163, 1.256},  // draft
       {0.336, 1.07},   // draft, stages 2

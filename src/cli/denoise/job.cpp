@@ -1,0 +1,104 @@
+#include "cli/denoise/job.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+#include "cli/common/checks.h"
+#include "cli/common/steps_option.h"
+#include "pipeline/memory.h"
+#include "polyrecon/error.h"
+
+namespace polyrecon {
+namespace {
+
+std::optional<FrameLimits> limits_of(const DenoiseOptions& o) {
+  const double target = o.outputs.sample_map.empty() ? o.sample_map.params.target : 0;  // else it is the sample map's
+  if (o.time_budget <= 0 && target <= 0) return std::nullopt;
+  if (o.quality || o.stages || o.order)  // CLI11 excludes them from --time-budget
+    throw Error(ExitCode::Usage, "--target chooses the settings itself: remove --quality, --stages and --order");
+  return FrameLimits{o.time_budget, target};
+}
+
+ReadOptions read_options_of(const DenoiseOptions& o, const FrameList& list, const Params& params) {
+  ReadOptions read = o.read;
+  for (const std::string& role : o.roles) read.map.push_back(parse_mapping(role));
+  read.motion = list.radius > 0;
+  read.accept = [params, is_sequence = list.is_sequence](const std::string& path, FrameShape shape) {
+    if (is_sequence)
+      shape.beside = channels_ahead(shape, params) + neighbours_channels(shape, 2 * params.temporal.radius);
+    require_memory(path, shape, params);
+  };
+  return read;
+}
+
+std::string name_of(Quality quality) {
+  const auto& names = quality_names();
+  return std::find_if(names.begin(), names.end(), [&](const auto& entry) { return entry.second == quality; })->first;
+}
+
+std::string settings_of(const OptionSet& set, Quality quality, const Job& job) {
+  std::map<std::string, std::string> resolved{{"--frame-radius", std::to_string(job.params.temporal.radius)}};
+  if (!job.limits)
+    resolved.insert({{"--quality", name_of(quality)},
+                     {"--stages", std::to_string(job.params.stages)},
+                     {"--order", std::to_string(job.params.max_order)}});
+  return set.identity(resolved);
+}
+
+}  // namespace
+
+Params with_overrides(Params params, const ParamOverrides& overrides) {
+  if (overrides.stages) params.stages = *overrides.stages;
+  if (overrides.order) params.max_order = *overrides.order;
+  if (overrides.max_memory) params.max_memory = *overrides.max_memory;
+  params.reconstruct_alpha = overrides.alpha;
+  params.temporal.radius = overrides.frame_radius;
+  apply_steps(overrides.steps, params);
+  return params;
+}
+
+Job make_job(const DenoiseOptions& o, const OptionSet& set) {
+  Job job;
+  job.limits = limits_of(o);
+  if (!o.outputs.sample_map.empty()) {
+    check_sample_map_options(o.sample_map);
+    job.sample_map = o.sample_map;
+  }
+  FrameList list = list_frames(o);
+  const Quality quality = o.quality.value_or(Quality::Standard);
+  job.overrides = {o.stages, o.order, o.max_memory, o.alpha, o.steps, list.radius};
+  job.params = with_overrides(params_for(quality), job.overrides);
+  validate(job.params);
+  job.read = read_options_of(o, list, job.params);
+  job.keep_noisy = o.keep_noisy;
+  job.run = o.run;
+  job.is_sequence = list.is_sequence;
+  job.frames = std::move(list.frames);
+  job.settings = settings_of(set, quality, job);
+  return job;
+}
+
+void check_files(const Job& job) {
+  std::vector<std::string> all_outputs;
+  for (const FrameFiles& files : job.frames) {
+    std::vector<NamedPath> outputs;
+    for (const OutputOption& option : output_options()) {
+      outputs.push_back({option.name, files.outputs.*option.path});
+      all_outputs.push_back(files.outputs.*option.path);
+    }
+    require_different_files({files.input, job.sample_map ? job.sample_map->cost : std::string()}, outputs);
+  }
+  if (job.sample_map && !job.sample_map->cost.empty()) require_readable(job.sample_map->cost);
+  if (!job.is_sequence && job.run.wait <= 0) require_readable(job.frames.front().input);
+  require_writable(all_outputs);
+}
+
+std::string settings_of(const Job& job, const FrameFiles& files) {
+  // A sample map contains the number of its frame.
+  return job.sample_map && files.frame ? fmt::format("{} --frame {}", job.settings, *files.frame) : job.settings;
+}
+
+}  // namespace polyrecon

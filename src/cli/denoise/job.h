@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/common/option_set.h"
+#include "cli/common/sample_map_options.h"
+#include "cli/denoise/frame_files.h"
+#include "cli/denoise/options.h"
+#include "polyrecon/params.h"
+#include "polyrecon/read_frame.h"
+
+namespace polyrecon {
+
+/// Parameters that options set whatever preset or quality provides the others.
+struct ParamOverrides {
+  std::optional<int> stages, order;
+  std::optional<std::size_t> max_memory;
+  bool alpha = false;
+  std::string steps;
+  int frame_radius = 0;
+};
+
+Params with_overrides(Params params, const ParamOverrides& overrides);
+
+/// Limits for which a pilot run chooses the settings of each frame; 0: no limit.
+struct FrameLimits {
+  double seconds = 0;       ///< For a whole frame, reading and writing included.
+  double relative_mse = 0;  ///< Largest mean relative MSE.
+};
+
+/// The work that a command line of `denoise` requests. Everything is decided: whoever takes a job needs no option and
+/// looks up no name.
+struct Job {
+  std::vector<FrameFiles> frames;
+  bool is_sequence = false;  ///< Then a frame that fails does not end the run.
+  ReadOptions read;
+  Params params;             ///< Where a pilot chooses the settings: what they start from.
+  ParamOverrides overrides;  ///< For the settings that a pilot chooses.
+  std::optional<FrameLimits> limits;
+  std::optional<SampleMapOptions> sample_map;
+  bool keep_noisy = false;
+  RunOptions run;
+  std::string settings;  ///< Identity of the settings, see settings_of.
+};
+
+/// Resolves the options that were parsed by `set`. Throws Error{Usage} where they contradict each other, and as
+/// list_frames.
+Job make_job(const DenoiseOptions& options, const OptionSet& set);
+
+/// Throws Error{Usage}, Error{Missing} or Error{CannotWrite} where the files of a job cannot be used: an output that is
+/// an input too, an input that does not exist, a folder that cannot be written to. Reads no pixel.
+void check_files(const Job& job);
+
+/// What the result of a frame depends on besides its input, as options of the command line. The result and the report
+/// contain it; --skip-existing compares it.
+std::string settings_of(const Job& job, const FrameFiles& files);
+
+}  // namespace polyrecon

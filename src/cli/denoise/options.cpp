@@ -1,0 +1,139 @@
+#include "cli/denoise/options.h"
+
+#include <map>
+
+#include "cli/common/read_limits.h"
+#include "cli/common/steps_option.h"
+
+namespace polyrecon {
+namespace {
+
+const std::map<std::string, VarianceKind> variance_kinds{{"auto", VarianceKind::Auto},
+                                                         {"mean", VarianceKind::Mean},
+                                                         {"sample", VarianceKind::Sample},
+                                                         {"moment", VarianceKind::SecondMoment}};
+const std::map<std::string, ProgressStyle> progress_styles{{"none", ProgressStyle::None},
+                                                           {"bar", ProgressStyle::Bar},
+                                                           {"json", ProgressStyle::Json},
+                                                           {"openjd", ProgressStyle::OpenJd}};
+
+/// Returns --sample-map, which other options need.
+CLI::Option* add_files(OptionSet& set, DenoiseOptions& o) {
+  set.add(Changes::Run, "-i,--input", o.inputs,
+          "Noisy render: EXR, or another format that OpenImageIO reads; a sequence as shot.####.exr or shot.%04d.exr, "
+          "or a list of files")
+      ->required()
+      ->type_name("FILE");
+  set.add(Changes::Run, "-o,--output", o.outputs.picture,
+          "Denoised EXR to write; #### or %04d for a sequence, a folder for a list")
+      ->required()
+      ->type_name("FILE");
+  set.add(Changes::Run, "--error-map", o.outputs.error_map, "Write the estimated error of each pixel")
+      ->type_name("FILE");
+  set.add(Changes::Run, "--order-map", o.outputs.order_map, "Write the polynomial order chosen for each pixel")
+      ->type_name("FILE");
+  CLI::Option* sample_map =
+      set.add(Changes::Run, "--sample-map", o.outputs.sample_map, "Write how many more samples each pixel should get")
+          ->type_name("FILE");
+  set.add(Changes::Run, "--report", o.outputs.report, "Write the report as JSON")->type_name("FILE");
+  return sample_map;
+}
+
+void add_input_options(OptionSet& set, DenoiseOptions& o) {
+  set.begin_group("Input");
+  set.add(Changes::Result, "-l,--aov", o.read.aovs,
+          "Denoise this colour layer too, with the windows of the beauty (repeatable)")
+      ->type_name("LAYER")
+      ->expected(1)
+      ->take_all();
+  set.add(Changes::Result, "--map", o.roles, "Assign a role to a layer: albedo=ViewLayer.MyAlbedo (repeatable)")
+      ->type_name("ROLE=LAYER")
+      ->expected(1)
+      ->take_all();
+  set.add_alias(
+         "--prior", [&o](const std::string& layer) { o.roles.push_back("prior=" + layer); },
+         "Denoised layer, or file, whose pixels are used where they are better; same as --map prior=LAYER")
+      ->type_name("LAYER|FILE");
+  set.add(Changes::Result, "--view-layer", o.read.view_layer, "View layer to denoise, in place of the first one")
+      ->type_name("NAME");
+  set.add_choice(Changes::Result, "--variance-kind", o.read.variance_kind, variance_kinds,
+                 "What variance layers hold: auto, mean (variance of the pixel), sample (variance of one sample), "
+                 "moment (mean of the squares)");
+  set.add(Changes::Result, "--samples", o.read.samples, "Samples per pixel, if the file does not contain them")
+      ->check(CLI::PositiveNumber);
+}
+
+void add_sequence_options(OptionSet& set, DenoiseOptions& o) {
+  set.begin_group("Sequences");
+  set.add(Changes::Run, "--frames", o.frames, "Frames of a sequence, as 1-10,20-40x2; default: all that exist")
+      ->check([](const std::string& text) { return std::string(text.empty() ? "is empty" : ""); }, "", "")
+      ->type_name("RANGES");
+  set.add(Changes::Result, "--frame-radius", o.frame_radius,
+          "Frames before and after that help each frame of a sequence, along its motion vectors if it has any; "
+          "default: 2")
+      ->check(CLI::Range(0, 8))
+      ->type_name("R");
+  set.add_flag(Changes::Run, "--skip-existing", o.run.skip_existing,
+               "Skip frames whose result was made from the same input by the same settings and version");
+  set.add(Changes::Run, "--wait", o.run.wait,
+          "Seconds to wait for an input that is missing or incomplete, counted from its last change")
+      ->check(CLI::NonNegativeNumber)
+      ->type_name("SECONDS");
+  set.add_flag(Changes::Run, "--strict", o.run.strict, "Stop at the first frame that is missing or damaged");
+  set.add_flag(Changes::Run, "--dry-run", o.run.dry_run, "List what would be done, and check that the inputs exist");
+}
+
+void add_method_options(OptionSet& set, DenoiseOptions& o) {
+  set.begin_group("Reconstruction");
+  CLI::Option* quality =
+      set.add_choice(Changes::Result, "--quality", o.quality, quality_names(), "draft, standard or best");
+  CLI::Option* stages = set.add(Changes::Result, "--stages", o.stages,
+                                "Rounds of error estimation, 1 to 4, in place of the number that the quality sets");
+  CLI::Option* order = set.add(Changes::Result, "--order", o.order,
+                               "Highest polynomial order, 0 to 4, in place of the order that the quality sets");
+  set.add(Changes::Result, "--time-budget", o.time_budget,
+          "Seconds for one frame, reading and writing included: selects the most accurate settings that are predicted "
+          "to fit")
+      ->check(CLI::PositiveNumber)
+      ->type_name("SECONDS")
+      ->excludes(quality)
+      ->excludes(stages)
+      ->excludes(order);
+  add_steps_option(set, o.steps);
+  set.add_flag(Changes::Result, "--alpha", o.alpha, "Denoise the alpha channel too; default: keep it");
+  set.add_flag(Changes::Result, "--keep-noisy", o.keep_noisy, "Keep the noisy layers, as '<layer> Noisy'");
+}
+
+void add_run_options(OptionSet& set, DenoiseOptions& o) {
+  set.begin_group("Run");
+  set.add(Changes::Run, "-t,--threads", o.run.threads, "Threads to use; 0: one for each processor")
+      ->check(CLI::Range(0, 4096))
+      ->capture_default_str();
+  set.add(Changes::Run, "--max-memory", o.max_memory, "Limit of memory, in bytes or as 512M, 4G")
+      ->transform(CLI::AsSizeValue(false).description(""))
+      ->type_name("SIZE");
+  set.add_choice(Changes::Run, "--progress", o.run.progress, progress_styles,
+                 "Progress on standard error: none, bar, json (one object per line) or openjd (Open Job Description); "
+                 "default: a bar on a terminal");
+  set.add_flag(Changes::Run, "-q,--quiet", o.run.quiet, "Print nothing but errors");
+}
+
+}  // namespace
+
+const std::map<std::string, Quality>& quality_names() {
+  static const std::map<std::string, Quality> names{
+      {"draft", Quality::Draft}, {"standard", Quality::Standard}, {"best", Quality::Best}};
+  return names;
+}
+
+void add_denoise_options(OptionSet& set, DenoiseOptions& options) {
+  CLI::Option* sample_map = add_files(set, options);
+  add_input_options(set, options);
+  add_sequence_options(set, options);
+  add_method_options(set, options);
+  for (CLI::Option* option : add_sample_map_options(set, options.sample_map)) option->needs(sample_map);
+  add_run_options(set, options);
+  add_read_limits(set, options.read.limits);
+}
+
+}  // namespace polyrecon

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstddef>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/denoise/settings_choice.h"
+#include "polyrecon/read_frame.h"
+#include "polyrecon/report.h"
+
+namespace polyrecon {
+
+/// Everything that is reported about a denoised frame.
+struct RunReport {
+  std::string version, input, output, settings;
+  std::vector<std::string> notes;  ///< From reading, writing and the sample map.
+  double seconds = 0;              ///< From the start to the last file written.
+  double read_seconds = 0, write_seconds = 0;
+  std::size_t peak_memory = 0;  ///< Of the process, in bytes.
+  Report reconstruction;
+  std::optional<ChosenSettings> chosen;  ///< Where --time-budget or --target chose the settings.
+};
+
+/// Peak resident memory of this process in bytes.
+std::size_t peak_memory();
+
+/// The table at the end of a run.
+std::string report_text(const RunReport& run);
+
+/// The same as JSON (docs/reference/report.md).
+nlohmann::ordered_json report_json(const RunReport& run, const FrameSource& source);
+
+}  // namespace polyrecon
