@@ -39,6 +39,7 @@ struct Frame {
   Pass prior;                     ///< A denoised beauty from elsewhere, 3 channels; prior.mean is empty if unknown.
   Image alpha;                    ///< 1 channel; empty if the render has none.
   Image sample_count;             ///< Samples per pixel, 1 channel; empty if unknown.
+  double sky_depth = 1e9;         ///< Depths from here on mean that rays hit nothing.
   Image motion;                   ///< Pixels from a point's place in this frame to its place in the frame before
                                   ///< (channel 0: columns, 1: rows) and after (2: columns, 3: rows); empty if unknown.
 

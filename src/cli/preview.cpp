@@ -32,8 +32,6 @@ struct PreviewOptions {
 /// What a person wants to see first: the picture, else what a map is about, else the first thing there is.
 const Layer& main_layer(const LayeredFile& file) {
   if (const Layer* color = color_layer(file)) return *color;
-  for (const Layer& layer : file.layers)
-    if (layer.role == Role::Beauty && layer.companion == Companion::Mean && layer.channels.size() == 3) return layer;
   for (const char* name : {"relmse", "samples", "order"})
     if (const Layer* map = find_layer(file, name)) return *map;
   if (file.layers.empty()) throw Error(ExitCode::Missing, file.info.path + ": holds no layer to show");

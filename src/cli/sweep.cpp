@@ -68,14 +68,11 @@ std::string file_name(const std::string& path) { return std::filesystem::path(pa
 
 /// The main colour layer of a file: width x height must be the reference's.
 Image read_color(const LayeredFile& file, const Image& reference) {
-  const Layer* layer = color_layer(file);
-  if (!layer)
-    throw Error(ExitCode::Missing,
-                file.info.path + ": no R, G, B layer named Combined, Color, Beauty, RGB, Denoised or nothing");
-  Image image = read_layer(file, *layer);
+  const Layer& layer = require_color_layer(file);
+  Image image = read_layer(file, layer);
   if (!reference.empty() && !image.same_shape(reference))
     throw Error(ExitCode::BadInput,
-                fmt::format("{}: layer '{}' is {} x {} pixels, the reference has {} x {}", file.info.path, layer->name,
+                fmt::format("{}: layer '{}' is {} x {} pixels, the reference has {} x {}", file.info.path, layer.name,
                             image.width(), image.height(), reference.width(), reference.height()));
   return image;
 }
@@ -83,8 +80,8 @@ Image read_color(const LayeredFile& file, const Image& reference) {
 Reference read_reference(const std::string& path) {
   const LayeredFile file = open_layers(path);
   Reference reference{read_color(file, {}), {}};
-  const Layer* variance = find_layer(file, color_layer(file)->name + " Variance");
-  if (variance && variance->channels.size() == 3) reference.variance = read_layer(file, *variance);
+  const Layer* variance = variance_layer(file, require_color_layer(file));
+  if (variance) reference.variance = read_layer(file, *variance);
   return reference;
 }
 

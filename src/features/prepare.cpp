@@ -19,7 +19,6 @@ namespace polyrecon {
 namespace {
 
 constexpr int repair_radius = 8;      // pixels; deeper holes carry no information for their middle anyway
-constexpr double sky_depth = 1e9;     // renderers write 1e10 or larger for a ray that hits nothing
 constexpr double noise_floor = 1e-5;  // noise below this part of a feature's own variance is not worth cleaning
 
 /// body(c, y) for every row of every channel; rows side by side.
@@ -74,18 +73,18 @@ double noise_at(const Pass& pass, int c, std::size_t i) {
 
 bool is_depth(const Feature& feature) { return info_of(feature.role).transform == FeatureTransform::BoundedDepth; }
 
-bool usable_value(const Feature& feature, Real value) {
-  return usable(value) && !(is_depth(feature) && static_cast<double>(value) >= sky_depth);
+bool usable_value(const Feature& feature, double sky, Real value) {
+  return usable(value) && !(is_depth(feature) && static_cast<double>(value) >= sky);
 }
 
 /// Where a channel's values lie but for spikes: from the 0.5 % quantile to that of 99.5 %, and as far again on either
 /// side. All where they hardly vary, since what does is no spike then.
-Range usual_range(const Feature& feature, int channel) {
+Range usual_range(const Feature& feature, double sky, int channel) {
   constexpr std::size_t samples = 1 << 16;
   const Image& mean = feature.pass.mean;
   std::vector<Real> values;
   for (std::size_t i = 0; i < mean.pixels(); i += std::max<std::size_t>(1, mean.pixels() / samples))
-    if (usable_value(feature, mean.plane(channel)[i])) values.push_back(mean.plane(channel)[i]);
+    if (usable_value(feature, sky, mean.plane(channel)[i])) values.push_back(mean.plane(channel)[i]);
   const auto quantile = [&](std::size_t rank) {
     std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(rank), values.end());
     return static_cast<double>(values[rank]);
@@ -96,17 +95,17 @@ Range usual_range(const Feature& feature, int channel) {
   return {low - (high - low), high + (high - low)};
 }
 
-FeatureLook look_at_feature(const Feature& feature) {
+FeatureLook look_at_feature(const Feature& feature, double sky) {
   FeatureLook look;
   const Image& mean = feature.pass.mean;
   for (int c = 0; c < mean.channels(); ++c) {
-    const Range usual = usual_range(feature, c);
+    const Range usual = usual_range(feature, sky, c);
     const Real* values = mean.plane(c);
     double sum = 0, square = 0, noise = 0;
     std::size_t pixels = 0, count = 0, noisy = 0;
     for (std::size_t i = 0; i < mean.pixels(); ++i) {
       const auto v = static_cast<double>(values[i]);
-      if (!usable_value(feature, values[i])) continue;
+      if (!usable_value(feature, sky, values[i])) continue;
       ++pixels;
       look.all.add(v);
       if (!usual.holds(v)) continue;
@@ -128,11 +127,11 @@ FeatureLook look_at_feature(const Feature& feature) {
   return look;
 }
 
-double median_depth(const Image& depth) {
+double median_depth(const Image& depth, double sky) {
   std::vector<Real> values;
   for (std::size_t i = 0; i < depth.pixels(); ++i) {
     const Real z = depth.plane(0)[i];
-    if (usable(z) && z > 0 && static_cast<double>(z) < sky_depth) values.push_back(z);
+    if (usable(z) && z > 0 && static_cast<double>(z) < sky) values.push_back(z);
   }
   if (values.empty()) return 0;
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -311,7 +310,7 @@ Preparation look_at(const Frame& frame, const Steps& steps) {
   const double brightness = mean_brightness(frame.beauty.mean);
   out.epsilon = brightness > 0 ? 0.09 * brightness * brightness : 1;
   std::vector<FeatureLook> looks(frame.features.size());
-  in_parallel(looks.size(), [&](std::size_t i) { looks[i] = look_at_feature(frame.features[i]); });
+  in_parallel(looks.size(), [&](std::size_t i) { looks[i] = look_at_feature(frame.features[i], frame.sky_depth); });
   int channels = 0;
   for (std::size_t i = 0; i < frame.features.size(); ++i) {
     const Feature& feature = frame.features[i];
@@ -329,7 +328,7 @@ Preparation look_at(const Frame& frame, const Steps& steps) {
     const Decision prefilter = decide_on_prefilter(decision.step, feature.pass, look, steps);
     use.prefilter = prefilter.run;
     if (const double largest = look.usual.largest(); largest > 0) use.scale = std::exp2(-std::ilogb(largest));
-    if (is_depth(feature)) use.half_depth = median_depth(feature.pass.mean);
+    if (is_depth(feature)) use.half_depth = median_depth(feature.pass.mean, frame.sky_depth);
     out.features.push_back(use);
     out.decisions.push_back(prefilter);
   }

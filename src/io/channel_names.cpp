@@ -3,144 +3,21 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <cstdlib>
 #include <map>
 #include <string_view>
-#include <tuple>
+
+#include "io/renderers/known_names.h"
 
 namespace polyrecon {
 namespace {
-
-/// One name of a pass in one renderer. Names are compared without case, blanks, '_' and '-'.
-struct KnownPass {
-  std::string_view name;
-  Role role;
-  int rank;  ///< The lowest rank of a role in a view layer is used.
-  std::string_view who;
-};
-
-constexpr std::array kKnownPasses{
-    // Beauty. A noisy image beside a denoised one is the beauty; the denoised one then becomes the prior.
-    KnownPass{"noisyimage", Role::Beauty, 1, "Blender"},
-    KnownPass{"combined", Role::Beauty, 2, "Blender"},
-    KnownPass{"rgba", Role::Beauty, 2, "Arnold, V-Ray, pbrt, Mitsuba, appleseed"},
-    KnownPass{"rgb", Role::Beauty, 2, "pbrt, Mitsuba, POV-Ray"},
-    KnownPass{"beauty", Role::Beauty, 2, "RenderMan, appleseed"},
-    KnownPass{"ci", Role::Beauty, 2, "RenderMan"},
-    KnownPass{"rgbcolor", Role::Beauty, 3, "V-Ray"},
-    KnownPass{"rgbimagepipeline", Role::Beauty, 2, "LuxCore"},
-    KnownPass{"rgbimagepipeline0", Role::Beauty, 2, "LuxCore"},
-    KnownPass{"rgbaimagepipeline", Role::Beauty, 2, "LuxCore"},
-    KnownPass{"rgbaimagepipeline0", Role::Beauty, 2, "LuxCore"},
-    KnownPass{"color", Role::Beauty, 3, "Tungsten"},
-    // Already denoised beauty.
-    KnownPass{"denoised", Role::Prior, 1, "Blender's compositor"},
-    KnownPass{"effectsresult", Role::Prior, 1, "V-Ray"},
-    KnownPass{"denoiser", Role::Prior, 2, "V-Ray"},
-    KnownPass{"vraydenoiser", Role::Prior, 2, "V-Ray"},
-    KnownPass{"prior", Role::Prior, rank_beside, "polyrecon's drivers"},
-    KnownPass{"alpha", Role::Alpha, 1, "several renderers"},
-    KnownPass{"a", Role::Alpha, 1, "RenderMan"},
-    // Features.
-    KnownPass{"denoisingalbedo", Role::Albedo, 1, "Blender"},
-    KnownPass{"denoisealbedo", Role::Albedo, 1, "Arnold"},
-    KnownPass{"albedo", Role::Albedo, 2, "RenderMan, pbrt, Mitsuba, Tungsten, appleseed, LuxCore"},
-    KnownPass{"diffusealbedo", Role::Albedo, 3, "Arnold"},
-    KnownPass{"diffusefilter", Role::Albedo, 3, "V-Ray"},
-    KnownPass{"vraydiffusefilter", Role::Albedo, 3, "V-Ray"},
-    KnownPass{"diffcol", Role::Albedo, 4, "Blender"},
-    KnownPass{"diffusecolor", Role::Albedo, 4, "Blender 5"},
-    KnownPass{"denoisingnormal", Role::Normal, 1, "Blender"},
-    KnownPass{"avgshadingnormal", Role::Normal, 1, "LuxCore"},
-    KnownPass{"ns", Role::Normal, 2, "pbrt"},
-    KnownPass{"shnormal", Role::Normal, 2, "Mitsuba"},
-    KnownPass{"nn", Role::Normal, 2, "RenderMan, Mitsuba"},
-    KnownPass{"shadingnormal", Role::Normal, 2, "LuxCore"},
-    KnownPass{"bumpnormals", Role::Normal, 2, "V-Ray"},
-    KnownPass{"normal", Role::Normal, 3, "Blender, RenderMan, Tungsten, appleseed"},
-    KnownPass{"normals", Role::Normal, 3, "V-Ray"},
-    KnownPass{"n", Role::Normal, 3, "Arnold, pbrt"},
-    KnownPass{"geonormal", Role::Normal, 4, "Mitsuba"},
-    KnownPass{"geometrynormal", Role::Normal, 4, "LuxCore"},
-    KnownPass{"denoisingdepth", Role::Depth, 1, "Blender"},
-    KnownPass{"depth", Role::Depth, 2, "Blender, Mitsuba, Tungsten, appleseed, LuxCore"},
-    KnownPass{"z", Role::Depth, 2, "Arnold, RenderMan"},
-    KnownPass{"zdepth", Role::Depth, 2, "V-Ray"},
-    KnownPass{"vrayzdepth", Role::Depth, 2, "V-Ray"},
-    KnownPass{"visibility", Role::Visibility, 1, "Tungsten and this program"},
-    KnownPass{"shadow", Role::Visibility, 2, "Blender 2.8 - 4, V-Ray"},
-    KnownPass{"ambientocclusion", Role::Visibility, 3, "Blender 5"},
-    KnownPass{"ao", Role::Visibility, 3, "Blender, Arnold"},
-    KnownPass{"samplecount", Role::SampleCount, 1, "RenderMan, LuxCore and this program"},
-    KnownPass{"pixelsamplecount", Role::SampleCount, 1, "appleseed"},
-    KnownPass{"debugsamplecount", Role::SampleCount, 2, "Blender"},
-    // Data with three channels that are no radiance.
-    KnownPass{"relativevariance", Role::Other, 1, "pbrt"},
-    KnownPass{"position", Role::Other, 1, "several renderers"},
-    KnownPass{"p", Role::Other, 1, "Arnold, RenderMan, pbrt"},
-    KnownPass{"worldpositions", Role::Other, 1, "V-Ray"},
-    KnownPass{"vector", Role::Motion, 1, "Blender"},
-    KnownPass{"velocity", Role::Other, 1, "V-Ray"},
-    KnownPass{"motionvector", Role::Other, 1, "Arnold"},
-    KnownPass{"uv", Role::Other, 1, "several renderers"},
-};
-
-/// Whole families of data passes, by how their names begin.
-constexpr std::array<std::string_view, 3> kDataPrefixes{"crypto", "index", "debug"};
-
-/// How names of companions are made from the name of their mean.
-struct Affix {
-  std::string_view text;
-  bool prefix;
-  Companion companion;
-  std::string_view who;
-};
-
-constexpr std::array kAffixes{
-    Affix{" Variance", false, Companion::VarianceOfMean, "this program's merge"},
-    Affix{" A", false, Companion::HalfA, "this program's merge"},
-    Affix{" B", false, Companion::HalfB, "this program's merge"},
-    Affix{"_variance", false, Companion::VarianceOfMean, "a usual name"},
-    Affix{"_var", false, Companion::VarianceOfSample, "RenderMan's variance statistics"},
-    Affix{"_mse", false, Companion::VarianceOfMean, "RenderMan's mse statistics"},
-    Affix{"_even", false, Companion::HalfA, "RenderMan's even and odd statistics"},
-    Affix{"_odd", false, Companion::HalfB, "RenderMan's even and odd statistics"},
-    Affix{"m2_", true, Companion::SecondMoment, "Mitsuba's moment integrator"},
-    Affix{"Variance", false, Companion::VarianceOfMean, "Tungsten's file names"},
-    Affix{"A", false, Companion::HalfA, "Tungsten's file names"},
-    Affix{"B", false, Companion::HalfB, "Tungsten's file names"},
-};
-
-/// Companions of the beauty that have a name of their own. Case matters: it tells pbrt from Arnold.
-struct BeautyCompanion {
-  std::string_view name;
-  Companion companion;
-  std::string_view who;
-};
-
-constexpr std::array kBeautyCompanions{
-    BeautyCompanion{"Variance", Companion::VarianceOfSample, "pbrt's variance of the samples"},
-    BeautyCompanion{"variance", Companion::VarianceOfMean, "Arnold's variance layer"},
-    BeautyCompanion{"mse", Companion::VarianceOfMean, "RenderMan's mse statistics"},
-};
-
-constexpr std::string_view kNoisySuffix = " Noisy";  ///< What write_result keeps of a replaced layer.
-constexpr std::array<std::string_view, 3> kDenoisedSuffixes{"_denoised", "_denoise", " Denoised"};
 
 bool ends_with(std::string_view text, std::string_view end) {
   return text.size() >= end.size() && text.substr(text.size() - end.size()) == end;
 }
 
 bool starts_with(std::string_view text, std::string_view begin) { return text.substr(0, begin.size()) == begin; }
-
-std::string normalised(std::string_view name) {
-  std::string out;
-  for (const char c : name)
-    if (c != ' ' && c != '_' && c != '-') out += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return out;
-}
 
 /// Place of a channel in its layer: R G B or X Y Z first, then the rest in file order.
 int channel_order(std::string_view suffix) {
@@ -168,7 +45,7 @@ std::string layer_of_channel(const FileInfo& file, const PartInfo& part, const s
                ? part.name.substr(0, part.name.size() - view_suffix.size())
                : part.name;
   }
-  return is_bare_color(channel) ? "RGBA" : channel;
+  return is_bare_color(channel) ? bare_pass : channel;
 }
 
 /// Takes the stereo view out of a layer's name, if one is in it: "diffuse.left" -> "diffuse" of view "left".
@@ -182,7 +59,7 @@ void separate_view(const PartInfo& part, Layer& layer, std::string& name) {
     return;
   }
   layer.view = last;
-  name = dot == std::string::npos ? "RGBA" : name.substr(0, dot);
+  name = dot == std::string::npos ? bare_pass : name.substr(0, dot);
 }
 
 void order_channels(Layer& layer) {
@@ -253,13 +130,10 @@ void assign_role(const std::vector<FileInfo>& files, Layer& layer) {
   if (known && fits(known->role, layer)) {
     layer.role = known->role;
     layer.rank = known->rank;
-    layer.why = fmt::format("named as by {}", known->who);
+    layer.why = fmt::format("named as by {}", known->renderers);
     return;
   }
-  const std::string name = normalised(layer.pass);
-  const bool data =
-      std::any_of(kDataPrefixes.begin(), kDataPrefixes.end(), [&](std::string_view p) { return starts_with(name, p); });
-  const bool color = !data && is_color(layer) && !all_uint(files, layer);
+  const bool color = !has_data_prefix(layer.pass) && is_color(layer) && !all_uint(files, layer);
   layer.role = color ? Role::Color : Role::Other;
   layer.why = color ? "a colour pass" : "data";
 }
@@ -291,89 +165,121 @@ void make_companion(Layer& layer, const Layer& mean, Companion companion, std::s
   layer.why = fmt::format("{} of {} ({})", name_of(companion), mean.name, who);
 }
 
-bool is_half(Companion companion) { return companion == Companion::HalfA || companion == Companion::HalfB; }
+/// Whether the layer has the affix; base then becomes the name without it.
+bool strip(const CompanionAffix& affix, const Layer& layer, std::string& base) {
+  const std::string& text = affix.text;
+  const bool before = affix.place == CompanionAffix::Place::BeforeWholeName;
+  const std::string& full = before ? layer.name : layer.pass;
+  if (full.size() <= text.size() || !(before ? starts_with(full, text) : ends_with(full, text))) return false;
+  base = before ? full.substr(text.size()) : full.substr(0, full.size() - text.size());
+  return true;
+}
 
-/// Halves count only where the other half is there: "Light A" alone is a light group.
-bool other_half_exists(const std::vector<Layer>& layers, const Layer& layer, std::string_view base,
-                       const Affix& affix) {
-  return std::any_of(kAffixes.begin(), kAffixes.end(), [&](const Affix& other) {
-    return other.who == affix.who && is_half(other.companion) && other.companion != affix.companion &&
-           find_pass(layers, layer, std::string(base).append(other.text)) != nullptr;
+/// A half counts only where the other half exists: "Light A" alone is a light group.
+bool other_half_exists(const std::vector<Layer>& layers, const Layer& layer, const std::string& base,
+                       const Renderer& renderer, Companion half) {
+  return std::any_of(renderer.affixes.begin(), renderer.affixes.end(), [&](const CompanionAffix& other) {
+    return is_half(other.companion) && other.companion != half &&
+           find_pass(layers, layer, base + other.text) != nullptr;
   });
 }
 
-void find_companions(std::vector<Layer>& layers) {
-  for (Layer& layer : layers) {
-    for (const Affix& affix : kAffixes) {
-      const std::string& full = affix.prefix ? layer.name : layer.pass;
-      if (full.size() <= affix.text.size() ||
-          !(affix.prefix ? starts_with(full, affix.text) : ends_with(full, affix.text)))
-        continue;
-      const std::string base =
-          affix.prefix ? full.substr(affix.text.size()) : full.substr(0, full.size() - affix.text.size());
-      const Layer* mean = affix.prefix ? find_whole_name(layers, layer, base) : find_pass(layers, layer, base);
-      if (!mean || mean == &layer || !same_channels(*mean, layer)) continue;
-      if (is_half(affix.companion) && !other_half_exists(layers, layer, base, affix)) continue;
-      make_companion(layer, *mean, affix.companion, affix.who);
-      break;
-    }
+/// Makes the layer a companion by the first affix of the renderer that leads to a mean.
+bool find_mean_by_affix(const std::vector<Layer>& layers, const Renderer& renderer, Layer& layer) {
+  for (const CompanionAffix& affix : renderer.affixes) {
+    std::string base;
+    if (!strip(affix, layer, base)) continue;
+    const Layer* mean = affix.place == CompanionAffix::Place::BeforeWholeName ? find_whole_name(layers, layer, base)
+                                                                              : find_pass(layers, layer, base);
+    if (!mean || mean == &layer || !same_channels(*mean, layer)) continue;
+    if (is_half(affix.companion) && !other_half_exists(layers, layer, base, renderer, affix.companion)) continue;
+    make_companion(layer, *mean, affix.companion, renderer.name);
+    return true;
   }
+  return false;
+}
+
+void find_companions(std::vector<Layer>& layers) {
+  for (Layer& layer : layers)
+    for (const Renderer& renderer : renderers())
+      if (find_mean_by_affix(layers, renderer, layer)) break;
 }
 
 bool is_beauty_mean(const Layer& layer) { return layer.role == Role::Beauty && layer.companion == Companion::Mean; }
 
 void find_beauty_companions(std::vector<Layer>& layers) {
   for (Layer& layer : layers)
-    for (const BeautyCompanion& known : kBeautyCompanions) {
-      if (layer.pass != known.name || layer.companion != Companion::Mean) continue;
-      const auto beauty = std::find_if(layers.begin(), layers.end(), [&](const Layer& l) {
-        return is_beauty_mean(l) && same_place(l, layer) && same_channels(l, layer);
-      });
-      if (beauty != layers.end()) make_companion(layer, *beauty, known.companion, known.who);
-    }
+    for (const Renderer& renderer : renderers())
+      for (const BeautyCompanion& known : renderer.beauty_companions) {
+        if (layer.pass != known.name || layer.companion != Companion::Mean) continue;
+        const auto beauty = std::find_if(layers.begin(), layers.end(), [&](const Layer& l) {
+          return is_beauty_mean(l) && same_place(l, layer) && same_channels(l, layer);
+        });
+        if (beauty != layers.end()) make_companion(layer, *beauty, known.companion, renderer.name);
+      }
 }
 
-/// "<beauty>_denoised" is a prior; "<layer> Noisy" takes over the role of its layer, whose result is then a prior.
+/// The layer whose name has the suffix behind this one's pass removed, or nullptr.
+const Layer* find_without(const std::vector<Layer>& layers, const Layer& layer, std::string_view suffix) {
+  if (suffix.empty() || !ends_with(layer.pass, suffix)) return nullptr;
+  return find_pass(layers, layer, layer.pass.substr(0, layer.pass.size() - suffix.size()));
+}
+
+/// "<beauty>_denoised" is a prior.
+void make_prior_by_suffix(const std::vector<Layer>& layers, const Renderer& renderer, Layer& layer) {
+  for (const std::string& suffix : renderer.denoised_suffixes) {
+    const Layer* base = find_without(layers, layer, suffix);
+    if (!base || base->role != Role::Beauty || !fits(Role::Prior, layer)) continue;
+    layer.role = Role::Prior;
+    layer.rank = 1;
+    layer.why = fmt::format("{} after a denoiser", base->name);
+  }
+}
+
+/// "<layer> Noisy" takes over the role of its layer.
+void take_role_of_denoised(const std::vector<Layer>& layers, const Renderer& renderer, Layer& layer) {
+  const Layer* base = find_without(layers, layer, renderer.noisy_suffix);
+  if (!base || base->channels.size() != layer.channels.size()) return;
+  layer.role = base->role;
+  layer.rank = base->rank - 1;
+  layer.why = fmt::format("{} before it was denoised", base->name);
+}
+
+bool is_noisy_next_to_denoised(const Layer& layer) {
+  return is_beauty_mean(layer) &&
+         (is_noisy_beauty(layer.pass) || std::any_of(renderers().begin(), renderers().end(), [&](const Renderer& r) {
+            return !r.noisy_suffix.empty() && ends_with(layer.pass, r.noisy_suffix);
+          }));
+}
+
+/// Finds the priors: by the suffixes of denoised layers, and the beauties next to one that is kept noisy.
 void find_denoised(std::vector<Layer>& layers) {
   for (Layer& layer : layers) {
-    for (const std::string_view suffix : kDenoisedSuffixes) {
-      if (!ends_with(layer.pass, suffix)) continue;
-      const Layer* base = find_pass(layers, layer, layer.pass.substr(0, layer.pass.size() - suffix.size()));
-      if (!base || base->role != Role::Beauty || !fits(Role::Prior, layer)) continue;
-      layer.role = Role::Prior;
-      layer.rank = 1;
-      layer.why = fmt::format("{} after a denoiser", base->name);
-    }
-    if (!ends_with(layer.pass, kNoisySuffix)) continue;
-    const Layer* base = find_pass(layers, layer, layer.pass.substr(0, layer.pass.size() - kNoisySuffix.size()));
-    if (!base || base->channels.size() != layer.channels.size()) continue;
-    layer.role = base->role;
-    layer.rank = base->rank - 1;
-    layer.why = fmt::format("{} before it was denoised", base->name);
+    for (const Renderer& renderer : renderers()) make_prior_by_suffix(layers, renderer, layer);
+    for (const Renderer& renderer : renderers()) take_role_of_denoised(layers, renderer, layer);
   }
   for (const Layer& noisy : std::vector<Layer>(layers)) {
-    const bool blender = normalised(noisy.pass) == "noisyimage";
-    if (!is_beauty_mean(noisy) || !(blender || ends_with(noisy.pass, kNoisySuffix))) continue;
+    if (!is_noisy_next_to_denoised(noisy)) continue;
     for (Layer& layer : layers)
       if (is_beauty_mean(layer) && same_place(layer, noisy) && layer.rank > noisy.rank) {
         layer.role = Role::Prior;
-        layer.why = fmt::format("stands beside {}", noisy.name);
+        layer.why = fmt::format("next to {}", noisy.name);
       }
   }
 }
 
-/// Mitsuba's moment integrator gives the image itself no second moment, but the nested integrator that makes it: a
-/// layer with alpha and with the same channels as the beauty.
-void find_nested_moment(std::vector<Layer>& layers) {
-  const auto beauty =
-      std::find_if(layers.begin(), layers.end(), [](const Layer& l) { return is_beauty_mean(l) && l.pass == "RGBA"; });
+/// The beauty's second moment where it accompanies a nested layer: the companion of a layer that has alpha.
+void find_nested_moment(const Renderer& renderer, std::vector<Layer>& layers) {
+  if (!renderer.beauty_moment_is_nested) return;
+  const auto beauty = std::find_if(layers.begin(), layers.end(),
+                                   [](const Layer& l) { return is_beauty_mean(l) && l.pass == bare_pass; });
   if (beauty == layers.end()) return;
   for (Layer& moment : layers) {
     if (moment.companion != Companion::SecondMoment) continue;
     const Layer* nested = find_whole_name(layers, moment, moment.of);
     if (nested && nested->role == Role::Color && !nested->alpha.empty() && !moment.alpha.empty()) {
       make_companion(moment, *beauty, Companion::SecondMoment,
-                     fmt::format("Mitsuba's nested integrator {}", nested->name));
+                     fmt::format("{}'s nested integrator {}", renderer.name, nested->name));
       return;
     }
   }
@@ -392,17 +298,21 @@ std::optional<double> number_in(const FileInfo& file, const std::string& attribu
 }  // namespace
 
 const char* name_of(Companion companion) {
-  static constexpr std::array names{
-      "mean", "variance of the mean", "variance of one sample", "second moment", "half A", "half B"};
-  return names[static_cast<std::size_t>(companion)];
-}
-
-std::optional<PassClass> classify_pass(const std::string& pass) {
-  const std::string name = normalised(pass);
-  const auto known =
-      std::find_if(kKnownPasses.begin(), kKnownPasses.end(), [&](const KnownPass& k) { return k.name == name; });
-  if (known == kKnownPasses.end()) return std::nullopt;
-  return PassClass{known->role, known->rank, std::string(known->who)};
+  switch (companion) {
+    case Companion::Mean:
+      return "mean";
+    case Companion::VarianceOfMean:
+      return "variance of the mean";
+    case Companion::VarianceOfSample:
+      return "variance of one sample";
+    case Companion::SecondMoment:
+      return "second moment";
+    case Companion::HalfA:
+      return "half A";
+    case Companion::HalfB:
+      return "half B";
+  }
+  return "";
 }
 
 std::vector<Layer> find_layers(const FileInfo& file) {
@@ -416,15 +326,23 @@ void classify_layers(const std::vector<FileInfo>& files, std::vector<Layer>& lay
   find_denoised(layers);
   find_companions(layers);
   find_beauty_companions(layers);
-  find_nested_moment(layers);
+  for (const Renderer& renderer : renderers()) find_nested_moment(renderer, layers);
 }
 
-bool is_sample_fraction(const Layer& layer) { return normalised(layer.pass) == "debugsamplecount"; }
+const Layer* picture_layer(const std::vector<Layer>& layers) {
+  const Layer* best = nullptr;
+  const auto key = [](const Layer& l) { return std::make_pair(l.role != Role::Prior, l.rank); };
+  for (const Layer& layer : layers) {
+    const bool denoised = layer.role == Role::Prior && layer.rank != rank_of_made_prior;
+    if (layer.companion != Companion::Mean || !(denoised || layer.role == Role::Beauty)) continue;
+    if (!best || (same_place(layer, *best) && key(layer) < key(*best))) best = &layer;
+  }
+  return best;
+}
 
 std::optional<double> samples_in_metadata(const FileInfo& file, const std::string& view_layer) {
-  for (const std::string& name : {fmt::format("polyrecon/{}/samples", view_layer),
-                                  fmt::format("cycles.{}.samples", view_layer), std::string("samplesPerPixel")})
-    if (const auto value = number_in(file, name)) return value;
+  for (const SamplesAttribute& attribute : samples_attributes(view_layer))
+    if (const auto value = number_in(file, attribute.name)) return value;
   return std::nullopt;
 }
 

@@ -9,30 +9,27 @@
 
 namespace polyrecon {
 
-constexpr int rank_by_hand = -1000;  ///< Of a layer that the user named.
-constexpr int rank_beside = 9;  ///< Of a prior made to stand beside the picture: nobody looks for the result in it.
+constexpr int rank_by_hand = -1000;        ///< The rank of a layer that the user named.
+constexpr const char* bare_pass = "RGBA";  ///< The pass of channels R, G, B, A without a prefix.
 
-/// What the table of names says of one pass.
-struct PassClass {
-  Role role = Role::Other;
-  int rank = 0;
-  std::string who;  ///< The renderers that use the name.
-};
+inline bool is_half(Companion c) { return c == Companion::HalfA || c == Companion::HalfB; }
 
-/// By the name alone, without its view layer; nothing where no renderer is known to use it.
-std::optional<PassClass> classify_pass(const std::string& pass);
+/// Whether the variance of the mean can be made of what such a companion holds.
+inline bool is_variance(Companion c) {
+  return c == Companion::VarianceOfMean || c == Companion::VarianceOfSample || c == Companion::SecondMoment;
+}
 
-/// Groups the channels of all parts into layers and tells what each is, by the names that the renderers use (the table
-/// is in channel_names.cpp). Layers come in file order.
+/// Groups the channels of all parts into layers, in file order, and classifies them.
 std::vector<Layer> find_layers(const FileInfo& file);
 
-/// The second half of find_layers: tells roles and companions of layers that are grouped (and perhaps renamed) already.
+/// Sets role, companion and rank of layers by the names that renderers use (io/renderers/).
 void classify_layers(const std::vector<FileInfo>& files, std::vector<Layer>& layers);
 
-/// Whether a sample-count layer holds the fraction of the metadata's samples (Blender) instead of a number.
-bool is_sample_fraction(const Layer& layer);
+/// The layer that holds the picture: the first view layer and view with a beauty, in it the denoised beauty where there
+/// is one and the noisy one otherwise; nullptr where the file has neither.
+const Layer* picture_layer(const std::vector<Layer>& layers);
 
-/// Samples per pixel of a view layer as the metadata tell, nothing where they do not.
+/// Samples per pixel of a view layer by the metadata, nothing where they do not hold it.
 std::optional<double> samples_in_metadata(const FileInfo& file, const std::string& view_layer);
 
 }  // namespace polyrecon

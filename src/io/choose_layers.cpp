@@ -46,7 +46,7 @@ void add_file(FrameSource& source, const std::string& path, const std::string& p
 
 bool is_one_bare_image(const FrameSource& source) {
   return source.layers.size() == 1 && source.layers.front().view_layer.empty() &&
-         (source.layers.front().pass == "RGBA" || source.layers.front().channels.size() == 1);
+         (source.layers.front().pass == bare_pass || source.layers.front().channels.size() == 1);
 }
 
 void open_files(LayerChoice& choice, const std::string& path, const ReadOptions& options) {
@@ -158,10 +158,6 @@ int find_mean(const FrameSource& source, Role role, bool readable = true) {
     if (best < 0 || key(layer) < key(source.layers[static_cast<std::size_t>(best)])) best = static_cast<int>(i);
   }
   return best;
-}
-
-bool is_variance(Companion c) {
-  return c == Companion::VarianceOfMean || c == Companion::VarianceOfSample || c == Companion::SecondMoment;
 }
 
 template <class Wanted>

@@ -113,15 +113,11 @@ bool is_chosen(const FrameSource& source, Role role, bool (*wanted)(Companion)) 
 
 std::vector<std::string> missing_roles(const FrameSource& source) {
   const auto mean = [](Companion c) { return c == Companion::Mean; };
-  const auto half = [](Companion c) { return c == Companion::HalfA; };
-  const auto variance = [](Companion c) {
-    return c == Companion::VarianceOfMean || c == Companion::VarianceOfSample || c == Companion::SecondMoment;
-  };
   std::vector<std::string> missing;
   for (const RoleInfo& info : role_table())
     if (info.expected && !is_chosen(source, info.role, mean)) missing.emplace_back(info.name);
-  if (!is_chosen(source, Role::Beauty, variance)) missing.emplace_back("variance");
-  if (!is_chosen(source, Role::Beauty, half)) missing.emplace_back("half buffers");
+  if (!is_chosen(source, Role::Beauty, is_variance)) missing.emplace_back("variance");
+  if (!is_chosen(source, Role::Beauty, is_half)) missing.emplace_back("half buffers");
   return missing;
 }
 

@@ -26,6 +26,8 @@
 #include "io/exr/bands.h"
 #include "io/exr/single_part.h"
 #include "io/merge_sums.h"
+#include "io/renderers/known_names.h"
+#include "io/renderers/polyrecon.h"
 #include "polyrecon/error.h"
 
 namespace polyrecon {
@@ -209,10 +211,10 @@ class Merger {
     header.channels() = output_channels();
     if (const auto views = stereo_views(); !views.empty()) Imf::addMultiView(header, views);
     for (const auto& [view_layer, samples] : metadata_samples_) {
-      header.insert(fmt::format("polyrecon/{}/samples", view_layer), Imf::FloatAttribute(static_cast<float>(samples)));
-      const std::string cycles = fmt::format("cycles.{}.samples", view_layer);
-      if (header.find(cycles) != header.end())
-        header.insert(cycles, Imf::StringAttribute(fmt::format("{:.0f}", samples)));
+      header.insert(with_view_layer(samples_attribute, view_layer), Imf::FloatAttribute(static_cast<float>(samples)));
+      for (const SamplesAttribute& copied : samples_attributes(view_layer))
+        if (header.findTypedAttribute<Imf::StringAttribute>(copied.name) != nullptr)
+          header.insert(copied.name, Imf::StringAttribute(fmt::format("{:.0f}", samples)));
     }
     header.insert("polyrecon/version", Imf::StringAttribute(POLYRECON_VERSION));
     return header;
@@ -314,8 +316,12 @@ class Merger {
     return best;
   }
 
-  bool is_blender(const std::string& view_layer) const {
-    return find_attribute(first().file.parts.front(), fmt::format("cycles.{}.samples", view_layer)) != nullptr;
+  /// Whether the metadata hold the number of the whole sequence of which the renders are parts.
+  bool metadata_count_sequence(const std::string& view_layer) const {
+    const std::vector<SamplesAttribute> attributes = samples_attributes(view_layer);
+    return std::any_of(attributes.begin(), attributes.end(), [&](const SamplesAttribute& attribute) {
+      return attribute.of_sequence && find_attribute(first().file.parts.front(), attribute.name) != nullptr;
+    });
   }
 
   void find_weights() {
@@ -323,7 +329,7 @@ class Merger {
     for (const std::size_t l : merged_) view_layers.insert(first().layers[l].view_layer);
     for (const std::string& view_layer : view_layers) {
       const int layer = count_layer(view_layer);
-      const bool fraction = layer >= 0 && is_sample_fraction(first().layers[static_cast<std::size_t>(layer)]);
+      const bool fraction = layer >= 0 && is_sample_fraction(first().layers[static_cast<std::size_t>(layer)].pass);
       double total = 0;
       bool known = true;
       for (const Render& render : renders_) {
@@ -332,7 +338,7 @@ class Merger {
         total += samples.value_or(0);
       }
       if (known) metadata_samples_[view_layer] = total;
-      if (known && samples_ <= 0 && is_blender(view_layer))
+      if (known && samples_ <= 0 && metadata_count_sequence(view_layer))
         report_.notes.push_back(
             fmt::format("{}: {:g} samples in all by the metadata; subsets of one sequence have fewer, give --samples",
                         view_layer, total));
@@ -357,7 +363,7 @@ class Merger {
         n.assign(pixels, metadata);
         if (l < 0) continue;
         const Layer& layer = render.layers[static_cast<std::size_t>(l)];
-        const double scale = is_sample_fraction(layer) ? metadata : 1;
+        const double scale = is_sample_fraction(layer.pass) ? metadata : 1;
         ChannelReader reader(render.file, layer.part, layer.channels);
         const std::vector<float>& counts = reader.read(y0, y1);
         for (std::size_t i = 0; i < pixels; ++i)
@@ -463,9 +469,9 @@ class Merger {
 
   void write_channel(const Layer& layer, const std::string& name, const ChannelSums& sums, NativeBand& band) {
     NativeChannel& mean = *band.find(output_name(first(), layer, name));
-    NativeChannel& variance = *band.find(output_name(first(), layer, name, " Variance"));
-    NativeChannel& half_a = *band.find(output_name(first(), layer, name, " A"));
-    NativeChannel& half_b = *band.find(output_name(first(), layer, name, " B"));
+    NativeChannel& variance = *band.find(output_name(first(), layer, name, variance_suffix));
+    NativeChannel& half_a = *band.find(output_name(first(), layer, name, half_a_suffix));
+    NativeChannel& half_b = *band.find(output_name(first(), layer, name, half_b_suffix));
     bool spread = false;
     for (std::size_t i = 0; i < sums.all.size(); ++i) {
       const Moments whole = moments(sums, i);
@@ -508,11 +514,11 @@ class Merger {
   }
 
   static std::string count_name(const std::string& view_layer) {
-    return view_layer.empty() ? "Sample Count.X" : view_layer + ".Sample Count.X";
+    return (view_layer.empty() ? "" : view_layer + ".") + sample_count_pass + ".X";
   }
 
   Imf::ChannelList output_channels() const {
-    static constexpr std::array companions{"", " Variance", " A", " B"};
+    static constexpr std::array companions{"", variance_suffix, half_a_suffix, half_b_suffix};
     Imf::ChannelList list;
     for (const std::size_t l : merged_) {
       const Layer& layer = first().layers[l];

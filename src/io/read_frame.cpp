@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <memory>
@@ -11,6 +12,7 @@
 #include "io/channel_names.h"
 #include "io/choose_layers.h"
 #include "io/exr/file.h"
+#include "io/renderers/known_names.h"
 #include "polyrecon/error.h"
 
 namespace polyrecon {
@@ -147,12 +149,10 @@ void to_variance_of_mean(Image& variance, const Image& mean, Companion kind, con
     }
 }
 
-/// Blender's Vector pass holds (X, Y) from here to the place in the frame before and (Z, W) from the place in the frame
-/// after to here, rows counted upwards.
-Image from_blender(Image vectors) {
-  for (const int c : {1, 2})
-    for (std::size_t i = 0; i < vectors.pixels(); ++i) vectors.plane(c)[i] = -vectors.plane(c)[i];
-  return vectors;
+Image times(Image image, const std::array<Real, 4>& factors) {
+  for (int c = 0; c < image.channels(); ++c)
+    for (std::size_t i = 0; i < image.pixels(); ++i) image.plane(c)[i] *= factors[static_cast<std::size_t>(c)];
+  return image;
 }
 
 struct PlannedPass {
@@ -174,6 +174,7 @@ class FrameBuilder {
     if (options_.accept) options_.accept(result_.source.path, shape());
     reader_.read();
     result_.frame.data_window = window_;
+    result_.frame.sky_depth = sky_depth();
     take_sample_counts();
     for (PlannedPass& pass : planned_) place(pass);
     if (alpha_) result_.frame.alpha = std::move(*alpha_);
@@ -219,7 +220,7 @@ class FrameBuilder {
     for (PlannedPass& pass : planned_) {
       if (pass.choice.role != Role::SampleCount) continue;
       Image counts = take(pass.mean, pass.choice.mean, 1);
-      if (is_sample_fraction(layer(pass.choice.mean))) {
+      if (is_sample_fraction(layer(pass.choice.mean).pass)) {
         if (counts_.everywhere <= 0) {
           result_.notes.push_back(
               fmt::format("{} is left out: it holds fractions of an unknown sample count; give --samples",
@@ -281,7 +282,8 @@ class FrameBuilder {
         if (!alpha_) frame.alpha = take(planned.mean, planned.choice.mean, info.channels);
         break;
       case Role::Motion:
-        frame.motion = from_blender(take(planned.mean, planned.choice.mean, info.channels));
+        frame.motion = times(take(planned.mean, planned.choice.mean, info.channels),
+                             motion_factors(layer(planned.choice.mean).pass));
         break;
       default:  // sample counts, which are taken first
         break;

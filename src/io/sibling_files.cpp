@@ -1,19 +1,16 @@
 #include "io/sibling_files.h"
 
 #include <algorithm>
-#include <array>
 #include <filesystem>
-#include <string_view>
 #include <system_error>
 
 #include "io/channel_names.h"
+#include "io/renderers/known_names.h"
 
 namespace polyrecon {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr std::array<std::string_view, 4> kCompanionEndings{"", "Variance", "A", "B"};
 
 bool is_pass(const std::string& word) {
   const auto known = classify_pass(word);
@@ -22,7 +19,8 @@ bool is_pass(const std::string& word) {
 
 /// The same with a companion's ending: "AlbedoVariance", "ColorA".
 bool is_pass_or_companion(const std::string& word) {
-  return std::any_of(kCompanionEndings.begin(), kCompanionEndings.end(), [&](std::string_view ending) {
+  static const std::vector<std::string> endings = pass_file_endings();
+  return std::any_of(endings.begin(), endings.end(), [&](const std::string& ending) {
     return word.size() > ending.size() && word.compare(word.size() - ending.size(), ending.size(), ending) == 0 &&
            is_pass(word.substr(0, word.size() - ending.size()));
   });

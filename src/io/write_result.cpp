@@ -29,6 +29,7 @@
 #include "io/exr/bands.h"
 #include "io/exr/raw.h"
 #include "io/exr/single_part.h"
+#include "io/renderers/polyrecon.h"
 #include "polyrecon/error.h"
 
 namespace polyrecon {
@@ -71,8 +72,8 @@ const Layer& layer_named(const FrameSource& source, const std::string& name) {
 /// "ViewLayer.Combined.R" -> "ViewLayer.Combined Noisy.R"; channels without a layer take the layer's pass.
 std::string noisy_name(const Layer& layer, const std::string& channel) {
   const auto dot = channel.rfind('.');
-  if (dot == std::string::npos) return fmt::format("{} Noisy.{}", layer.pass, channel);
-  return fmt::format("{} Noisy{}", channel.substr(0, dot), channel.substr(dot));
+  if (dot == std::string::npos) return layer.pass + noisy_suffix + "." + channel;
+  return channel.substr(0, dot) + noisy_suffix + channel.substr(dot);
 }
 
 std::vector<std::string> channels_to_replace(const Layer& layer, const Replacement& replacement) {

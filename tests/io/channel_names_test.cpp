@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "io/renderers/known_names.h"
+
 namespace polyrecon {
 namespace {
 
@@ -78,7 +80,7 @@ TEST(ChannelNames, Blender3SinglePart) {
               ElementsAre("ViewLayer.Combined.R", "ViewLayer.Combined.G", "ViewLayer.Combined.B"));
   EXPECT_EQ(named(layers, "ViewLayer.Combined").alpha, "ViewLayer.Combined.A");
   EXPECT_EQ(named(layers, "ViewLayer.Combined").view_layer, "ViewLayer");
-  EXPECT_TRUE(is_sample_fraction(named(layers, "ViewLayer.Debug Sample Count")));
+  EXPECT_TRUE(is_sample_fraction(named(layers, "ViewLayer.Debug Sample Count").pass));
 }
 
 TEST(ChannelNames, Blender5HasOnePartForEachPass) {
@@ -110,7 +112,7 @@ TEST(ChannelNames, OwnCompanionsOfEveryPass) {
     expect_role(layers, base + " B", role, Companion::HalfB, base);
   }
   expect_role(layers, "L.Sample Count", Role::SampleCount);
-  EXPECT_FALSE(is_sample_fraction(named(layers, "L.Sample Count")));
+  EXPECT_FALSE(is_sample_fraction(named(layers, "L.Sample Count").pass));
 }
 
 TEST(ChannelNames, ALayerCalledAIsNoHalfWithoutItsB) {

@@ -1,39 +1,17 @@
 #include "cli/common/layers.h"
 
-#include <algorithm>
-#include <array>
-#include <cctype>
-
 #include "io/channel_names.h"
 #include "io/exr/file.h"
+#include "io/renderers/known_names.h"
 #include "polyrecon/error.h"
 
 namespace polyrecon {
 namespace {
 
-std::string lower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
-
 /// "ViewLayer.Combined.R" -> "ViewLayer.Combined"; "R" -> "".
 std::string without_last(const std::string& channel) {
   const std::size_t dot = channel.rfind('.');
   return dot == std::string::npos ? std::string() : channel.substr(0, dot);
-}
-
-std::string last_of(const std::string& name) {
-  const std::size_t dot = name.rfind('.');
-  return dot == std::string::npos ? name : name.substr(dot + 1);
-}
-
-bool is_rgb(const Layer& layer) {
-  constexpr std::array<const char*, 3> suffixes{"R", "G", "B"};
-  if (layer.channels.size() != suffixes.size()) return false;
-  for (std::size_t c = 0; c < suffixes.size(); ++c)
-    if (last_of(layer.channels[c]) != suffixes[c]) return false;
-  return true;
 }
 
 }  // namespace
@@ -52,15 +30,23 @@ const Layer* find_layer(const LayeredFile& file, const std::string& name) {
 }
 
 const Layer* color_layer(const LayeredFile& file) {
-  static const std::array<std::string, 6> names{"", "beauty", "color", "combined", "denoised", "rgb"};
-  const Layer* best = nullptr;
-  for (const Layer& layer : file.layers) {
-    if (!is_rgb(layer)) continue;
-    const std::string name = without_last(layer.channels[0]);
-    if (!std::binary_search(names.begin(), names.end(), lower(last_of(name)))) continue;
-    if (!best || name < without_last(best->channels[0])) best = &layer;
-  }
-  return best;
+  const Layer* picture = picture_layer(file.layers);
+  return picture && picture->channels.size() == 3 ? picture : nullptr;
+}
+
+const Layer& require_color_layer(const LayeredFile& file) {
+  if (const Layer* layer = color_layer(file)) return *layer;
+  throw Error(ExitCode::Missing, file.info.path +
+                                     ": no colour layer that has a name of a renderer's beauty; `polyrecon inspect` "
+                                     "lists the layers");
+}
+
+const Layer* variance_layer(const LayeredFile& file, const Layer& layer) {
+  for (const Layer& other : file.layers)
+    if (other.companion == Companion::VarianceOfMean && other.of == layer.name &&
+        other.channels.size() == layer.channels.size())
+      return &other;
+  return nullptr;
 }
 
 Image read_layer(const LayeredFile& file, const Layer& layer) {
@@ -70,9 +56,9 @@ Image read_layer(const LayeredFile& file, const Layer& layer) {
 Image read_cost(const std::string& path) {
   const LayeredFile file = open_layers(path);
   for (const Layer& layer : file.layers)
-    if (last_of(layer.name) == "Render Time" && layer.channels.size() == 1) return read_layer(file, layer);
+    if (is_render_time(layer.pass) && layer.channels.size() == 1) return read_layer(file, layer);
   if (file.layers.size() == 1 && file.layers[0].channels.size() == 1) return read_layer(file, file.layers[0]);
-  throw Error(ExitCode::Missing, path + ": no layer Render Time and not a single channel: no cost per pixel");
+  throw Error(ExitCode::Missing, path + ": no render-time pass and more than one channel: no cost per pixel");
 }
 
 }  // namespace polyrecon

@@ -21,14 +21,19 @@ LayeredFile open_layers(const std::string& path);
 /// The layer by its whole name, or nullptr.
 const Layer* find_layer(const LayeredFile& file, const std::string& name);
 
-/// The colour layer that a comparison is about: R, G, B and a name (without view layer) of Combined, Color, Beauty,
-/// RGB, Denoised or none, the first by name; nullptr where there is none.
+/// The picture (io/channel_names.h) if it has three channels, else nullptr.
 const Layer* color_layer(const LayeredFile& file);
+
+/// The same; throws Error{Missing} where there is none.
+const Layer& require_color_layer(const LayeredFile& file);
+
+/// The variance of the layer's mean with as many channels, or nullptr.
+const Layer* variance_layer(const LayeredFile& file, const Layer& layer);
 
 /// The samples of all channels of the layer.
 Image read_layer(const LayeredFile& file, const Layer& layer);
 
-/// The cost of a sample per pixel (1 channel): the layer `Render Time`, or the only channel of the file.
+/// The cost of a sample in each pixel, 1 channel: a render-time pass, or the only channel of the file.
 /// Throws Error{Missing} where there is neither.
 Image read_cost(const std::string& path);
 

@@ -16,10 +16,10 @@ bool is_color(const Layer& layer) {
          info_of(layer.role).values == Values::Radiance;
 }
 
-/// The variance of the reference's own mean; empty where the file has none.
+/// The variance of the reference's mean; empty where the file has none.
 Image variance_of(const LayeredFile& reference, const Layer& layer) {
-  const Layer* variance = find_layer(reference, layer.name + " Variance");
-  return variance && variance->channels.size() == layer.channels.size() ? read_layer(reference, *variance) : Image();
+  const Layer* variance = variance_layer(reference, layer);
+  return variance ? read_layer(reference, *variance) : Image();
 }
 
 Comparison compare_layers(const LayeredFile& image, const Layer& layer, const LayeredFile& reference,
@@ -46,17 +46,13 @@ Comparison compare_layers(const LayeredFile& image, const Layer& layer, const La
 
 std::vector<Comparison> compare_files(const LayeredFile& image, const LayeredFile& reference, bool with_images,
                                       Progress& progress) {
-  const Layer* main = color_layer(image);
-  const Layer* main_reference = color_layer(reference);
-  for (const auto& [layer, path] : {std::pair{main, &image.info.path}, std::pair{main_reference, &reference.info.path}})
-    if (!layer)
-      throw Error(ExitCode::Missing,
-                  *path + ": no R, G, B layer named Combined, Color, Beauty, RGB, Denoised or nothing");
+  const Layer& main = require_color_layer(image);
+  const Layer& main_reference = require_color_layer(reference);
   std::vector<Comparison> found;
-  found.push_back(compare_layers(image, *main, reference, *main_reference, with_images, progress));
+  found.push_back(compare_layers(image, main, reference, main_reference, with_images, progress));
   for (const Layer& layer : image.layers)
     if (const Layer* same = find_layer(reference, layer.name);
-        &layer != main && same && is_color(layer) && is_color(*same))
+        &layer != &main && same && is_color(layer) && is_color(*same))
       found.push_back(compare_layers(image, layer, reference, *same, with_images, progress));
   return found;
 }

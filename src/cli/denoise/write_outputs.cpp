@@ -3,6 +3,7 @@
 #include "cli/common/map_files.h"
 #include "cli/denoise/finished.h"
 #include "io/channel_names.h"
+#include "io/renderers/renderers.h"
 #include "polyrecon/write_result.h"
 
 namespace polyrecon {
@@ -11,7 +12,7 @@ namespace {
 /// Whether a layer of the input file holds the picture: a prior that was named on the command line, or that stands in
 /// another file, is no part of it.
 bool is_picture(const Layer& layer, Role role) {
-  return layer.file == 0 && (role == Role::Beauty || (layer.rank != rank_by_hand && layer.rank != rank_beside));
+  return layer.file == 0 && (role == Role::Beauty || (layer.rank != rank_by_hand && layer.rank != rank_of_made_prior));
 }
 
 /// The layer that takes the result: the denoised one where the renderer's own denoiser wrote both, since people and

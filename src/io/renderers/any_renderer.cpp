@@ -1,0 +1,20 @@
+#include "io/renderers/renderers.h"
+
+namespace polyrecon {
+
+/// Names that several renderers and studios use.
+Renderer any_renderer() {
+  Renderer r;
+  r.name = "any renderer";
+  r.passes = {
+      {"Alpha", Role::Alpha, 1},
+      {"Position", Role::Other, 1},
+      {"UV", Role::Other, 1},
+  };
+  r.data_prefixes = {"crypto"};  // Cryptomatte
+  r.affixes = {{"_variance", Companion::VarianceOfMean}};
+  r.denoised_suffixes = {"_denoised", "_denoise", " Denoised"};
+  return r;
+}
+
+}  // namespace polyrecon

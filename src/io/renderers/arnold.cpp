@@ -1,0 +1,24 @@
+#include "io/renderers/renderers.h"
+
+namespace polyrecon {
+
+/// The AOVs that Arnold's denoiser noice asks for.
+Renderer arnold() {
+  Renderer r;
+  r.name = "Arnold";
+  r.versions = "AOVs for noice";
+  r.passes = {
+      {"RGBA", Role::Beauty, 2},
+      {"denoise_albedo", Role::Albedo, 1},
+      {"diffuse_albedo", Role::Albedo, 3},
+      {"N", Role::Normal, 3},
+      {"Z", Role::Depth, 2},
+      {"AO", Role::Visibility, 3},
+      {"P", Role::Other, 1},
+      {"motionvector", Role::Other, 1},
+  };
+  r.beauty_companions = {{"variance", Companion::VarianceOfMean}};
+  return r;
+}
+
+}  // namespace polyrecon

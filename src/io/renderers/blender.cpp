@@ -1,0 +1,38 @@
+#include "io/renderers/renderers.h"
+
+namespace polyrecon {
+
+Renderer blender() {
+  Renderer r;
+  r.name = "Blender";
+  r.versions = "2.8 and later";
+  r.passes = {
+      {"Noisy Image", Role::Beauty, 1},
+      {"Combined", Role::Beauty, 2},
+      {"Denoised", Role::Prior, 1},  // a name that people give in the compositor
+      {"Denoising Albedo", Role::Albedo, 1},
+      {"DiffCol", Role::Albedo, 4},
+      {"Diffuse Color", Role::Albedo, 4},  // Blender 5
+      {"Denoising Normal", Role::Normal, 1},
+      {"Normal", Role::Normal, 3},
+      {"Denoising Depth", Role::Depth, 1},
+      {"Depth", Role::Depth, 2},
+      {"Shadow", Role::Visibility, 2},             // Blender 2.8 to 4
+      {"Ambient Occlusion", Role::Visibility, 3},  // Blender 5
+      {"AO", Role::Visibility, 3},
+      {"Debug Sample Count", Role::SampleCount, 2},
+      {"Vector", Role::Motion, 1},
+  };
+  r.data_prefixes = {"index", "debug"};
+  r.noisy_beauty = "Noisy Image";
+  r.samples_attributes = {{"cycles.{}.samples", true}};
+  r.sample_fraction = "Debug Sample Count";
+  r.render_time = "Render Time";
+  r.sky_depth = 1e10;
+  // Vector holds (X, Y) from here to the place in the frame before and (Z, W) from the place in the frame after to
+  // here, with rows counted upwards.
+  r.motion_factors = {1, -1, -1, 1};
+  return r;
+}
+
+}  // namespace polyrecon

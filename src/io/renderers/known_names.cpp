@@ -1,0 +1,114 @@
+#include "io/renderers/known_names.h"
+
+#include <algorithm>
+#include <cctype>
+#include <limits>
+#include <unordered_map>
+
+namespace polyrecon {
+namespace {
+
+std::string normalised(std::string_view name) {
+  std::string out;
+  for (const char c : name)
+    if (c != ' ' && c != '_' && c != '-') out += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return out;
+}
+
+using KnownPasses = std::unordered_map<std::string, PassClass>;
+
+/// By normalised name.
+const KnownPasses& known_passes() {
+  static const KnownPasses known = [] {
+    KnownPasses passes;
+    std::unordered_map<std::string, const Renderer*> last;  // a renderer may list two spellings of one name
+    for (const Renderer& renderer : renderers())
+      for (const PassName& pass : renderer.passes) {
+        const std::string name = normalised(pass.name);
+        const auto [entry, is_new] = passes.try_emplace(name, PassClass{pass.role, pass.rank, renderer.name});
+        if (!is_new && last[name] != &renderer) entry->second.renderers += ", " + renderer.name;
+        last[name] = &renderer;
+      }
+    return passes;
+  }();
+  return known;
+}
+
+template <typename Condition>
+bool any_renderer_with(const Condition& condition) {
+  return std::any_of(renderers().begin(), renderers().end(), condition);
+}
+
+}  // namespace
+
+std::optional<PassClass> classify_pass(const std::string& pass) {
+  const auto known = known_passes().find(normalised(pass));
+  if (known == known_passes().end()) return std::nullopt;
+  return known->second;
+}
+
+bool same_name(std::string_view a, std::string_view b) { return normalised(a) == normalised(b); }
+
+bool has_data_prefix(const std::string& pass) {
+  const std::string name = normalised(pass);
+  return any_renderer_with([&](const Renderer& renderer) {
+    return std::any_of(renderer.data_prefixes.begin(), renderer.data_prefixes.end(),
+                       [&](const std::string& prefix) { return name.compare(0, prefix.size(), prefix) == 0; });
+  });
+}
+
+bool is_noisy_beauty(const std::string& pass) {
+  return any_renderer_with(
+      [&](const Renderer& r) { return !r.noisy_beauty.empty() && same_name(pass, r.noisy_beauty); });
+}
+
+bool is_sample_fraction(const std::string& pass) {
+  return any_renderer_with(
+      [&](const Renderer& r) { return !r.sample_fraction.empty() && same_name(pass, r.sample_fraction); });
+}
+
+bool is_render_time(const std::string& pass) {
+  return any_renderer_with([&](const Renderer& r) { return !r.render_time.empty() && pass == r.render_time; });
+}
+
+std::string with_view_layer(std::string attribute, const std::string& view_layer) {
+  const std::size_t at = attribute.find("{}");
+  return at == std::string::npos ? attribute : attribute.replace(at, 2, view_layer);
+}
+
+std::vector<SamplesAttribute> samples_attributes(const std::string& view_layer) {
+  std::vector<SamplesAttribute> attributes;
+  for (const Renderer& renderer : renderers())
+    for (const SamplesAttribute& attribute : renderer.samples_attributes)
+      attributes.push_back({with_view_layer(attribute.name, view_layer), attribute.of_sequence});
+  return attributes;
+}
+
+double sky_depth() {
+  double least = std::numeric_limits<double>::infinity();
+  for (const Renderer& renderer : renderers()) least = std::min(least, renderer.sky_depth);
+  return least / 10;
+}
+
+std::array<Real, 4> motion_factors(const std::string& pass) {
+  const Renderer* first = nullptr;
+  for (const Renderer& renderer : renderers())
+    for (const PassName& known : renderer.passes) {
+      if (known.role != Role::Motion) continue;
+      if (same_name(known.name, pass)) return renderer.motion_factors;
+      if (!first) first = &renderer;
+    }
+  return first->motion_factors;
+}
+
+std::vector<std::string> pass_file_endings() {
+  std::vector<std::string> endings{""};
+  for (const Renderer& renderer : renderers()) {
+    if (!renderer.pass_files) continue;
+    for (const CompanionAffix& affix : renderer.affixes)
+      if (affix.place == CompanionAffix::Place::BehindPass) endings.push_back(affix.text);
+  }
+  return endings;
+}
+
+}  // namespace polyrecon

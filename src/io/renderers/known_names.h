@@ -1,0 +1,56 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "io/renderers/renderers.h"
+#include "polyrecon/image.h"
+
+namespace polyrecon {
+
+/// What the renderers' names say of one pass.
+struct PassClass {
+  Role role = Role::Other;
+  int rank = 0;
+  std::string renderers;  ///< The names of those that use this name.
+};
+
+/// pass: a name without its view layer. Nothing where no renderer is known to use it.
+std::optional<PassClass> classify_pass(const std::string& pass);
+
+/// Whether a and b are one name: they are compared without case, blanks, '_' and '-'.
+bool same_name(std::string_view a, std::string_view b);
+
+/// Whether the name begins as those of passes that hold data.
+bool has_data_prefix(const std::string& pass);
+
+/// Whether the other beauties of a view layer with this pass are denoised.
+bool is_noisy_beauty(const std::string& pass);
+
+/// Whether a sample-count pass holds a fraction of the number in the metadata.
+bool is_sample_fraction(const std::string& pass);
+
+/// Whether the pass holds what each pixel cost.
+bool is_render_time(const std::string& pass);
+
+/// An attribute's name with the view layer in place of "{}".
+std::string with_view_layer(std::string attribute, const std::string& view_layer);
+
+/// The attributes that can hold the samples per pixel of a view layer, in the order in which they are looked for.
+std::vector<SamplesAttribute> samples_attributes(const std::string& view_layer);
+
+/// Depths from here on are sky: a tenth of the least value that a renderer writes where a ray hits nothing, as a pixel
+/// at the edge of the sky averages it with smaller depths.
+double sky_depth();
+
+/// Factors that turn the channels of a motion pass into Frame::motion. A pass that no renderer is known to use is taken
+/// for one of the first renderer that has motion.
+std::array<Real, 4> motion_factors(const std::string& pass);
+
+/// What the names of files with one pass can have behind the pass: "Variance". The first is empty.
+std::vector<std::string> pass_file_endings();
+
+}  // namespace polyrecon

@@ -1,0 +1,24 @@
+#include "io/renderers/renderers.h"
+
+namespace polyrecon {
+
+Renderer luxcore() {
+  Renderer r;
+  r.name = "LuxCore";
+  r.passes = {
+      {"RGB_IMAGEPIPELINE", Role::Beauty, 2},
+      {"RGB_IMAGEPIPELINE_0", Role::Beauty, 2},
+      {"RGBA_IMAGEPIPELINE", Role::Beauty, 2},
+      {"RGBA_IMAGEPIPELINE_0", Role::Beauty, 2},
+      {"ALBEDO", Role::Albedo, 2},
+      {"AVG_SHADING_NORMAL", Role::Normal, 1},
+      {"SHADING_NORMAL", Role::Normal, 2},
+      {"GEOMETRY_NORMAL", Role::Normal, 4},
+      {"DEPTH", Role::Depth, 2},
+      {"SAMPLECOUNT", Role::SampleCount, 1},
+  };
+  r.pass_files = true;
+  return r;
+}
+
+}  // namespace polyrecon

@@ -1,0 +1,20 @@
+#include "io/renderers/renderers.h"
+
+namespace polyrecon {
+
+/// The integrators aov and moment of Mitsuba 3.
+Renderer mitsuba() {
+  Renderer r;
+  r.name = "Mitsuba";
+  r.versions = "version 3";
+  r.passes = {
+      {"RGBA", Role::Beauty, 2},      {"RGB", Role::Beauty, 2}, {"albedo", Role::Albedo, 2},
+      {"sh_normal", Role::Normal, 2}, {"nn", Role::Normal, 2},  {"geo_normal", Role::Normal, 4},
+      {"depth", Role::Depth, 2},
+  };
+  r.affixes = {{"m2_", Companion::SecondMoment, CompanionAffix::Place::BeforeWholeName}};
+  r.beauty_moment_is_nested = true;  // the moment integrator keeps it with the integrator that makes the image
+  return r;
+}
+
+}  // namespace polyrecon

@@ -1,0 +1,13 @@
+#pragma once
+
+namespace polyrecon {
+
+// The names that this program itself gives to what it writes.
+constexpr const char* noisy_suffix = " Noisy";        ///< A layer that is kept as it was (WriteOptions::keep_noisy).
+constexpr const char* variance_suffix = " Variance";  ///< The companions that `merge` writes.
+constexpr const char* half_a_suffix = " A";
+constexpr const char* half_b_suffix = " B";
+constexpr const char* sample_count_pass = "Sample Count";
+constexpr const char* samples_attribute = "polyrecon/{}/samples";  ///< "{}" stands for the view layer.
+
+}  // namespace polyrecon

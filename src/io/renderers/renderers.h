@@ -1,0 +1,76 @@
+#pragma once
+
+#include <array>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "polyrecon/image.h"
+#include "polyrecon/layers.h"
+#include "polyrecon/roles.h"
+
+namespace polyrecon {
+
+/// The rank of a prior that a driver puts next to the picture: results do not replace it.
+constexpr int rank_of_made_prior = 9;
+
+/// A pass by the name that a renderer gives it.
+struct PassName {
+  std::string name;  ///< As the renderer writes it; names are compared without case, blanks, '_' and '-'.
+  Role role;
+  int rank;  ///< Among layers of one role in one view layer the one of the lowest rank is used.
+};
+
+/// How the name of a layer that accompanies another one is made from the name of that one.
+struct CompanionAffix {
+  enum class Place {
+    BehindPass,      ///< "albedo_var" accompanies "albedo".
+    BeforeWholeName  ///< "m2_aov.albedo" accompanies "aov.albedo".
+  };
+  std::string text;
+  Companion companion;
+  Place place = Place::BehindPass;
+};
+
+/// A companion of the beauty that has a name of its own. Case matters.
+struct BeautyCompanion {
+  std::string name;
+  Companion companion;
+};
+
+/// An attribute of the file that holds the samples per pixel.
+struct SamplesAttribute {
+  std::string name;          ///< "{}" stands for the view layer.
+  bool of_sequence = false;  ///< A render of a part of the samples has the number of all of them.
+};
+
+/// The names and quirks of one renderer. Each has a file in this folder; the list of all is in renderers.cpp.
+struct Renderer {
+  std::string name;
+  std::string versions;  ///< Which versions or outputs the names belong to, for the documentation; may be empty.
+
+  std::vector<PassName> passes;
+  std::vector<std::string> data_prefixes;  ///< Passes whose names begin so hold data even if they look like colours.
+  std::vector<CompanionAffix> affixes;
+  std::vector<BeautyCompanion> beauty_companions;
+  bool beauty_moment_is_nested = false;  ///< The beauty's second moment accompanies another layer with alpha.
+
+  std::vector<std::string> denoised_suffixes;  ///< "<beauty>_denoised" is a prior.
+  std::string noisy_suffix;                    ///< "<layer> Noisy" is what the layer was before it was denoised.
+  std::string noisy_beauty;                    ///< Next to this pass the other beauties of a view layer are denoised.
+
+  std::vector<SamplesAttribute> samples_attributes;
+  std::string sample_fraction;  ///< Sample-count pass that holds a fraction of the metadata's number.
+  std::string render_time;      ///< Pass with the cost of each pixel.
+
+  /// Depth where a ray hits nothing.
+  double sky_depth = std::numeric_limits<double>::infinity();
+  /// Factors that turn the channels of the motion pass into Frame::motion.
+  std::array<Real, 4> motion_factors{1, 1, 1, 1};
+  bool pass_files = false;  ///< It writes each pass to a file of its own, whose name ends in the pass.
+};
+
+/// All renderers. Where two use one name for different roles or ranks, the first of them decides.
+const std::vector<Renderer>& renderers();
+
+}  // namespace polyrecon

@@ -1,0 +1,28 @@
+#include "io/renderers/renderers.h"
+
+namespace polyrecon {
+
+/// Render elements; in exported scenes their names begin with "VRay".
+Renderer vray() {
+  Renderer r;
+  r.name = "V-Ray";
+  r.passes = {
+      {"RGBA", Role::Beauty, 2},
+      {"RGB color", Role::Beauty, 3},
+      {"effectsResult", Role::Prior, 1},
+      {"denoiser", Role::Prior, 2},
+      {"VRayDenoiser", Role::Prior, 2},
+      {"diffuseFilter", Role::Albedo, 3},
+      {"VRayDiffuseFilter", Role::Albedo, 3},
+      {"bumpNormals", Role::Normal, 2},
+      {"normals", Role::Normal, 3},
+      {"Z-Depth", Role::Depth, 2},
+      {"VRayZDepth", Role::Depth, 2},
+      {"shadow", Role::Visibility, 2},
+      {"worldPositions", Role::Other, 1},
+      {"velocity", Role::Other, 1},
+  };
+  return r;
+}
+
+}  // namespace polyrecon
