@@ -26,13 +26,13 @@ struct PrefilterParams {
 
 /// What makes a pixel an outlier (a firefly), equation (10).
 struct OutlierParams {
-  int neighbourhood = 2;             ///< Radius of the neighbourhood that the pixel is compared with.
-  bool variance_is_measured = true;  ///< Whether the variance describes single pixels; if not, reliability is ignored.
-  double height = 3;  ///< Least height above the median, in units of (upper end of the neighbourhood - median).
+  int neighbourhood = 2;  ///< Radius of the neighbourhood that the pixel is compared with.
+  double height = 3;      ///< Least height above the median, in units of (upper end of the neighbourhood - median).
   /// Least height above the same pixel of the other half, in units of the third largest difference between the halves
   /// in the neighbourhood.
   double height_over_other_half = 8;
   double reliability = 4;  ///< Largest height of an outlier in its own standard deviations; above, it is reliable.
+                           ///< Ignored if the variance is estimated from the image.
   int density_radius = 9;  ///< Radius within which outliers are counted.
   double density = 0.01;   ///< Largest share of other outliers in that radius; where there are more, they are kept.
 };
@@ -92,6 +92,7 @@ struct Params {
       0.02;             ///< Orders whose estimated errors are this close to the least, relative, are averaged.
   double coverage = 2;  ///< Centres are added where the weights of all windows sum to less; 0: nowhere.
   PrefilterParams prefilter;
+  OutlierParams outliers;
   SelectParams selection;
   double enough = 0;  ///< Pixels keep the input if their noise variance / (value^2 + 0.01) is at most this; >= 0.
   Steps steps;

@@ -143,9 +143,9 @@ double median_depth(const Image& depth, double sky) {
 Decision decide_on_feature(const FeatureLook& look, const Feature& feature, const Steps& steps) {
   const std::string step = std::string("feature ") + name_of(feature.role);
   const Image& mean = feature.pass.mean;
-  if (!steps.features.has(feature.role)) return {step, false, "not asked for"};
+  if (!steps.features.has(feature.role)) return {step, false, "not requested"};
   if (look.usable_pixels == 0) return {step, false, "no finite value"};
-  if (!steps.decide) return {step, true, "asked for"};
+  if (!steps.decide) return {step, true, "requested"};
   const bool has_sky = is_depth(feature) && look.usable_pixels < mean.pixels();
   if (look.all.high - look.all.low <= 1e-6 * look.all.largest() && !has_sky)
     return {step, false, "constant", Spared::Columns, mean.channels()};
@@ -288,9 +288,9 @@ std::array<Image, 2> prepared_feature(Feature feature, const FeatureUse& use, st
 Decision decide_on_prefilter(const std::string& feature, const Pass& pass, const FeatureLook& look,
                              const Steps& steps) {
   const std::string step = feature + " prefilter";
-  if (!steps.prefilter) return {step, false, "not asked for"};
+  if (!steps.prefilter) return {step, false, "not requested"};
   if (!pass.noise_is_told()) return {step, false, "nothing is known of its noise"};
-  if (!steps.decide) return {step, true, "asked for"};
+  if (!steps.decide) return {step, true, "requested"};
   const bool noisy = look.noise > noise_floor * look.variance;
   if (!noisy) return {step, false, "the pass is clean", Spared::Prefilter, pass.mean.channels()};
   const double share = static_cast<double>(look.noisy_pixels) / static_cast<double>(pass.mean.pixels());

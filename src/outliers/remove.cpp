@@ -44,8 +44,9 @@ std::ptrdiff_t neighbour_of_median(std::vector<std::pair<double, std::ptrdiff_t>
 }
 
 /// Whether the noise variance of a pixel allows its excess, so that the pixel cannot be trusted.
-bool unreliable(const HalfPair& pair, std::size_t center, double excess, const OutlierParams& p) {
-  if (!p.variance_is_measured) return true;
+bool unreliable(const HalfPair& pair, std::size_t center, double excess, const PairNoise& known,
+                const OutlierParams& p) {
+  if (!known.variance_is_measured) return true;
   double variance = 0;
   for (int c = 0; c < 3; ++c) variance += static_cast<double>(pair.variance.plane(c)[center]) / 3;
   return excess * excess < p.reliability * p.reliability * variance;
@@ -53,7 +54,7 @@ bool unreliable(const HalfPair& pair, std::size_t center, double excess, const O
 
 /// The first test of remove_outliers: returns the neighbour of median brightness if the pixel of half h is far brighter
 /// than the pixels of both halves around it, else -1.
-std::ptrdiff_t against_neighbours(const HalfPair& pair, std::size_t h, int x, int y, bool independent,
+std::ptrdiff_t against_neighbours(const HalfPair& pair, std::size_t h, int x, int y, const PairNoise& known,
                                   const OutlierParams& p) {
   const Image &half = pair.color[h], &other = pair.color[1 - h];
   if (!stands_out(half, x, y, p.neighbourhood)) return -1;
@@ -65,7 +66,7 @@ std::ptrdiff_t against_neighbours(const HalfPair& pair, std::size_t h, int x, in
   for (int v = around.y0; v < around.y1; ++v)
     for (int u = around.x0; u < around.x1; ++u) {
       const std::size_t i = half.index(u, v);
-      if (i != center || independent) surroundings.push_back(brightness(other, i));
+      if (i != center || known.independent_halves) surroundings.push_back(brightness(other, i));
       if (i == center) continue;
       surroundings.push_back(brightness(half, i));
       neighbours.emplace_back(surroundings.back(), static_cast<std::ptrdiff_t>(i));
@@ -80,8 +81,8 @@ std::ptrdiff_t against_neighbours(const HalfPair& pair, std::size_t h, int x, in
   std::nth_element(surroundings.begin(), middle, surroundings.end());
   const double median = *middle;
   const double excess = value - median;
-  const double height = independent ? p.height : 2 * p.height;
-  if (!(excess > height * (top - median)) || !unreliable(pair, center, excess, p)) return -1;
+  const double height = known.independent_halves ? p.height : 2 * p.height;
+  if (!(excess > height * (top - median)) || !unreliable(pair, center, excess, known, p)) return -1;
   return neighbour_of_median(neighbours);
 }
 
@@ -124,11 +125,12 @@ double third_difference(const Image& half, const Image& other, const Rect& aroun
 /// halves differ much less around it, returns the neighbour of median brightness among the five that are most alike in
 /// the other half. -1 if the pixel is no outlier, or if all neighbours differ so much in the other half that a
 /// replacement might be wrong by more than a third of the excess.
-std::ptrdiff_t against_other_half(const HalfPair& pair, std::size_t h, int x, int y, const OutlierParams& p) {
+std::ptrdiff_t against_other_half(const HalfPair& pair, std::size_t h, int x, int y, const PairNoise& known,
+                                  const OutlierParams& p) {
   const Image &half = pair.color[h], &other = pair.color[1 - h];
   const std::size_t center = half.index(x, y);
   const double value_in_other = brightness(other, center), excess = brightness(half, center) - value_in_other;
-  if (!(excess > 0) || !unreliable(pair, center, excess, p)) return -1;
+  if (!(excess > 0) || !unreliable(pair, center, excess, known, p)) return -1;
   const Rect around = intersect(grow({x, y, x + 1, y + 1}, p.neighbourhood), half.bounds());
   if (!stands_out_of_differences(half, other, around, center, excess, p.height_over_other_half)) return -1;
   const double third = third_difference(half, other, around, center);
@@ -150,20 +152,21 @@ std::ptrdiff_t against_other_half(const HalfPair& pair, std::size_t h, int x, in
 }
 
 /// Index of the pixel that replaces pixel (x, y) of half h if that is an outlier, else -1.
-std::ptrdiff_t replacement_of(const HalfPair& pair, std::size_t h, int x, int y, bool independent,
+std::ptrdiff_t replacement_of(const HalfPair& pair, std::size_t h, int x, int y, const PairNoise& known,
                               const OutlierParams& p) {
-  const std::ptrdiff_t neighbour = against_neighbours(pair, h, x, y, independent, p);
-  return neighbour >= 0 || !independent ? neighbour : against_other_half(pair, h, x, y, p);
+  const std::ptrdiff_t neighbour = against_neighbours(pair, h, x, y, known, p);
+  return neighbour >= 0 || !known.independent_halves ? neighbour : against_other_half(pair, h, x, y, known, p);
 }
 
-Replacement find(const HalfPair& pair, std::size_t h, bool independent, const OutlierParams& p, Progress& progress) {
+Replacement find(const HalfPair& pair, std::size_t h, const PairNoise& known, const OutlierParams& p,
+                 Progress& progress) {
   const int width = pair.width(), height = pair.height();
   Replacement out;
   out.source.assign(pair.variance.pixels(), -1);
   parallel_for(static_cast<std::size_t>(height), progress, [&](std::size_t y) {
     for (int x = 0; x < width; ++x)
       out.source[pair.variance.index(x, static_cast<int>(y))] =
-          replacement_of(pair, h, x, static_cast<int>(y), independent, p);
+          replacement_of(pair, h, x, static_cast<int>(y), known, p);
   });
   const auto row = static_cast<std::size_t>(width) + 1;
   out.count_above.assign(row * (static_cast<std::size_t>(height) + 1), 0);
@@ -188,12 +191,12 @@ bool rare(const Replacement& found, int width, int height, int x, int y, const O
 
 }  // namespace
 
-std::vector<Outlier> remove_outliers(HalfPair& pair, bool independent_halves, const OutlierParams& params,
+std::vector<Outlier> remove_outliers(HalfPair& pair, const PairNoise& known, const OutlierParams& params,
                                      Progress& progress) {
   const int width = pair.width(), height = pair.height();
   const int channels = ColorLayout(pair.color[0].channels()).layer_channels();
-  const std::array<Replacement, 2> found{find(pair, 0, independent_halves, params, progress),
-                                         find(pair, 1, independent_halves, params, progress)};
+  const std::array<Replacement, 2> found{find(pair, 0, known, params, progress),
+                                         find(pair, 1, known, params, progress)};
   // Replacements are read from copies of the input, as an outlier may be next to another.
   const std::array<Image, 2> color = pair.color;
   const Image variance = pair.variance;

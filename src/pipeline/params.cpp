@@ -43,6 +43,9 @@ void validate(const Params& params) {
   for (const int radius : {params.patch.radius, params.estimated_patch.radius})
     require(radius >= 0 && radius <= 4, "the patch radius must be 0 to 4 pixels");
   require(params.max_order >= 0 && params.max_order <= BasisLayout::max_order, "the order must be 0 to 4");
+  require(params.outliers.neighbourhood >= 1 && params.outliers.neighbourhood <= 10,
+          "the neighbourhood of an outlier must be 1 to 10 pixels");
+  require(params.outliers.density_radius >= 1, "the radius within which outliers are counted must be positive");
   require(params.temporal.radius >= 0 && params.temporal.radius <= 8, "the frame radius must be 0 to 8 frames");
   require(!params.first_bandwidths.empty() && !params.later_bandwidths.empty(), "each stage needs a bandwidth");
   for (const auto* bandwidths : {&params.first_bandwidths, &params.later_bandwidths, &params.guided_bandwidths}) {

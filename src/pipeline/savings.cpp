@@ -11,11 +11,11 @@
 namespace polyrecon {
 namespace {
 
-// One more feature channel makes the polynomials dearer by about this part: without normal, albedo (3 channels each)
-// and depth (1) a run takes 0.83, 0.80 and 0.91 of the time (docs/results/accuracy.md).
+// Part of the time of the fits that one feature channel takes. Without all 8 of them a run takes 0.63 of the time ("all
+// features" in docs/results/accuracy.md).
 constexpr double seconds_per_channel = 0.05;
 
-/// Seconds that one thread takes to clean one channel of one pixel.
+/// Seconds that the prefilter takes for one channel of one pixel.
 double prefilter_seconds(const Frame& frame, const PrefilterParams& prefilter_params) {
   const Rect block = intersect({0, 0, 128, 32}, frame.beauty.mean.bounds());
   const Image part = crop(frame.beauty.mean, block);
@@ -29,9 +29,8 @@ double prefilter_seconds(const Frame& frame, const PrefilterParams& prefilter_pa
 
 Decision decide_on_pixels(double skipped, const Params& params) {
   const std::string step = "noise-free pixels skipped";
-  if (skipped == 0)
-    return {step, false, params.steps.decide ? "every pixel carries noise" : "all pixels are asked for"};
-  const char* why = params.enough > 0 ? "carries little noise or none" : "carries no noise";
+  if (skipped == 0) return {step, false, params.steps.decide ? "every pixel has noise" : "all pixels are requested"};
+  const char* why = params.enough > 0 ? "has little noise or none" : "has no noise";
   return {step, true, fmt::format("{:.1f} % of the frame {}", 100 * skipped, why), Spared::Pixels};
 }
 

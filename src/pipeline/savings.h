@@ -8,12 +8,14 @@
 
 namespace polyrecon {
 
-/// Whether pixels without noise (or with too little to matter) are left alone, and how much of the frame they are.
+/// The decision whether pixels without noise, or with not more than Params::enough, are skipped. skipped: their share
+/// of the frame, 0..1.
 Decision decide_on_pixels(double skipped, const Params& params);
 
-/// Fills Decision::saved_seconds, about: what the polynomials would have taken on the pixels and features left out, by
-/// what they took on the others, and what cleaning clean passes would have taken, by a block of the frame that is
-/// cleaned here and timed (a few milliseconds). skipped: share of the frame; polynomials: seconds.
+/// Estimates Decision::saved_seconds: the time that fits would have taken for skipped pixels and unused features, from
+/// the time of the fits that were made, and that the prefilter would have taken for features without noise, from the
+/// time for a block of the frame, which is filtered here (a few milliseconds). skipped: share of the frame.
+/// polynomials: seconds that the fits took.
 void estimate_savings(const Frame& frame, const PrefilterParams& prefilter_params, double skipped, double polynomials,
                       std::vector<Decision>& decisions);
 

@@ -14,9 +14,9 @@
 namespace polyrecon {
 namespace {
 
-constexpr double residual_sigma = 1;  // pixels over which the squared difference of a stage's halves is averaged
+constexpr double residual_sigma = 1;  // pixels; Gaussian that averages the squared difference of a stage's halves
 
-/// Whether some channel of the beauty carries more noise than is left alone (Params::enough).
+/// Whether the noise of some channel of the beauty is above Params::enough.
 bool noise_matters(const HalfPair& pair, std::size_t i, Real enough) {
   for (int c = 0; c < 3; ++c) {
     const Real mean = Real(0.5) * (pair.color[0].plane(c)[i] + pair.color[1].plane(c)[i]);
@@ -25,7 +25,7 @@ bool noise_matters(const HalfPair& pair, std::size_t i, Real enough) {
   return false;
 }
 
-/// Pixels that carry noise: where the halves are equal and no variance is known there is nothing to do.
+/// Marks the pixels that have noise and so are fitted. A pixel has none if its halves are equal and its variance is 0.
 std::vector<unsigned char> noisy_pixels(const HalfPair& pair, const Params& params) {
   std::vector<unsigned char> noisy(pair.variance.pixels(), params.steps.decide ? 0 : 1);
   for (int c = 0; c < pair.color[0].channels(); ++c) {
@@ -39,13 +39,14 @@ std::vector<unsigned char> noisy_pixels(const HalfPair& pair, const Params& para
   return noisy;
 }
 
-/// Colours that the weights of a window are measured on, and their noise.
+/// Colours in which patches are compared for the weights of a window.
 struct Guide {
-  std::array<const Image*, 2> color;  ///< For the fit of half h: color[h].
-  const Image* variance;
+  std::array<const Image*, 2> color;  ///< color[h] is for the fit of half h.
+  const Image* variance;              ///< Noise variance of the colours.
 };
 
-/// Every bandwidth of one guide as a candidate. Half h is fitted with weights and features of the other half.
+/// Adds a candidate for every bandwidth. With cross_filter, half h is fitted with the features and the guess of the
+/// other half.
 void add_candidates(const HalfPair& pair, const Guide& guide, const Candidate* before,
                     const std::vector<unsigned char>& noisy, const FitParams& fit, bool cross_filter,
                     FitCounters& counters, Progress& progress, std::vector<Candidate>& candidates) {
@@ -73,18 +74,19 @@ void add_candidates(const HalfPair& pair, const Guide& guide, const Candidate* b
                           mean(std::move(fits[0][k].order), fits[1][k].order)});
 }
 
-/// The noisy halves themselves: what a pixel keeps where no fit does better. They have no bias.
-Candidate take_as_it_is(const HalfPair& pair) {
+/// The noisy halves as a candidate without bias, which a pixel keeps where no fit is better.
+Candidate unfitted(const HalfPair& pair) {
   Image noise = pair.variance;
   for (int c = 0; c < 3; ++c)
-    for (std::size_t i = 0; i < noise.pixels(); ++i) noise.plane(c)[i] *= Real(0.5);  // of the mean of the halves
+    for (std::size_t i = 0; i < noise.pixels(); ++i)
+      noise.plane(c)[i] *= Real(0.5);  // the variance of the mean of the halves
   return {{pair.color[0], pair.color[1]},
           Image(pair.width(), pair.height(), 3),
           std::move(noise),
           Image(pair.width(), pair.height(), 1)};
 }
 
-/// Noise left in a stage's result, from the difference of its halves.
+/// Noise variance of the halves of a stage's result, from their difference.
 Image residual_variance(const Candidate& candidate) {
   Image out(candidate.half[0].width(), candidate.half[0].height(), 3);
   for (int c = 0; c < 3; ++c)
@@ -114,7 +116,7 @@ Candidate stage_of_tile(const HalfPair& pair, const Candidate* before, const Par
   } else {
     brightness = mean_of_halves(candidates.back().half, 3);
   }
-  candidates.push_back(take_as_it_is(pair));
+  candidates.push_back(unfitted(pair));
   return select(pair, brightness, candidates, params.selection);
 }
 
@@ -141,8 +143,7 @@ double skipped_share(const HalfPair& pair, const Params& params) {
 }
 
 int stage_halo(const Params& params) {
-  // The guide's noise is final its blur inside a tile, every candidate fit_halo further in, the choice select_halo
-  // more.
+  // Halo = radius of the blur of residual_variance + fit_halo + select_halo.
   const int fits = std::max(fit_halo(first_fit_params(params)), fit_halo(fit_params(params, params.later_bandwidths)));
   return gaussian_radius(residual_sigma) + fits + select_halo(params.selection);
 }

@@ -64,12 +64,12 @@ TEST_F(SettingsChosen, StepsRunAsRequested) {
   const json only = report_of({"--steps", "albedo,fireflies"});
   EXPECT_TRUE(decision(only, "feature albedo")["run"]);
   EXPECT_FALSE(decision(only, "feature depth")["run"]);
-  EXPECT_EQ(decision(only, "feature depth")["reason"], "not asked for");
+  EXPECT_EQ(decision(only, "feature depth")["reason"], "not requested");
   EXPECT_NE(only["settings"].get<std::string>().find("--stages 1"), std::string::npos) << only["settings"];
   const json all = report_of({"--steps", "all"});
   EXPECT_TRUE(decision(all, "feature depth")["run"]);
   EXPECT_FALSE(decision(all, "noise-free pixels skipped")["run"]);
-  EXPECT_EQ(decision(report_of({"--steps", "depth"}), "firefly removal")["reason"], "not asked for");
+  EXPECT_EQ(decision(report_of({"--steps", "depth"}), "firefly removal")["reason"], "not requested");
 }
 
 }  // namespace

@@ -557,7 +557,7 @@ TEST(Case26, EnergyOfAnySpikesComesBack) {
         }
     }
     const Image before = test::mean_of(pair.color[0], pair.color[1]);
-    const auto outliers = remove_outliers(pair, true, OutlierParams{}, silent_progress());
+    const auto outliers = remove_outliers(pair, {true, true}, OutlierParams{}, silent_progress());
     Image after = test::mean_of(pair.color[0], pair.color[1]);
     restore_energy(outliers, pair.variance, 0.02, after);
     EXPECT_TRUE(test::all_finite(after));

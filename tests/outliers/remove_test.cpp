@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/color_layout.h"
 #include "support/images.h"
 #include "support/random.h"
 #include "support/scene.h"
@@ -21,13 +22,13 @@ HalfPair noise_free_pair() {
 
 /// A firefly: 50 times too bright in one half, with the variance that its samples have.
 void put_spike(HalfPair& pair, std::size_t half, int x, int y, double value = 50) {
-  for (int c = 0; c < pair.color[half].channels() / 3 * 3; ++c)
+  for (int c = 0; c < ColorLayout(pair.color[half].channels()).layer_channels(); ++c)
     pair.color[half].at(x, y, c) = static_cast<Real>(c < 3 ? value : value / 2);
   for (int c = 0; c < 3; ++c) pair.variance.at(x, y, c) = static_cast<Real>(value * value / 2);
 }
 
 std::vector<Outlier> removed(HalfPair& pair, bool independent = true) {
-  return remove_outliers(pair, independent, OutlierParams{}, silent_progress());
+  return remove_outliers(pair, {independent, true}, OutlierParams{}, silent_progress());
 }
 
 /// Everything that was taken stands in the list: sum before = sum after + 2 x energy (energy is of the mean of the

@@ -64,7 +64,7 @@ TEST(Steps, EachDecisionHasAReasonAndWhatItSaves) {
   const Decision& sky = decision(decided.report, "noise-free pixels skipped");
   EXPECT_TRUE(sky.run);
   // 32 of 64 rows, less the two that the floor of the variance reaches into (noise/variance_floor.h).
-  EXPECT_EQ(sky.reason, "46.9 % of the frame carries no noise");
+  EXPECT_EQ(sky.reason, "46.9 % of the frame has no noise");
   const auto& stages = decided.report.stages;
   const auto fits =
       std::find_if(stages.begin(), stages.end(), [](const StageTime& s) { return s.stage == "polynomials"; });
@@ -98,7 +98,7 @@ TEST(Steps, WhatIsNotAllowedDoesNotRun) {
   const Report report = reconstruct(frame, params, silent_progress()).report;
   for (const char* step : {"firefly removal", "feature normal", "feature albedo prefilter"}) {
     EXPECT_FALSE(decision(report, step).run) << step;
-    EXPECT_EQ(decision(report, step).reason, "not asked for") << step;
+    EXPECT_EQ(decision(report, step).reason, "not requested") << step;
   }
 }
 

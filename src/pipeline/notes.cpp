@@ -1,0 +1,70 @@
+#include "pipeline/notes.h"
+
+#include <array>
+#include <string>
+
+#include "outliers/restore.h"
+
+namespace polyrecon {
+namespace {
+
+/// Mean of each channel of the beauty.
+std::array<double, 3> energy_of(const Image& beauty) {
+  const std::vector<double> sums = channel_sums(beauty);
+  const auto pixels = static_cast<double>(beauty.pixels());
+  return {sums[0] / pixels, sums[1] / pixels, sums[2] / pixels};
+}
+
+}  // namespace
+
+void note_input(const Frame& frame, Report& report) {
+  report.width = frame.width();
+  report.height = frame.height();
+  report.energy_before = energy_of(frame.beauty.mean);
+}
+
+void note_preparation(const NoiseVariance& noise, const Preparation& preparation, const Prepared& prepared,
+                      Report& report) {
+  report.variance_source = noise.source;
+  report.decisions = preparation.decisions;
+  report.repaired_pixels = prepared.repaired_pixels;
+  report.negative_pixels = prepared.negative_pixels;
+}
+
+void note_outliers(const std::vector<Outlier>& outliers, const Steps& steps, Report& report) {
+  if (!steps.fireflies) {
+    report.decisions.push_back({"firefly removal", false, "not requested"});
+    return;
+  }
+  report.outliers = outliers.size();
+  for (const Outlier& outlier : outliers)
+    for (std::size_t c = 0; c < 3; ++c) report.outlier_energy[c] += outlier.energy[c];
+  report.decisions.push_back(
+      {"firefly removal", !outliers.empty(),
+       outliers.empty() ? "no pixel stands out alone" : std::to_string(outliers.size()) + " pixels stand out alone"});
+}
+
+void note_neighbours(const JoinCounts& counts, bool with_motion, Report& report) {
+  report.neighbours = counts.neighbours;
+  report.neighbour_weight = counts.weight;
+  report.decisions.push_back(
+      {"neighbours in time", counts.neighbours > 0,
+       counts.neighbours == 0 ? "none of this size"
+                              : std::to_string(counts.neighbours) + (with_motion ? " frames, along the motion vectors"
+                                                                                 : " frames, no motion vectors")});
+}
+
+void note_fits(const FitCounters& counters, Report& report) {
+  report.windows = counters.windows;
+  for (std::size_t m = 0; m < report.windows_per_order.size(); ++m) report.windows_per_order[m] = counters.per_model[m];
+  report.rank_deficient_windows = counters.rank_deficient;
+  report.dropped_windows = counters.dropped;
+  report.pixels_fallen_back_to_input = counters.uncovered_pixels;
+}
+
+void note_result(Result& result) {
+  result.report.energy_after = energy_of(result.beauty);
+  result.report.estimated_relative_mse = result.error.mean_relative_mse;
+}
+
+}  // namespace polyrecon
