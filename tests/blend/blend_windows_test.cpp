@@ -67,8 +67,8 @@ FitParams small_windows() {
   return params;
 }
 
-/// The whole of equations (2) to (9) in double precision for one centre after the other: distances by their definition,
-/// Gram and Schmidt for the nested columns, explicit error estimates, and the sums of equation (3).
+/// Equations (2) to (9) in double precision for one centre after the other: distances by their definition, Gram-Schmidt
+/// orthogonalisation of the nested columns, explicit error estimates, and the sums of equation (3).
 class Reference {
  public:
   Reference(const Pictures& pictures, const FitParams& params, double bandwidth, bool first_stage)
@@ -147,7 +147,7 @@ class Reference {
     for (Eigen::Index j = 0; j < n; ++j)
       x.row(j) = columns_at(cx, cy, px[static_cast<std::size_t>(j)], py[static_cast<std::size_t>(j)]).transpose();
     const MatrixXd q = test::penalised(x, w, {}, 2).q;
-    // Factors: columns of the beauty's three channels together.
+    // Factors of the columns, common to the three channels of the beauty.
     const MatrixXd wq = w.asDiagonal() * q;
     VectorXd energy = VectorXd::Zero(q.cols()), noise = energy, g = energy;
     for (int c = 0; c < 3; ++c) {
@@ -158,7 +158,8 @@ class Reference {
       noise += s2;
     }
     for (Eigen::Index a = 0, end; a < q.cols(); a = end) {
-      // The constant and the features alone, then the Taylor terms of orders 1, 2, ... together: from 3, 5, 8, ... on.
+      // The constant and the features have a factor each, the Taylor terms of orders 1, 2, ..., from 3, 5, 8, ... on,
+      // one per order.
       end = a < 3 ? a + 1 : a == 3 ? 5 : a == 5 ? 8 : q.cols();
       const double e = energy.segment(a, end - a).sum(), v = noise.segment(a, end - a).sum();
       g.segment(a, end - a).setConstant(e > 0 ? e / (e + v) : 0);
@@ -173,21 +174,21 @@ class Reference {
     for (int model = 0; model <= params_.max_order + 1; ++model) {
       const int columns = model == 0 ? 1 : 3 + BasisLayout::taylor_terms(model - 1);
       const MatrixXd h = q.leftCols(columns) * g.head(columns).asDiagonal() * wq.leftCols(columns).transpose();
-      VectorXd error(3), told(3), variance(3);
+      VectorXd error(3), reported(3), variance(3);
       for (int c = 0; c < 3; ++c) {
         const VectorXd y = value(p_.response, c), m = first_ ? y : value(p_.guess, c), v = value(p_.variance, c);
         const auto bias_product = [&](const MatrixXd& projection, const VectorXd& other) {
           return w.dot((projection * m - m).cwiseProduct(projection * other - other));
         };
         variance(c) = w.dot(h.cwiseAbs2() * v);
-        // By y and the guess in the columns, by the guess alone outside of them.
+        // From y and the guess in the columns, from the guess outside of them.
         error(c) = bias_product(h, y) - bias_product(whole, y) + bias_product(whole, m) + variance(c);
         if (first_) error(c) -= w.dot((h - MatrixXd::Identity(n, n)).cwiseAbs2() * v);
-        told(c) = first_ ? error(c) : 0.9 * error(c) + 0.1 * (bias_product(h, m) + variance(c));
+        reported(c) = first_ ? error(c) : 0.9 * error(c) + 0.1 * (bias_product(h, m) + variance(c));
       }
       if (error.sum() < least - 1e-9) {
         least = error.sum();
-        best_error = told;
+        best_error = reported;
         best_variance = variance;
         best_h = h;
         best_order = std::max(model - 1, 0);
@@ -259,8 +260,7 @@ TEST(FitAndBlend, EndlessCoverageMakesEveryPixelACentre) {
   }
 }
 
-/// A flat guide gives all pixels of a window weight 1; the noise the fit is told of is too small to shrink anything by
-/// 1e-6.
+/// A flat guide gives all pixels of a window weight 1. The noise variance is so small that shrinkage is below 1e-6.
 TEST(Case21, APolynomialOfItsDegreeIsReturned) {
   for (int degree = 0; degree <= 4; ++degree) {
     Pictures p = make_pictures(24, 20, 3);
@@ -295,7 +295,7 @@ TEST(FitAndBlend, PixelsThatDoNotMatterKeepTheResponse) {
   const auto fits = fit_and_blend(p.source(true), active, params, counters, silent_progress());
   EXPECT_NE(fits[0].value.at(5, 10, 0), p.response.at(5, 10, 0));
   EXPECT_EQ(fits[0].value.at(5, 10, 0), fit(p, params)[0].value.at(5, 10, 0));
-  // No window further than 3 pixels from the active one is fitted; none reaches 3 pixels further than that.
+  // No centre is more than 3 pixels from the active pixel, and no window extends more than 3 pixels from its centre.
   for (int x = 12; x < 60; ++x) EXPECT_EQ(fits[0].value.at(x, 10, 0), p.response.at(x, 10, 0)) << x;
   EXPECT_LE(counters.windows.load(), 2u * 16u);  // both bandwidths, 4 x 4 centres of the even lattice at most
 }

@@ -13,7 +13,7 @@ using test::image_of;
 
 double at(const Image& image, int x, int y, int c) { return static_cast<double>(image.at(x, y, c)); }
 
-TEST(NoiseReach, IsFiveStandardDeviationsWhereNoiseIsAlikeAllOver) {
+TEST(NoiseBound, IsFiveStandardDeviationsWhereNoiseIsAlikeAllOver) {
   const Image bound = noise_bound(Image(20, 15, 3, Real(0.04)));
   for (const auto& [x, y] : {std::pair{10, 7}, std::pair{0, 0}, std::pair{19, 14}})
     EXPECT_NEAR(at(bound, x, y, 1), 1, 1e-5);
@@ -21,22 +21,22 @@ TEST(NoiseReach, IsFiveStandardDeviationsWhereNoiseIsAlikeAllOver) {
   EXPECT_NEAR(at(noise_bound(Image(1, 1, 3, Real(0.04))), 0, 0, 2), 1, 1e-6);
 }
 
-/// Noise ends at an edge: up to it the quiet side counts, beyond it each pixel's own.
-TEST(NoiseReach, BesideNoiseIsThatOfTheQuietSide) {
+/// Noise ends at an edge: pixels of the side with little noise have its bound, the others the bound of their own noise.
+TEST(NoiseBound, NextToNoiseItIsThatOfTheLessNoisySide) {
   const Image bound = noise_bound(image_of(40, 20, 3, [](int x, int, int) { return x < 20 ? 1e-6 : 1; }));
   EXPECT_NEAR(at(bound, 19, 10, 0), 0.005, 1e-5);
   EXPECT_NEAR(at(bound, 20, 10, 0), 5, 1e-5);
 }
 
-/// A pixel that no spike has met yet, among others that some have, may be as wrong as they.
-TEST(NoiseReach, AmongSpikesIsTheirs) {
+/// A pixel without a spike among pixels of which some have one may be as wrong as these.
+TEST(NoiseBound, AmongSpikesIsTheirs) {
   test::Random random(3);
   const Image bound = noise_bound(image_of(60, 60, 3, [&](int, int, int) { return random.uniform() < 0.2 ? 1 : 0; }));
   for (int y = 0; y < 60; ++y)
     for (int x = 0; x < 60; ++x) EXPECT_GT(at(bound, x, y, 0), 0.1);
 }
 
-TEST(NoiseReach, TurnsWithTheImage) {
+TEST(NoiseBound, TurnsWithTheImage) {
   test::Random random(4);
   const Image variance = image_of(23, 17, 3, [&](int, int, int) { return random.uniform(); });
   const auto transposed = [](const Image& image) {
@@ -63,14 +63,14 @@ Case make_case() {
   return out;
 }
 
-TEST(BindToNoise, LeavesWhatIsWithinReach) {
+TEST(BindToNoise, KeepsPixelsWithinTheBound) {
   Case c = make_case();
   const Candidate before = c.result;
   EXPECT_EQ(bind_to_noise(c.pair, Image(8, 6, 3, Real(0.51)), 10, c.result).pixels, 0u);
   for (std::size_t h = 0; h < 2; ++h) EXPECT_TRUE(test::same_bits(c.result.half[h], before.half[h]));
 }
 
-TEST(BindToNoise, BringsTheMeanToTheEndOfTheReach) {
+TEST(BindToNoise, MovesTheMeanToTheBound) {
   Case c = make_case();
   Image bound(8, 6, 3, Real(1));
   bound.at(3, 2, 1) = Real(0.25);  // half of the distance, in green
@@ -96,7 +96,7 @@ TEST(BindToNoise, WithoutNoiseTheInputStays) {
 
 TEST(BindToNoise, LosesNoMoreThanItMay) {
   Case c = make_case();
-  const BoundEnergy lost = bind_to_noise(c.pair, Image(8, 6, 3), 0.1, c.result);  // the distance is half of the light
+  const BoundEnergy lost = bind_to_noise(c.pair, Image(8, 6, 3), 0.1, c.result);  // the distance is half of the energy
   EXPECT_NEAR(lost.energy[0], 0.1 * 48, 1e-4);
   EXPECT_NEAR((at(c.result.half[0], 1, 1, 0) + at(c.result.half[1], 1, 1, 0)) / 2, 1.4, 1e-6);
 }

@@ -35,7 +35,8 @@ TEST(Select, TakesTheClearlyBetterCandidateInEachHalfOfTheImage) {
   const Image bad_left = off(true), bad_right = off(false);
   const Candidate out =
       select(pair, truth, {candidate_of(bad_left, bad_left, 1), candidate_of(bad_right, bad_right, 3)}, SelectParams{});
-  // Risk is averaged over 4 pixels and shares over 1.5: away from the seam by both reaches the choice is all one.
+  // Risks are averaged over 4 pixels and shares over 1.5: outside of the radius of both around the seam, one candidate
+  // has the whole share.
   const int margin = gaussian_radius(4) + gaussian_radius(1.5);
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x) {
@@ -160,15 +161,15 @@ TEST(Select, RiskAndSharesOfThreePixelsByHand) {
   }
 }
 
-/// One correction is as good as the result itself, so that shares hang on the last digits of the risks.
+/// One correction is as good as the result itself, so that shares depend on the last digits of the risks.
 TEST(SelectCorrection, TheTilesDoNotShow) {
   const Image truth =
       image_of(150, 130, 3, [](int x, int y, int c) { return 1 + 0.3 * std::sin(0.3 * x + 0.1 * c * y); });
   const HalfPair pair = test::pair_of(truth, 0.3, 11);
   const double sigma = 2;
-  const auto make = [&](const std::array<Image, 2>& own, const Rect&) {
-    const std::array<Image, 2> blurred{gaussian_blur(own[0], sigma), gaussian_blur(own[1], sigma)};
-    return std::vector<std::array<Image, 2>>{{test::times(own[0], 1.0001), test::times(own[1], 1.0001)}, blurred};
+  const auto make = [&](const std::array<Image, 2>& halves, const Rect&) {
+    const std::array<Image, 2> blurred{gaussian_blur(halves[0], sigma), gaussian_blur(halves[1], sigma)};
+    return std::vector<std::array<Image, 2>>{{test::times(halves[0], 1.0001), test::times(halves[1], 1.0001)}, blurred};
   };
   const Corrections corrections{2, gaussian_radius(sigma), make};
   const auto work = [&](std::size_t side) {

@@ -40,30 +40,30 @@ double squared_distance(const Image& a, const Image& b) {
 }
 
 TEST(SharpenTo, UndoesMostOfABlur) {
-  const Image truth = sharp_image(), own = with_noise(truth, 0.05, 1);
+  const Image truth = sharp_image(), ours = with_noise(truth, 0.05, 1);
   for (const double sigma : {0.5, 0.7, 1.0}) {
     const Image blurred = gaussian_blur(truth, sigma);
-    EXPECT_LT(squared_distance(sharpen_to(blurred, own, epsilon), truth), 0.4 * squared_distance(blurred, truth))
+    EXPECT_LT(squared_distance(sharpen_to(blurred, ours, epsilon), truth), 0.4 * squared_distance(blurred, truth))
         << sigma;
   }
 }
 
-TEST(SharpenTo, LeavesWhatIsAsSharpAsOwnOrSharper) {
+TEST(SharpenTo, KeepsAPriorThatIsSharpEnough) {
   const Image truth = sharp_image();
   EXPECT_TRUE(test::same_bits(sharpen_to(truth, gaussian_blur(truth, 0.7), epsilon), truth));
   const Image noisy = with_noise(truth, 0.1, 2);
   EXPECT_TRUE(test::same_bits(sharpen_to(noisy, truth, epsilon), noisy));
 }
 
-/// So that no rounding decides whether it begins.
+/// Rounding must not decide whether a prior is sharpened.
 TEST(SharpenTo, ASmallSlopeSharpensInProportion) {
   const Image truth = sharp_image(), prior = gaussian_blur(truth, 0.7);
-  const auto part_undone = [&](double t) {  // of what own is sharper by, squared
-    Image own = prior;
+  const auto part_undone = [&](double t) {  // of the squared difference in sharpness
+    Image ours = prior;
     for (int c = 0; c < 3; ++c)
-      for (std::size_t i = 0; i < own.pixels(); ++i)
-        own.plane(c)[i] += static_cast<Real>(t) * (truth.plane(c)[i] - prior.plane(c)[i]);
-    return squared_distance(sharpen_to(prior, own, epsilon), prior) / squared_distance(own, prior);
+      for (std::size_t i = 0; i < ours.pixels(); ++i)
+        ours.plane(c)[i] += static_cast<Real>(t) * (truth.plane(c)[i] - prior.plane(c)[i]);
+    return squared_distance(sharpen_to(prior, ours, epsilon), prior) / squared_distance(ours, prior);
   };
   EXPECT_GT(part_undone(1), 0.5);
   EXPECT_LT(part_undone(0.01), 0.2 * part_undone(1));
@@ -85,8 +85,8 @@ TEST(SharpenTo, AnEvenImageStays) {
 }
 
 TEST(SharpenTo, NothingBecomesNegative) {
-  const Image own = image_of(size, size, 3, [](int x, int y, int) { return (x / 8 + y / 8) % 2 ? 10.0 : 0.0; });
-  const Image sharp = sharpen_to(gaussian_blur(own, 1), own, epsilon);
+  const Image ours = image_of(size, size, 3, [](int x, int y, int) { return (x / 8 + y / 8) % 2 ? 10.0 : 0.0; });
+  const Image sharp = sharpen_to(gaussian_blur(ours, 1), ours, epsilon);
   for (int c = 0; c < 3; ++c)
     for (std::size_t i = 0; i < sharp.pixels(); ++i) EXPECT_GE(sharp.plane(c)[i], 0);
 }

@@ -52,7 +52,7 @@ TEST(RaiseUndershoot, LayersThatAddUpStillDo) {
   EXPECT_EQ(image.at(3, 3, 9), Real(0.5));
 }
 
-/// A layer that is no part of the beauty, an albedo say, is a thousand times brighter than a dark corner.
+/// A layer that is no part of the beauty, such as an albedo, may be a thousand times brighter than a dark corner.
 TEST(RaiseUndershoot, ALayerThatIsNoPartOfTheBeautyIsNotTornAlong) {
   const Image input = image_of(8, 8, 6, [](int, int, int c) { return c < 3 ? 0.001 : 1; });
   Image image = input;

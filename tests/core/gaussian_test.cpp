@@ -18,17 +18,18 @@ TEST(GaussianBlur, KeepsAConstantUpToTheBorder) {
 
 TEST(GaussianBlur, AnImpulseBecomesTheProductOfTwoNormalisedGaussians) {
   const double sigma = 1.5;
-  const int reach = gaussian_radius(sigma), size = 4 * reach + 1, middle = size / 2;  // no border in sight
-  EXPECT_EQ(reach, 5);                                                               // ceil(4.5)
+  // The image is large enough for the kernel not to touch the border.
+  const int radius = gaussian_radius(sigma), size = 4 * radius + 1, middle = size / 2;
+  EXPECT_EQ(radius, 5);  // ceil(4.5)
   Image impulse(size, size, 1);
   impulse.at(middle, middle, 0) = 1;
   const Image out = gaussian_blur(impulse, sigma);
   double norm = 0;
-  for (int k = -reach; k <= reach; ++k) norm += std::exp(-k * k / (2 * sigma * sigma));
+  for (int k = -radius; k <= radius; ++k) norm += std::exp(-k * k / (2 * sigma * sigma));
   for (int y = 0; y < size; ++y)
     for (int x = 0; x < size; ++x) {
       const int dx = x - middle, dy = y - middle;
-      const bool inside = std::abs(dx) <= reach && std::abs(dy) <= reach;
+      const bool inside = std::abs(dx) <= radius && std::abs(dy) <= radius;
       const double expected = inside ? std::exp(-(dx * dx + dy * dy) / (2 * sigma * sigma)) / (norm * norm) : 0;
       EXPECT_NEAR(static_cast<double>(out.at(x, y, 0)), expected, 1e-7) << dx << " " << dy;
     }

@@ -35,7 +35,7 @@ TEST(Image, CropTakesSomeChannels) {
   EXPECT_EQ(part.at(2, 1, 1), Real(233));
 }
 
-TEST(Image, CropOfAPassThatIsNotThereIsNotThere) { EXPECT_TRUE(crop(Image(), {0, 0, 3, 3}).empty()); }
+TEST(Image, CropOfAnEmptyImageIsEmpty) { EXPECT_TRUE(crop(Image(), {0, 0, 3, 3}).empty()); }
 
 TEST(Image, CropsPastedBackMakeTheImage) {
   const Image image = numbered(5, 4, 3);

@@ -12,7 +12,7 @@
 namespace polyrecon {
 namespace {
 
-TEST(ParallelFor, RunsEachIndexOnceAndTellsOfIt) {
+TEST(ParallelFor, RunsEachIndexOnceAndReportsIt) {
   struct Counting : Progress {
     std::atomic<std::size_t> steps{0};
     void advance(std::size_t n) override { steps += n; }
@@ -44,7 +44,7 @@ TEST(ParallelFor, PassesABodysExceptionOn) {
 }
 
 TEST(OrderedSum, HasTheSameBitsForAnyNumberOfThreads) {
-  // Terms of very different size and sign: any other order of the sum shows in its last bits.
+  // The terms differ so much in size and sign that any other order changes the last bits of the sum.
   const auto term = [](std::size_t i) {
     return std::sin(static_cast<double>(i)) * std::pow(10.0, static_cast<double>(i % 17));
   };

@@ -28,9 +28,9 @@ TEST(HasUsablePixel, AsksForAllChannelsOfOnePixel) {
   EXPECT_FALSE(has_usable_pixel(Image()));
 }
 
-TEST(Mend, GivesAHoleTheMeanOfItsGoodNeighbours) {
-  // 3 x 3 of 3 y + x without its middle: the mean of the other eight is 36 - 4 over 8 = 4. All channels of a bad pixel
-  // go.
+TEST(RepairNonfinite, GivesAHoleTheMeanOfItsGoodNeighbours) {
+  // 3 x 3 of 3 y + x without its middle: the mean of the other eight is (36 - 4) / 8 = 4. All channels of a bad pixel
+  // are replaced.
   Image image = test::image_of(3, 3, 2, [](int x, int y, int c) { return 3 * y + x + 10 * c; });
   image.at(1, 1, 0) = nan;
   EXPECT_EQ(repair_nonfinite(image, 1), 1u);
@@ -38,8 +38,8 @@ TEST(Mend, GivesAHoleTheMeanOfItsGoodNeighbours) {
   EXPECT_EQ(image.at(1, 1, 1), Real(14));
 }
 
-TEST(Mend, GrowsInwardsRingByRingAndStopsAtItsReach) {
-  // A row 6 | hole of 5: ring 1 mends one pixel from each side, ring 2 the next, the middle is out of reach of 2.
+TEST(RepairNonfinite, GrowsInwardsRingByRingAndStopsAtItsDepth) {
+  // A row of 6, a hole of 5 pixels, 2: each of two rings repairs one pixel at both ends, so the middle one becomes 0.
   Image row(7, 1, 1, nan);
   row.at(0, 0, 0) = 6;
   row.at(6, 0, 0) = 2;
@@ -48,13 +48,13 @@ TEST(Mend, GrowsInwardsRingByRingAndStopsAtItsReach) {
   for (int x = 0; x < 7; ++x) EXPECT_EQ(static_cast<double>(row.at(x, 0, 0)), expected[x]) << x;
 }
 
-TEST(Mend, AnImageWithoutAGoodPixelBecomesBlack) {
+TEST(RepairNonfinite, AnImageWithoutAGoodPixelBecomesBlack) {
   Image image(4, 3, 3, infinity);
   EXPECT_EQ(repair_nonfinite(image, 8), 12u);
   EXPECT_EQ(test::max_magnitude(image), 0);
 }
 
-TEST(Mend, LeavesAGoodImageAlone) {
+TEST(RepairNonfinite, KeepsAGoodImage) {
   Image image = test::image_of(4, 3, 1, [](int x, int y, int) { return x - y; });
   const Image before = image;
   EXPECT_EQ(repair_nonfinite(image, 8), 0u);

@@ -26,7 +26,7 @@ TEST(MakeTiles, CoverEachPixelOnceWithAlignedPaddingOfAtLeastTheHalo) {
       ASSERT_FALSE(tile.core.empty());
       EXPECT_EQ(tile.padded.x0 % k.alignment, 0);
       EXPECT_EQ(tile.padded.y0 % k.alignment, 0);
-      // The halo is there on every side, or the image ends.
+      // The padded area extends by the halo on every side, or to the border of the image.
       EXPECT_EQ(intersect(grow(tile.core, k.halo), bounds),
                 intersect(intersect(grow(tile.core, k.halo), bounds), tile.padded));
       EXPECT_EQ(intersect(tile.padded, bounds), tile.padded);

@@ -28,12 +28,13 @@ double mean_half(const Candidate& result, int x, int y, int c) {
   return 0.5 * (static_cast<double>(result.half[0].at(x, y, c)) + static_cast<double>(result.half[1].at(x, y, c)));
 }
 
-/// Each pixel, relative: min(bias^2 + (f_A - f_B)^2 / 4, noise), the latter two averaged over 2 pixels.
+/// The error of each pixel is min(bias^2 + (f_A - f_B)^2 / 4, noise), relative, with the latter two averaged over 2
+/// pixels.
 TEST(ErrorMap, IsBiasOfTheWindowsAndVarianceOfTheHalvesBelowTheNoise) {
   const Image truth = textured(24, 20);
   const HalfPair pair = test::pair_of(truth, 0.6, 5);
   Image claims(24, 20, 3, Real(0.01));
-  for (int c = 0; c < 3; ++c) claims.at(7, 9, c) = 50;  // a window that saw a firefly
+  for (int c = 0; c < 3; ++c) claims.at(7, 9, c) = 50;  // a window contaminated by a firefly
   const Candidate result = candidate_of(gaussian_blur(pair.color[0], 1), gaussian_blur(pair.color[1], 1), claims);
   const ErrorMap map = make_error_map(pair, times_half(pair.variance), result);
   const auto energy = [&](int x, int y, int c) {

@@ -65,8 +65,8 @@ TEST(SampleMap, TwoPixelsAreFilledAsWorkedOutByHand) {
   EXPECT_NEAR(large.error_after, (4 * std::pow(4. / 12, 0.75) + 1 * std::pow(4. / 6, 0.75)) / 2, 1e-6);
 }
 
-/// The report's greedy, taken literally: quantum by quantum to the pixel that lowers the total error of all windows
-/// most per cost. Windows are explicit here: K_ij of every pair of pixels, normalised over the i inside the image.
+/// The greedy algorithm of the report: each quantum goes to the pixel that lowers the total error of all windows most
+/// for its cost. Windows are explicit: K_ij of every pair of pixels, normalised over the i inside the image.
 std::vector<double> greedy(const ErrorMap& error, const std::vector<double>& n, const std::vector<double>& cost,
                            double budget, double quantum, int radius) {
   const int w = error.relative_mse.width(), h = error.relative_mse.height();
@@ -114,7 +114,7 @@ TEST(SampleMap, IsTheEndOfAddingSamplesGreedily) {
     }
     const std::vector<double> expected = greedy(error, n, cost, 6, quantum, radius);
     const SampleMap map = run(error, budget_of(6, radius), counts);
-    // Greedy places whole quanta: it may be off by one per pixel, and by one more where the last ones fell.
+    // The greedy algorithm places whole quanta, so it may differ by one per pixel, and by one more for the last ones.
     for (std::size_t i = 0; i < n.size(); ++i)
       EXPECT_NEAR(map.samples.plane(0)[i], expected[i], 2.5 * quantum) << "radius " << radius << ", pixel " << i;
   }
@@ -131,13 +131,13 @@ TEST(SampleMap, CountsSecondsWhereTheCostIsKnown) {
   const std::vector<double> expected = greedy(error, {4, 4}, {1, 4}, 8, quantum, 0);
   EXPECT_NEAR(map.samples.at(0, 0, 0), expected[0], 5 * quantum);
   EXPECT_NEAR(map.samples.at(1, 0, 0), expected[1], 5 * quantum);
-  // As many seconds as 8 samples of average cost in both pixels.
+  // The total cost is that of 8 samples of mean cost in both pixels.
   EXPECT_NEAR(1 * map.samples.at(0, 0, 0) + 4 * map.samples.at(1, 0, 0), 8 * 5, 1e-4);
   EXPECT_GT(map.samples.at(0, 0, 0), map.samples.at(1, 0, 0));
 }
 
 TEST(SampleMap, GoesByTheGeometricMeanOfErrorAndNoise) {
-  // Radius 0, n = 4. sqrt(v u) = (2, 2) whatever v alone says; where the noise is unknown, v decides.
+  // Radius 0, n = 4. sqrt(v u) = (2, 2) although v differs; where the noise is unknown, v decides.
   ErrorMap error = error_map(2, 1, {4, 1});
   error.relative_noise = Image(2, 1, 1);
   error.relative_noise.at(0, 0, 0) = 1;
@@ -147,7 +147,7 @@ TEST(SampleMap, GoesByTheGeometricMeanOfErrorAndNoise) {
   EXPECT_NEAR(both.samples.at(1, 0, 0), 5, 1e-5);
   EXPECT_NEAR(both.error_before, 2.5, 1e-6);  // whatever the weights are
   EXPECT_NEAR(both.error_after, 2.5 * std::pow(4. / 9, 0.75), 1e-5);
-  error.relative_noise = Image(2, 1, 1);  // zero: nothing to go by
+  error.relative_noise = Image(2, 1, 1);  // zero, so it is not used
   EXPECT_NEAR(run(error, budget_of(5, 0), filled(2, 1, 4)).samples.at(0, 0, 0), 8, 1e-5);
 }
 
@@ -172,12 +172,12 @@ TEST(SampleMap, ReachesTheTargetWithNoMoreThanItNeeds) {
   const SampleMap map = run(error, params);
   EXPECT_TRUE(map.limit_met);
   EXPECT_NEAR(map.error_after, params.target, 1e-9 * params.target);
-  // The same samples given as a budget reach the same error: both stand on one curve.
+  // The same samples given as a budget reach the same error.
   const SampleMap again = run(error, budget_of(map.total / (40 * 30)));
   EXPECT_NEAR(again.error_after, params.target, 1e-6 * params.target);
 }
 
-TEST(SampleMap, ATargetAlreadyReachedAsksForNothing) {
+TEST(SampleMap, ATargetAlreadyReachedNeedsNoSamples) {
   SampleMapParams params;
   params.target = 1;
   const SampleMap map = run(error_map(3, 3, std::vector<double>(9, 0.5)), params);
@@ -192,14 +192,14 @@ TEST(SampleMap, TheBiasFallsAsTheVarianceDoes) {
   EXPECT_NEAR(map.error_after, 0.4 * std::pow(0.25, 0.75), 1e-6);
 }
 
-TEST(SampleMap, ATargetBeyondTheMostSamplesIsSaidToBeOutOfReach) {
+TEST(SampleMap, ATargetBeyondTheMostSamplesIsReportedAsNotMet) {
   SampleMapParams params;
   params.target = 0.1;
   params.max_samples = 50;
   const SampleMap map = run(error_map(3, 3, std::vector<double>(9, 0.5), 0.2), params);
   EXPECT_FALSE(map.limit_met);
   EXPECT_NEAR(map.error_after, 0.7 * std::pow(8. / 58, 0.75), 1e-6);
-  EXPECT_EQ(map.max, 50);  // still capped: a loop goes on with a finite pass
+  EXPECT_EQ(map.max, 50);  // still limited, so that a loop continues with a finite pass
 }
 
 TEST(SampleMap, GrowsWithTheVarianceAndWithTheBudget) {

@@ -11,7 +11,7 @@ using test::image_of;
 
 constexpr int size = 40;
 
-/// Half the square of 7 above 1, less what rounding of both to half floats may add.
+/// Half of the square of the excess of 8 over 1, less what rounding of both to half floats may contribute.
 constexpr double of_six = 0.5 * (6 - 0x1p-11 * 8) * (6 - 0x1p-11 * 8);
 
 /// Background 1 and spikes of the given height at every `step`-th pixel of both directions.

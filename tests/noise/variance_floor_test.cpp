@@ -46,12 +46,12 @@ TEST(FloorVariance, TransposesWithTheImage) {
   EXPECT_LT(test::max_difference(floor_variance(transposed(variance)), transposed(floor_variance(variance))), 1e-6);
 }
 
-/// The median of medians stands for the median: over noise of any kind their means agree to a few percent.
+/// The median of medians is used in place of the median: over noise of any kind their means agree to a few percent.
 TEST(FloorVariance, IsAboutTheMedianOfTheNeighbourhood) {
   test::Random random(2);
   const Image variance = test::image_of(64, 64, 1, [&](int, int, int) { return std::exp(random.normal()); });
-  // Where the pixel itself is 0 the floor shows: take it out, one at a time, on a lattice whose neighbourhoods do not
-  // touch.
+  // The floor is the result where the pixel itself is 0. Pixels are set to 0 on a lattice whose neighbourhoods do not
+  // overlap.
   Image holes = variance;
   double expected = 0, found = 0;
   for (int y = 2; y < 62; y += 5)

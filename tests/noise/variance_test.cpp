@@ -60,8 +60,8 @@ TEST(NoiseVariance, FromTheHalvesOfUniformNoiseIsUnbiased) {
 }
 
 /// Uniform noise on a plane: the residual variance of each fit is chi^2 of 46 degrees of freedom over 46 (49 pixels,
-/// constant and plane; a median of those lies 1 - 2/(9 x 46), cubed, = 1.4 % below 1), and neighbouring votes share
-/// their pixels: within 5 %.
+/// constant and plane; a median of those lies 1 - 2/(9 x 46), cubed, = 1.4 % below 1), and neighbouring fits share
+/// pixels: within 5 %.
 TEST(NoiseVariance, FromTheImageOnAPlaneIsThatOfTheNoise) {
   const double sigma = 0.1;
   test::Random random(4);
@@ -85,7 +85,7 @@ TEST(NoiseVariance, FromTheImageDoesNotTakeRoundingToHalfFloatsForNoise) {
   Frame frame;
   frame.beauty.mean = test::image_of(width, height, 3, [&](int x, int y, int c) { return to_half(sky(x, y, c)); });
   EXPECT_TRUE(test::same_bits(variance_of(frame).variance, Image(width, height, 3)));
-  // Noise of a thousandth of the light is seen as such.
+  // Noise of a thousandth of the radiance is estimated.
   frame.beauty.mean = test::image_of(
       width, height, 3, [&](int x, int y, int c) { return to_half(sky(x, y, c) * (1 + 0.001 * random.normal())); });
   const Image noisy = variance_of(frame).variance;
@@ -99,8 +99,8 @@ TEST(NoiseVariance, FromTheImageDoesNotTakeAnEdgeForNoise) {
   frame.beauty.mean =
       test::image_of(width, height, 3, [&](int x, int, int) { return (x < 48 ? 1 : 3) + sigma * random.normal(); });
   const Image out = variance_of(frame).variance;
-  // The edge's own contribution would be 1 (a step of 2), 400 times the noise. Beyond the reach of the fits nothing of
-  // it shows. Single pixels may be taken for spikes, so columns are averaged.
+  // The edge (a step of 2) would contribute 1, 400 times the noise. It has no effect outside of the windows that cover
+  // it. Single pixels may be taken for spikes, so columns are averaged.
   for (const int x : {5, 20, 36, 60, 80}) {
     double sum = 0;
     for (int y = 0; y < height; ++y) sum += static_cast<double>(out.at(x, y, 1));
@@ -108,7 +108,7 @@ TEST(NoiseVariance, FromTheImageDoesNotTakeAnEdgeForNoise) {
   }
 }
 
-/// Texture of two pixels a blade that no feature tells: what a fit leaves of it is far above the noise.
+/// Texture with blades of two pixels that is in no feature: the residual of a fit is far above the noise.
 TEST(NoiseVariance, FromTheImageDoesNotTakeTextureForNoise) {
   const double sigma = 0.05;
   const auto estimated = [&](double texture) {
@@ -138,7 +138,8 @@ TEST(NoiseVariance, FromTheImageOfBlackIsZero) {
 }
 
 TEST(NoiseVariance, FromTheImageOfASceneWithFeaturesIsOfTheRightSize) {
-  // Texture is in the albedo, the disk in normal and depth: what is left beside the noise is their product's curvature.
+  // The texture is in the albedo and the disk in normal and depth, so the residuals hold the noise and the curvature of
+  // their product.
   Frame frame = test::make_scene(width, height, 0.2, 6).frame;
   const Image truth = frame.beauty.variance;
   frame.beauty.variance = frame.beauty.half_a = frame.beauty.half_b = Image();
@@ -148,7 +149,7 @@ TEST(NoiseVariance, FromTheImageOfASceneWithFeaturesIsOfTheRightSize) {
 }
 
 TEST(NoiseVariance, FeaturesBeyondWhatTheModelHoldsAreLeftOut) {
-  // 7 channels of the scene and 3 more in each further pass: the fourth one does not fit into 16.
+  // The scene has 7 channels and each further pass 3, so the fourth of these does not fit into 16.
   Frame frame = test::make_scene(40, 36, 0.2, 8).frame;
   frame.beauty.variance = frame.beauty.half_a = frame.beauty.half_b = Image();
   test::Random random(9);
@@ -176,7 +177,8 @@ TEST(NoiseVariance, OfBadAndTinyImagesIsFiniteAndNotNegative) {
   }
 }
 
-/// Of a frame whose features come without variance and halves, the variance that each is given; empty for none.
+/// The estimated variance of each feature of a frame whose features have neither variance nor halves; empty if none is
+/// estimated.
 std::vector<Image> feature_variances(Frame frame) {
   estimate_feature_variance(frame, silent_progress());
   std::vector<Image> out;
@@ -195,13 +197,13 @@ TEST(FeatureVariance, IsEstimatedOfWhatComesWithoutButForDepth) {
   }
   const std::vector<Image> found = feature_variances(frame);
   const Image truth(width, height, 3, Real(sigma * sigma));
-  // The spikes of ordinary noise, too, are taken for spikes.
+  // Ordinary noise has spikes too.
   for (const int k : {0, 1}) EXPECT_NEAR(mean_ratio(found[static_cast<std::size_t>(k)], truth), 1.1, 0.2);
   EXPECT_TRUE(found[2].empty());
   EXPECT_EQ(found[3].channels(), 1);
 }
 
-TEST(FeatureVariance, WhatTheFileTellsStays) {
+TEST(FeatureVariance, AVarianceInTheFileStays) {
   Frame frame;
   const Image mean(width, height, 3, Real(0.5)), variance(width, height, 3, Real(0.125));
   frame.features.push_back({Role::Albedo, {"", mean, variance, {}, {}}});

@@ -31,8 +31,8 @@ std::vector<Outlier> removed(HalfPair& pair, bool independent = true) {
   return remove_outliers(pair, {independent, true}, OutlierParams{}, silent_progress());
 }
 
-/// Everything that was taken stands in the list: sum before = sum after + 2 x energy (energy is of the mean of the
-/// halves).
+/// The list accounts for all energy that was taken: sum before = sum after + 2 x energy, as energy is that of the mean
+/// of the halves.
 void expect_balance(const HalfPair& before, const HalfPair& after, const std::vector<Outlier>& outliers) {
   for (int c = 0; c < before.color[0].channels(); ++c) {
     double sum = 0, energy = 0;
@@ -42,7 +42,7 @@ void expect_balance(const HalfPair& before, const HalfPair& after, const std::ve
   }
 }
 
-TEST(RemoveOutliers, LeaveNoiseAlone) {
+TEST(RemoveOutliers, KeepNoise) {
   HalfPair pair = noise_free_pair();
   const HalfPair before = pair;
   EXPECT_TRUE(removed(pair).empty());
@@ -67,11 +67,11 @@ TEST(RemoveOutliers, FindASingleSpikeAnywhere) {
   }
 }
 
-TEST(RemoveOutliers, ASpikeThatBothHalvesSawStays) {
+TEST(RemoveOutliers, ASpikeInBothHalvesStays) {
   HalfPair pair = noise_free_pair();
   put_spike(pair, 0, 20, 20);
   put_spike(pair, 1, 20, 20);
-  for (int c = 0; c < 3; ++c) pair.variance.at(20, 20, c) = Real(1);  // both agree: a small lamp, well sampled
+  for (int c = 0; c < 3; ++c) pair.variance.at(20, 20, c) = Real(1);  // the halves agree: a small lamp, well sampled
   EXPECT_TRUE(removed(pair).empty());
 }
 
@@ -79,7 +79,10 @@ TEST(RemoveOutliers, AReliableSpikeStays) {
   HalfPair pair = noise_free_pair();
   put_spike(pair, 0, 20, 20);
   for (int c = 0; c < 3; ++c) pair.variance.at(20, 20, c) = Real(4);  // 49 above its neighbours, 24 standard deviations
+  HalfPair of_estimated_variance = pair;
   EXPECT_TRUE(removed(pair).empty());
+  const PairNoise estimated{true, false};
+  EXPECT_EQ(remove_outliers(of_estimated_variance, estimated, OutlierParams{}, silent_progress()).size(), 1u);
 }
 
 TEST(RemoveOutliers, AdjacentSpikesBothGo) {
@@ -105,9 +108,9 @@ TEST(RemoveOutliers, SpikesOnBlackGo) {
   expect_balance(before, pair, outliers);
 }
 
-/// A wall six times as bright beside the pixel hides the spike from a comparison of brightness; the other half does
-/// not.
-TEST(RemoveOutliers, ASpikeBesideAnEdgeGoes) {
+/// A wall next to the pixel, six times as bright, hides the spike from a comparison of brightness, but not from a
+/// comparison with the other half.
+TEST(RemoveOutliers, ASpikeNextToAnEdgeIsReplaced) {
   HalfPair pair =
       test::pair_of(test::image_of(size, size, 3, [](int x, int, int) { return x < 21 ? 0.1 : 0.6; }), 0.002, 1);
   put_spike(pair, 1, 20, 20, 0.65);
@@ -115,11 +118,12 @@ TEST(RemoveOutliers, ASpikeBesideAnEdgeGoes) {
   const auto outliers = removed(pair);
   ASSERT_EQ(outliers.size(), 1u);
   EXPECT_EQ(outliers[0].x, 20);
-  EXPECT_NEAR(static_cast<double>(pair.color[1].at(20, 20, 0)), 0.1, 0.02);  // by a pixel of its own side
+  EXPECT_NEAR(static_cast<double>(pair.color[1].at(20, 20, 0)), 0.1,
+              0.02);  // replaced by a pixel on the same side of the edge
   expect_balance(before, pair, outliers);
 }
 
-/// Nothing around is like what the other half holds: no neighbour could stand in.
+/// No neighbour is like the pixel of the other half, so none can replace the spike.
 TEST(RemoveOutliers, ASpikeWithoutAnyLikeNeighbourStays) {
   HalfPair pair = test::pair_of(
       test::image_of(size, size, 3, [](int x, int y, int) { return x == 20 && y == 20 ? 0.1 : 0.6; }), 0.002, 1);
@@ -127,8 +131,8 @@ TEST(RemoveOutliers, ASpikeWithoutAnyLikeNeighbourStays) {
   EXPECT_TRUE(removed(pair).empty());
 }
 
-TEST(Case26, SpikesThatAreTheLightStay) {
-  // An interior lit by hidden lamps: one pixel in 20 of either half holds all the light.
+TEST(Case26, SpikesThatHoldTheEnergyStay) {
+  // An interior lit by hidden lamps: one pixel in 20 of either half holds all the energy.
   HalfPair pair = test::pair_of(Image(size, size, 3), 0, 1);
   test::Random random(9);
   for (std::size_t h = 0; h < 2; ++h)
@@ -139,11 +143,11 @@ TEST(Case26, SpikesThatAreTheLightStay) {
   double energy = 0;
   for (const Outlier& o : removed(pair)) energy += o.energy[0];
   const double total = 0.5 * (test::sum_of(before.color[0], 0) + test::sum_of(before.color[1], 0));
-  // 19 x 19 pixels hold 18 of them, 4.6 are allowed: none is rare, save by the luck of a corner.
+  // There are 18 in 19 x 19 pixels and 4.6 are allowed, so none is rare, except by chance in a corner.
   EXPECT_LT(energy, 0.02 * total);
 }
 
-TEST(RemoveOutliers, HalvesSplitFromOneImageDoNotWitnessForEachOther) {
+TEST(RemoveOutliers, HalvesSplitFromOneImageAreNoEvidenceForEachOther) {
   HalfPair pair = noise_free_pair();
   put_spike(pair, 0, 20, 20, 50);
   put_spike(pair, 1, 20, 20, 55);

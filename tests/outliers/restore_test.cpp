@@ -15,10 +15,10 @@ Image smooth_image(int channels) {
                         [](int x, int y, int c) { return 0.5 + 0.01 * x + 0.02 * y + 0.1 * (c % 3); });
 }
 
-/// Noise that no gain shows beside: every pixel takes part in full.
+/// Noise so strong that it hides every gain: all pixels take part fully.
 Image loud(const Image& image) { return Image(image.width(), image.height(), 3, Real(1e30)); }
 
-/// sum of each channel after = before + what the outliers hold, to 1e-6 of the sum.
+/// Checks that the sum of each channel has grown by the energy of the outliers, to 1e-6 of the sum.
 void expect_energy(const Image& before, const Image& after, const std::vector<Outlier>& outliers) {
   for (int c = 0; c < before.channels(); ++c) {
     double energy = 0;
@@ -46,7 +46,7 @@ TEST(RestoreEnergy, NothingTakenNothingGiven) {
   EXPECT_TRUE(test::same_bits(image, smooth_image(3)));
 }
 
-/// The pixels within Omega_o, by what they gained.
+/// The pixels of Omega_o: those that gained energy.
 TEST(RestoreEnergy, EveryPixelsGainIsProportionalToItsBrightness) {
   const Image before = smooth_image(3);
   Image after = before;
@@ -82,7 +82,8 @@ TEST(RestoreEnergy, MoreThanTheGainAllowsGoesToTheWholeImage) {
   EXPECT_GT(static_cast<double>(after.at(63, 47, 0)) / static_cast<double>(before.at(63, 47, 0)), 1.02);
 }
 
-/// No other way to add the same energy has a smaller sum of (d / yhat)^2: moving some of it between pixels adds to it.
+/// No other way to add the same energy has a smaller sum of (d / yhat)^2: moving some of it between pixels increases
+/// it.
 TEST(RestoreEnergy, CostsTheLeastRelativeError) {
   const Image before = smooth_image(3);
   Image after = before;
@@ -102,8 +103,7 @@ TEST(RestoreEnergy, CostsTheLeastRelativeError) {
   }
 }
 
-/// A glint that the fit has spread thinner takes most of what is given back, and hardly changes; the rest does not
-/// brighten.
+/// A glint that the fit has dimmed receives most of the returned energy and hardly changes; the rest does not brighten.
 TEST(RestoreEnergy, WhatIsBrightTakesMost) {
   Image image = smooth_image(3);
   for (int c = 0; c < 3; ++c) image.at(10, 10, c) = Real(300);
@@ -142,7 +142,7 @@ TEST(RestoreEnergy, NegativePixelsDoNotGrow) {
   expect_energy(before, image, outliers);
 }
 
-/// A sun whose square is 16 digits above those of the dark around it: what was taken there comes back there.
+/// The square of a sun is 16 digits above those of the dark pixels around it. Energy taken from these returns to them.
 TEST(RestoreEnergy, ASunDoesNotDrownTheDark) {
   Image image(200, 150, 3, Real(1e-3));
   for (int c = 0; c < 3; ++c) image.at(20, 20, c) = Real(1e6);
@@ -158,7 +158,8 @@ TEST(RestoreEnergy, ASunDoesNotDrownTheDark) {
   }
 }
 
-/// What no square around it can take goes to all: a lamp does not become many times as bright by it.
+/// Energy that is too much for any square around the outlier goes to all pixels, without making a lamp many times as
+/// bright.
 TEST(RestoreEnergy, ALampDoesNotTakeAllOfADarkRoom) {
   Image image(64, 48, 3, Real(0.1));
   for (int c = 0; c < 3; ++c) image.at(20, 20, c) = Real(5);
@@ -169,7 +170,7 @@ TEST(RestoreEnergy, ALampDoesNotTakeAllOfADarkRoom) {
   EXPECT_LT(static_cast<double>(image.at(20, 20, 0)), 5 * 1.6);
 }
 
-/// More than half of all light: the bound on a gain cannot be kept, so every pixel gains the same part of itself.
+/// With more than half of all energy the bound on a gain cannot be met, so every pixel gains the same factor.
 TEST(RestoreEnergy, WhatNoBoundHoldsGoesToAllAlike) {
   Image image(64, 48, 3, Real(0.1));
   for (int c = 0; c < 3; ++c) image.at(20, 20, c) = Real(5);
@@ -182,7 +183,7 @@ TEST(RestoreEnergy, WhatNoBoundHoldsGoesToAllAlike) {
   }
 }
 
-/// Where the bound on a gain begins to count there is no step: a little more to restore changes each pixel a little.
+/// The result is continuous where the bound on a gain sets in: a little more energy changes each pixel a little.
 TEST(RestoreTotals, MeetsTheMostGainWithoutAStep) {
   double last = 0;
   for (double factor = 1; factor < 1.05; factor += 1e-4) {
@@ -200,7 +201,7 @@ TEST(RestoreTotals, MeetsTheMostGainWithoutAStep) {
   }
 }
 
-/// One bright pixel in the dark: by squares it would take all, and less than nothing would be left of it.
+/// One bright pixel in the dark would bear the whole change by squares, and would become negative.
 TEST(RestoreTotals, NoPixelBecomesNegative) {
   for (const double factor : {0.96, 1.04}) {
     Image image(64, 48, 3, Real(0.1));
@@ -210,12 +211,13 @@ TEST(RestoreTotals, NoPixelBecomesNegative) {
     restore_totals(totals, loud(image), max_gain, 0.05, image);
     for (int c = 0; c < 3; ++c) {
       EXPECT_NEAR(channel_sums(image)[static_cast<std::size_t>(c)], totals[static_cast<std::size_t>(c)], 1e-3);
-      EXPECT_NEAR(static_cast<double>(image.at(20, 20, c)), factor > 1 ? 7.5 : 2.5, 1e-3);  // the most it may
+      EXPECT_NEAR(static_cast<double>(image.at(20, 20, c)), factor > 1 ? 7.5 : 2.5,
+                  1e-3);  // the largest change allowed
     }
   }
 }
 
-/// A sky of one colour is known exactly: all that was taken goes to the pixels that carry noise.
+/// A sky of one colour without noise is exact, so all energy returns to the pixels that have noise.
 TEST(RestoreEnergy, PixelsWithoutNoiseTakeNoPart) {
   Image image = smooth_image(3);
   const Image before = image;
@@ -226,7 +228,7 @@ TEST(RestoreEnergy, PixelsWithoutNoiseTakeNoPart) {
   EXPECT_TRUE(test::same_bits(crop(image, {0, 0, 32, 48}), crop(before, {0, 0, 32, 48})));
 }
 
-/// Of two pixels of one brightness that with half of the noise that would hide the gain takes half as much.
+/// Of two equally bright pixels, the one with half of the noise that would hide the gain receives half as much.
 TEST(RestoreEnergy, LittleNoiseTakesPartByItsMeasure) {
   Image image(40, 40, 3, Real(1));
   const double hidden = 2 * max_gain * max_gain;  // variance of a half whose mean has max_gain as standard deviation
@@ -288,7 +290,7 @@ TEST(RestoreEnergy, LayersThatAddUpStillDo) {
                   static_cast<double>(image.plane(c)[i]), 1e-6 * static_cast<double>(image.plane(c)[i]));
 }
 
-TEST(RestoreEnergy, AlphaIsLeftAlone) {
+TEST(RestoreEnergy, AlphaStays) {
   Image image = smooth_image(4);
   const Image before = image;
   restore_energy({{30, 20, {5, 5, 5, 0}}}, loud(image), max_gain, image);

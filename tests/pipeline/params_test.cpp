@@ -20,7 +20,7 @@ TEST(Params, OnlyAFirstStageThatOthersFollowTakesFewerWindows) {
   EXPECT_GT(first_fit_params(params).stride, later.stride);
   EXPECT_LT(first_fit_params(params).coverage, later.coverage);
   params.stride = params.radius;
-  EXPECT_EQ(first_fit_params(params).stride, params.radius);  // or pixels between the windows would be in none
+  EXPECT_EQ(first_fit_params(params).stride, params.radius);  // or there would be pixels in no window
   params.stages = 1;
   EXPECT_EQ(first_fit_params(params).coverage, later.coverage);
 }
@@ -40,6 +40,9 @@ TEST(Params, ValuesOutOfRangeAreErrorsOfUse) {
       [](Params& p) { p.estimated_patch.radius = 5; },
       [](Params& p) { p.max_order = -1; },
       [](Params& p) { p.max_order = 5; },
+      [](Params& p) { p.outliers.neighbourhood = 0; },
+      [](Params& p) { p.outliers.neighbourhood = 11; },
+      [](Params& p) { p.outliers.density_radius = 0; },
       [](Params& p) { p.first_bandwidths.clear(); },
       [](Params& p) { p.later_bandwidths.clear(); },
       [](Params& p) { p.guided_bandwidths = {Real(0)}; },

@@ -28,8 +28,8 @@ TEST(Reconstruct, TakesTheNoiseOutOfASceneOfKnownTruth) {
     const double before = test::relative_mse(scene.frame.beauty.mean, scene.truth);
     const double after = test::relative_mse(result.beauty, scene.truth);
     EXPECT_LT(after, 0.2 * before) << noise;
-    // The error that it states is on the safe side: blending cancels bias of opposite sign, and the coarser levels take
-    // some away, neither of which a window's own estimate knows. Measured 1.3 to 1.9 times the true one.
+    // The stated error is too large rather than too small: blending cancels biases of opposite sign, and the coarser
+    // levels remove some bias, but the estimates of the windows include neither. It is 1.3 to 1.9 times the true one.
     EXPECT_GT(result.report.estimated_relative_mse, 0.7 * after) << noise;
     EXPECT_LT(result.report.estimated_relative_mse, 2.5 * after) << noise;
   }
@@ -90,7 +90,7 @@ TEST(Reconstruct, TheErrorMapIsNotNegative) {
 
 TEST(Reconstruct, KeepsTheEnergy) {
   const Result result = run(make_scene(96, 72, 0.4, 6).frame);
-  // 6912 pixels of relative noise 0.4: the input's own mean is known to 0.5 %.
+  // 6912 pixels of relative noise 0.4: the standard error of the input's mean is 0.5 %.
   for (std::size_t c = 0; c < 3; ++c)
     EXPECT_NEAR(result.report.energy_after[c] / result.report.energy_before[c], 1, 0.01);
 }
@@ -109,7 +109,8 @@ TEST(Reconstruct, OutliersGiveTheirEnergyBack) {
   scene.frame.beauty.mean = test::mean_of(scene.frame.beauty.half_a, scene.frame.beauty.half_b);
   const Result result = run(scene.frame);
   EXPECT_EQ(result.report.outliers, clean.report.outliers + 4);
-  // What was taken is in the report, about what was put in; the sum over the image grows by it, and no pixel glares.
+  // The report states about the energy of the added fireflies. The sum over the image grows by it, and no pixel is far
+  // too bright.
   EXPECT_NEAR(result.report.outlier_energy[0] - clean.report.outlier_energy[0], added, 1);
   EXPECT_NEAR(test::sum_of(result.beauty, 0), test::sum_of(clean.beauty, 0) + added,
               0.01 * test::sum_of(clean.beauty, 0));
@@ -155,9 +156,8 @@ TEST(Reconstruct, AovsThatAddUpStillDo) {
   }
 }
 
-/// A layer that is no part of the beauty: an albedo beside a beauty so dark that noise and splitting make it change its
-/// sign.
-TEST(Reconstruct, ALayerBesideADarkBeautyStaysWhatItIs) {
+/// A layer that is no part of the beauty: an albedo, with a beauty so dark that noise and splitting change its sign.
+TEST(Reconstruct, ALayerThatIsNoPartOfADarkBeautyStays) {
   Scene scene = make_scene(48, 40, 0.3, 27);
   Frame& frame = scene.frame;
   test::Random random(27);
@@ -166,7 +166,7 @@ TEST(Reconstruct, ALayerBesideADarkBeautyStaysWhatItIs) {
   frame.beauty.variance = Image(48, 40, 3, Real(0.0025));
   frame.aovs = {{"Albedo", Image(48, 40, 3, Real(0.8)), {}, {}, {}}};
   const Image layer = run(frame).aovs[0];
-  // The mean stays; what the halves are set apart by averages out but for the noise of a window.
+  // The mean stays. The difference of the halves averages out but for the noise of a window.
   EXPECT_LT(test::max_difference(layer, frame.aovs[0].mean), 0.2);
 }
 

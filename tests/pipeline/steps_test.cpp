@@ -9,7 +9,8 @@
 namespace polyrecon {
 namespace {
 
-/// A simple scene: the upper half is sky without noise, the features are clean and say so, nothing stands out.
+/// A simple scene: the upper half is sky without noise, the features have no noise and a variance of 0, and there are
+/// no outliers.
 test::Scene simple_scene(int width, int height) {
   test::Scene scene = test::make_scene(width, height, 0.1, 7);
   Pass& beauty = scene.frame.beauty;
@@ -39,7 +40,7 @@ Timed run(const test::Scene& scene, bool decide) {
   Params params = params_for(Quality::Standard);
   params.steps.decide = decide;
   Frame frame = scene.frame;                // reconstruct takes its passes
-  const std::clock_t start = std::clock();  // of the whole process: what else the machine does hardly shows
+  const std::clock_t start = std::clock();  // CPU time, which hardly depends on other processes
   const Result result = reconstruct(frame, params, silent_progress());
   return {static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC, test::relative_mse(result.beauty, scene.truth),
           result.report};
@@ -51,7 +52,7 @@ const Decision& decision(const Report& report, const std::string& step) {
   throw std::runtime_error("no decision on " + step);
 }
 
-TEST(Steps, ASimpleSceneTakesLessTimeThanAllEffects) {
+TEST(Steps, ASimpleSceneTakesLessTimeThanAllSteps) {
   const test::Scene scene = simple_scene(256, 192);
   const Timed all = run(scene, false), decided = run(scene, true);
   EXPECT_LE(decided.cpu_seconds, 0.85 * all.cpu_seconds);  // 0.72: windows on pixels without noise are cheap anyway
@@ -63,7 +64,7 @@ TEST(Steps, EachDecisionHasAReasonAndWhatItSaves) {
   const Timed decided = run(simple_scene(96, 64), true);
   const Decision& sky = decision(decided.report, "noise-free pixels skipped");
   EXPECT_TRUE(sky.run);
-  // 32 of 64 rows, less the two that the floor of the variance reaches into (noise/variance_floor.h).
+  // 32 of 64 rows, less the two that get a variance from their neighbourhood (noise/variance_floor.h).
   EXPECT_EQ(sky.reason, "46.9 % of the frame has no noise");
   const auto& stages = decided.report.stages;
   const auto fits =
@@ -78,7 +79,7 @@ TEST(Steps, EachDecisionHasAReasonAndWhatItSaves) {
   EXPECT_EQ(decision(decided.report, "feature albedo").saved_seconds, 0);  // it runs
 }
 
-TEST(Steps, AConstantFeatureIsTakenOnlyWhereItIsAskedFor) {
+TEST(Steps, AConstantFeatureIsUsedOnlyWhereItIsRequested) {
   test::Scene scene = test::make_scene(48, 32, 0.1, 3);
   scene.frame.features[0].pass.mean = Image(48, 32, 3, Real(0));
   const Timed decided = run(scene, true), all = run(scene, false);

@@ -42,7 +42,8 @@ TEST(Factorise, EveryPrefixIsTheWeightedLeastSquaresFitOfAllModelsAtOnce) {
       const MatrixXd x = p.x.leftCols(columns), sx = s.asDiagonal() * x;
       const VectorXd expected = x * sx.colPivHouseholderQr().solve(s.asDiagonal() * y);
       const VectorXd fit = q.leftCols(columns) * z.head(columns);
-      // Pixels of weight zero are extrapolated to, which amplifies rounding: relative to the largest value of the fit.
+      // The fit extrapolates to pixels of weight zero, which amplifies rounding, so the error is relative to the
+      // largest value of the fit.
       EXPECT_LT((fit - expected).cwiseAbs().maxCoeff(), 100 * eps * expected.cwiseAbs().maxCoeff())
           << round << " " << columns;
     }
@@ -59,9 +60,9 @@ TEST(Factorise, ProjectionMatrixIsThatOfEquations5And6) {
   EXPECT_LT((h * h - h).cwiseAbs().maxCoeff(), 100 * eps * expected.cwiseAbs().maxCoeff());
 }
 
-/// A feature of rounding where the window weighs, and of a large value where it does not, would be fitted to the
+/// A feature that is rounding where weights are positive, and large where they are zero, must not be fitted to the
 /// rounding.
-TEST(Factorise, AFeatureThatVariesWhereNothingWeighsIsDropped) {
+TEST(Factorise, AFeatureThatVariesOnlyWhereWeightsAreZeroIsDropped) {
   for (const double elsewhere : {1e-7, 1e-2, 1.0}) {
     Random random(4);
     MatrixXd x = design_with_constant(49, 2, random);
@@ -81,7 +82,7 @@ TEST(Factorise, AFeatureThatVariesWhereNothingWeighsIsDropped) {
   }
 }
 
-TEST(Factorise, PixelsOfWeightZeroHaveNoSay) {
+TEST(Factorise, PixelsOfWeightZeroHaveNoEffect) {
   Random random(6);
   MatrixXd x = design_with_constant(49, 6, random);
   VectorXd w = random_weights(49, 0.5, random), y = normal_matrix(49, 1, random);
@@ -118,10 +119,10 @@ TEST(Factorise, OnePixelOfWeightCarriesTheConstantAlone) {
   EXPECT_NEAR(p.q()(3, 0), 2, 1e-6);
 }
 
-/// Columns 0 (constant) and 1 to 3 are sound; column 4 is the hard one, column 5 sound again.
+/// Column 4 is the hard one; column 0 is the constant, and 1 to 3 and 5 are ordinary.
 struct HardColumn {
   const char* name;
-  VectorXd (*column)(const MatrixXd& sound, Random& random);
+  VectorXd (*column)(const MatrixXd& ordinary, Random& random);
   bool kept;
 };
 
@@ -179,7 +180,7 @@ TEST(Factorise, DenormalColumnsAreFinite) {
   }
 }
 
-/// Departs from the ridge regression most where little is left of a column.
+/// The deviation from the ridge regression is largest where little is left of a column.
 TEST(Factorise, NearlyDependentColumnsStayOrthogonal) {
   for (const double part : {0.3, 0.1, 0.03, 0.02}) {
     Random random(11);
@@ -191,14 +192,15 @@ TEST(Factorise, NearlyDependentColumnsStayOrthogonal) {
   }
 }
 
-/// A feature becomes another one's duplicate: it goes without a jump, and so do those that follow it.
+/// A feature that turns into a duplicate of another one fades out continuously, and so do the fits with columns after
+/// it.
 TEST(Factorise, AColumnFadesOutContinuously) {
   Random random(13);
-  const MatrixXd sound = design_with_constant(49, 6, random), own = normal_matrix(49, 1, random);
+  const MatrixXd ordinary = design_with_constant(49, 6, random), independent = normal_matrix(49, 1, random);
   const VectorXd w = random_weights(49, 0, random), y = stored(normal_matrix(49, 1, random));
   const auto fit = [&](double part) -> VectorXd {
-    MatrixXd x = sound;
-    x.col(3) = x.col(2) + part * own;
+    MatrixXd x = ordinary;
+    x.col(3) = x.col(2) + part * independent;
     const Problem p(x, w);
     return p.q() * p.coefficients(y);
   };
@@ -212,7 +214,7 @@ TEST(Factorise, AColumnFadesOutContinuously) {
     path += step;
     before = now;
   }
-  EXPECT_GT(path, 0.01 * largest);  // it is not that nothing happens
+  EXPECT_GT(path, 0.01 * largest);  // the fit does change
 }
 
 TEST(Factorise, IsTheRidgeRegressionOfItsPenalties) {

@@ -22,8 +22,8 @@ using Channels = std::array<ColumnStatistics, 3>;
 constexpr double eps = std::numeric_limits<Real>::epsilon();
 
 /// A 7 x 7 window with two features and Taylor terms of order up to 2, three channels of a truth that no model holds,
-/// noise that differs from pixel to pixel, and what the code under test makes of it. All matrices in the precision of
-/// storage.
+/// noise that differs from pixel to pixel, and their factorisation by the code under test. All matrices have the
+/// precision of storage.
 struct Setting {
   static constexpr int n = 49;
   BasisLayout layout{2, 2};
@@ -81,7 +81,7 @@ struct Setting {
 
   /// sum_i w_i bias(i)^2 of equation (5) with an explicit H.
   double bias_square(const MatrixXd& h, const VectorXd& m) const { return w.dot((h * m - m).cwiseAbs2()); }
-  /// The same with y's bias for one factor of the square.
+  /// The same with the bias of y as one factor of the square.
   double bias_product(const MatrixXd& h, const VectorXd& y, const VectorXd& m) const {
     return w.dot((h * y - y).cwiseProduct(h * m - m));
   }
@@ -97,7 +97,7 @@ struct Setting {
   }
 };
 
-/// Error of the nothing-model plus the changes of the first `columns` columns.
+/// The error without any column plus the changes by the first `columns` columns.
 double nested_error(const ColumnStatistics& channel, int columns, const VectorXd& g, bool first_stage) {
   double error = channel.guess_energy - (first_stage ? channel.noise_energy : 0);
   for (int a = 0; a < columns; ++a) error += error_change(channel, a, g(a), first_stage);
@@ -135,7 +135,7 @@ TEST(ErrorChange, FirstStageSubtractsTheNoiseThatTheBiasOfTheNoisyDataHolds) {
       const double expected = s.bias_square(h, y.col(c)) - s.noise_in_bias(h, c) + s.variance_sum(h, c);
       EXPECT_NEAR(nested_error(channels[static_cast<std::size_t>(c)], columns, VectorXd::Ones(columns), true), expected,
                   tolerance);
-      // The form of DESIGN: the noise to be subtracted is sum_j w_j sigma_j^2 (1 - h_j), h_j the leverage.
+      // Another form: the noise to be subtracted is sum_j w_j sigma_j^2 (1 - h_j), with h_j the leverage.
       const double leverage_form =
           (s.w.cwiseProduct(s.variance.col(c))).dot((VectorXd::Ones(Setting::n) - h.diagonal()));
       EXPECT_NEAR(s.noise_in_bias(h, c), leverage_form, tolerance);
@@ -208,8 +208,8 @@ TEST(ShrinkageFactor, ByHand) {
   EXPECT_EQ(shrinkage_factor(channels, 0, 1, true), 1);  // the constant always enters whole
 }
 
-/// Factor of column a in the layout of Setting: features (1, 2) have one each, the Taylor terms of an order (3, 4 and 5
-/// to 7) share one.
+/// Factor of column a in the layout of Setting: features (1, 2) have a factor each, the Taylor terms of an order (3, 4
+/// and 5 to 7) share one.
 double group_factor(const Channels& channels, int a, bool first_stage) {
   const int begin[] = {0, 1, 2, 3, 3, 5, 5, 5}, end[] = {1, 2, 3, 5, 5, 8, 8, 8};
   return shrinkage_factor(channels, begin[a], end[a], first_stage);
@@ -226,7 +226,7 @@ TEST(SelectOrder, TakesTheModelOfLeastEstimatedErrorAndSaysHowLargeThatIs) {
       const MatrixXd& guess = first_stage ? y : s.mu;
       const Channels channels = s.statistics(y, guess, first_stage);
       const OrderChoice choice = select_order(channels, s.layout, s.w.sum(), first_stage, 0);
-      // Outside of all columns the guess alone tells.
+      // Outside of all columns the error is that of the guess.
       const MatrixXd whole = test::projection_matrix(s.x, s.w);
       // Brute force: every model's error with explicit projection matrices, the factors from their definition.
       double least = 1e300;
@@ -268,7 +268,8 @@ TEST(SelectOrder, TakesTheModelOfLeastEstimatedErrorAndSaysHowLargeThatIs) {
   }
 }
 
-/// One column a model: layout of no features; the later-stage error change at g* is -e^2/(e + n) per channel.
+/// A layout without features, in which few columns differ from zero. The error change of later stages at the best
+/// factor is -e^2/(e + n) per channel.
 TEST(SelectOrder, AveragesModelsThatAreAsGoodWithinTheTolerance) {
   const BasisLayout layout(0, 2);
   Channels channels;
@@ -286,7 +287,7 @@ TEST(SelectOrder, AveragesModelsThatAreAsGoodWithinTheTolerance) {
   EXPECT_DOUBLE_EQ(best.error[0], 39.0 / 2);
   EXPECT_EQ(best.variance[0], 0);
   EXPECT_EQ(near.factor, best.factor);  // 39 x 1.02 = 39.78 < 40
-  // 39 x 0.05 = 1.95: order 1 is 1/1.95 of the way, counts (1 - 1/1.95) of 1.
+  // 39 x 0.05 = 1.95: order 1 is 1 / 1.95 of the tolerance above the best, so it counts 1 - 1/1.95.
   const double low = 1 - 1 / 1.95;
   EXPECT_DOUBLE_EQ(both.factor[1], 1);
   EXPECT_DOUBLE_EQ(both.factor[3], 1 / (1 + low));
@@ -296,11 +297,11 @@ TEST(SelectOrder, AveragesModelsThatAreAsGoodWithinTheTolerance) {
   const double constant = 1 - 11 / 19.5, first = 1 - 1 / 19.5;
   EXPECT_DOUBLE_EQ(all.factor[0], 1);
   EXPECT_DOUBLE_EQ(all.factor[1], (1 + first) / (1 + first + 2 * constant));
-  // What is told of the average is its own error: 40 with the factor g for order 2, (1 - g)^2 of its 1 is left.
+  // The error of the average: 40, where order 2 enters with the factor g, so that (1 - g)^2 of its 1 is left.
   EXPECT_DOUBLE_EQ(both.error[0], (39 + std::pow(1 - both.factor[3], 2)) / 2);
 }
 
-/// Where two models cross, no jump.
+/// The choice is continuous where the errors of two models cross.
 TEST(SelectOrder, FollowsTheDataContinuously) {
   const BasisLayout layout(0, 2);
   for (const bool first_stage : {true, false}) {

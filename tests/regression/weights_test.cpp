@@ -114,8 +114,8 @@ TEST(PatchDistances, HaveTheSameBitsAtAnyExposure) {
 }
 
 TEST(PatchDistances, WithoutNoiseOnlyEqualPatchesAreAlike) {
-  // Left half 1, right half 1.001, no variance: alike within each half only, patches that see both halves like their
-  // own column.
+  // Left half 1, right half 1.001, no variance: pixels are alike within each half only. A patch across both halves is
+  // like those of the same column.
   const Pictures p{image_of(width, height, 3, [](int x, int, int) { return x < 6 ? 1 : 1.001; }),
                    Image(width, height, 3)};
   const Window window = window_at(p, 2, 5, 4, 1, cut_exponent);
@@ -174,14 +174,14 @@ TEST(PatchDistances, HaveTheSameBitsInAnyOrderOfTheCentres) {
   shared.load(p.guide, p.variance, {0, 0, width, height}, 3, {2});
   Window window;
   window.reserve(3, 1, 3);
-  const int order[] = {0, 1, 4, 3, 9, 10, 2, 2, 5, 0};  // rows: forth, back, far, again
+  const int order[] = {0, 1, 4, 3, 9, 10, 2, 2, 5, 0};  // rows in any order, some twice
   for (const int x : {5, 6, 5})
     for (const int y : order) {
       shared.window_of(x, y, {everything}, window);
-      const Window alone = window_at(p, x, y, 3, 2, everything);
-      ASSERT_EQ(window.count, alone.count);
+      const Window single = window_at(p, x, y, 3, 2, everything);
+      ASSERT_EQ(window.count, single.count);
       for (std::size_t j = 0; j < static_cast<std::size_t>(window.count); ++j)
-        ASSERT_EQ(window.distance[j], alone.distance[j]) << x << " " << y;
+        ASSERT_EQ(window.distance[j], single.distance[j]) << x << " " << y;
     }
 }
 

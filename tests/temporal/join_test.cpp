@@ -17,7 +17,7 @@ namespace {
 constexpr int width = 64, height = 48;
 constexpr double sigma = 0.1;
 
-/// mu(x, y) of a frame; frame 0 is the one in hand.
+/// mu(x, y) of a frame; frame 0 is the current one.
 using Truth = std::function<double(int frame, int x, int y)>;
 
 double texture(double x, double y) { return 1 + 0.3 * std::sin(0.9 * x) * std::cos(0.7 * y); }
@@ -31,7 +31,7 @@ Image motion_of(double dx, double dy, int h = height) {
   return test::image_of(width, h, 4, [&](int, int, int c) { return c == 0 ? -dx : c == 1 ? -dy : c == 2 ? dx : dy; });
 }
 
-/// A frame with `radius` neighbours on each side, all with noise of their own.
+/// A frame with `radius` neighbours on each side, all with independent noise.
 struct Sequence {
   Image truth, motion;
   HalfPair pair;
@@ -77,8 +77,8 @@ struct Sequence {
   }
 };
 
-/// Five frames of one picture: the mean of all has a fifth of the variance. The gate refuses a few neighbours by
-/// chance, so a little less is gained; the variance that is claimed must be what is left, within 10 %.
+/// Five frames of one picture: the mean of all has a fifth of the variance. The weights exclude a few neighbours by
+/// chance, so the gain is a little less; the stated variance must be the true one within 10 %.
 TEST(JoinNeighbours, AveragesWhatStandsStill) {
   Sequence s([](int, int x, int y) { return texture(x, y); }, Image());
   const JoinCounts counts = s.join();
@@ -95,7 +95,8 @@ TEST(JoinNeighbours, FollowsTheMotion) {
   without.join();
   const auto inner = [](int x, int y) { return x > 8 && y > 8 && x < width - 8 && y < height - 8; };
   EXPECT_LT(with.error(inner), 0.25 * sigma * sigma);
-  EXPECT_LT(without.error(inner), 1.1 * sigma * sigma);  // without vectors nothing fits, and nothing ghosts
+  EXPECT_LT(without.error(inner),
+            1.1 * sigma * sigma);  // without vectors no neighbour matches, and there are no ghosts
 }
 
 /// Between pixels the cubic keeps a texture of 7 pixels' period to a few percent of its amplitude, below the noise.
@@ -106,8 +107,9 @@ TEST(JoinNeighbours, FollowsMotionByPartsOfAPixel) {
             0.35 * sigma * sigma);
 }
 
-/// A texture as fine as the pixels is lost between them. Its error changes sign from pixel to pixel, and may hide below
-/// the noise of each: what joins must not be worse than the frame alone, however strong the texture.
+/// A texture as fine as the pixels is lost when it is sampled between them. Its error changes sign from pixel to pixel
+/// and may be below the noise of each pixel. The joined frame must not be worse than the single frame, however strong
+/// the texture is.
 TEST(JoinNeighbours, FineTextureIsNoWorseThanTheFrameAlone) {
   for (const double strength : {0.25, 0.5, 1.0, 2.0, 4.0, 16.0}) {
     const Truth fine = [&](int frame, int x, int y) {
@@ -137,7 +139,7 @@ TEST(JoinNeighbours, AMovingHighlightLeavesNoTrail) {
   const double before = s.error(way);
   s.join();
   EXPECT_LT(s.error(way), before);
-  // The places that the spot has left keep the light of their own frame.
+  // Places that the spot has left keep the radiance of the current frame.
   double trail = 0, count = 0;
   for (int y = 21; y < 28; ++y)
     for (const int x : {24, 25, 39, 40})
@@ -145,7 +147,7 @@ TEST(JoinNeighbours, AMovingHighlightLeavesNoTrail) {
   EXPECT_LT(std::abs(trail / count), 4 * sigma / std::sqrt(count));
 }
 
-/// Light that grows by a third of the noise in each frame: the frames before and after cancel out.
+/// Radiance that grows by a third of the noise in each frame: the changes before and after cancel.
 TEST(JoinNeighbours, SteadyChangeCancelsOut) {
   Sequence s([](int frame, int x, int y) { return texture(x, y) + 0.03 * frame; }, Image());
   const JoinCounts counts = s.join();
@@ -157,8 +159,8 @@ TEST(JoinNeighbours, SteadyChangeCancelsOut) {
   EXPECT_LT(std::abs(bias), 4 * sigma / std::sqrt(static_cast<double>(s.truth.pixels())));
 }
 
-/// A renderer that begins every frame with the same random numbers leaves the same noise in it: nothing is gained, and
-/// nothing may be claimed.
+/// A renderer that starts every frame with the same random numbers makes the same noise in all: there is no gain, and
+/// the stated variance must not shrink.
 TEST(JoinNeighbours, SharedNoiseIsNotTakenForIndependent) {
   Sequence s([](int, int x, int y) { return texture(x, y); }, Image());
   for (Neighbour& frame : s.frames) frame.pair.color = s.pair.color;
@@ -166,8 +168,8 @@ TEST(JoinNeighbours, SharedNoiseIsNotTakenForIndependent) {
   EXPECT_GT(s.claimed(), 0.9 * sigma * sigma);
 }
 
-/// The weights know the noise: a neighbour of a hundredth of the variance counts more than the frame itself, a very
-/// noisy one next to nothing.
+/// Weights depend on the noise: a neighbour with a hundredth of the variance counts more than the frame itself, a very
+/// noisy one hardly at all.
 TEST(JoinNeighbours, WeightsFollowTheVariance) {
   for (const double noise : {0.1 * sigma, 10 * sigma}) {
     Sequence s([](int, int x, int y) { return texture(x, y); }, Image(), 1);
@@ -220,7 +222,7 @@ TEST(JoinNeighbours, OtherSizesAndGapsAreLeftOut) {
   EXPECT_EQ(s.join().neighbours, 0u);
 }
 
-/// Worked in bands of rows: a cut picture gives the same bits where the cut is out of reach.
+/// Frames are processed in bands of rows: a part of a picture has the same bits, except near the cut.
 TEST(JoinNeighbours, BandsDoNotShow) {
   const Truth still = [](int, int x, int y) { return texture(x, y); };
   Sequence tall(still, Image(), 1, 420), cut = tall;
@@ -238,14 +240,14 @@ TEST(JoinNeighbours, BandsDoNotShow) {
   EXPECT_TRUE(test::same_bits(crop(tall.pair.variance, same), crop(cut.pair.variance, same)));
 }
 
-/// A point that a nearer object covers in the other frame: the vectors there lead elsewhere, so it is not seen.
+/// A point that a nearer object covers in the other frame is not seen: the vectors there lead elsewhere.
 TEST(Follow, HiddenPointsAreNotSeen) {
   HalfPair pair = test::pair_of(Image(width, height, 3, 1), sigma, 1);
   Neighbour next{pair, motion_of(0, 0)};
   const auto covered = [](int x, int y) { return x >= 20 && x < 30 && y >= 10 && y < 20; };
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x)
-      if (covered(x, y)) next.motion.at(x, y, 0) = -10;  // what is there came from 10 pixels to the left
+      if (covered(x, y)) next.motion.at(x, y, 0) = -10;  // the cover came from 10 pixels to the left
   const std::vector<Places> places = follow(motion_of(0, 0), pair, {{1, &next}});
   ASSERT_EQ(places.size(), 1u);
   for (int y = 0; y < height; ++y)
@@ -255,7 +257,7 @@ TEST(Follow, HiddenPointsAreNotSeen) {
 
 /// Renders without variance or halves are split with random numbers; those of two frames must not be the same, or their
 /// halves would not be independent.
-TEST(PrepareNeighbour, SplitsEveryFrameWithNumbersOfItsOwn) {
+TEST(PrepareNeighbour, SplitsEveryFrameWithOtherRandomNumbers) {
   Frame frame = test::make_scene(40, 32, 0.2, 3).frame;
   frame.beauty.variance = frame.beauty.half_a = frame.beauty.half_b = Image();
   const Params params;
@@ -290,7 +292,7 @@ TEST(Reconstruct, NeighboursInTimeLowerTheError) {
   EXPECT_EQ(joined.report.neighbours, 2u);
   EXPECT_LT(test::relative_mse(joined.beauty, scene.truth), 0.8 * test::relative_mse(alone.beauty, scene.truth));
   EXPECT_LT(joined.report.estimated_relative_mse, alone.report.estimated_relative_mse);
-  // The energy is that of the frame in hand.
+  // The energy is that of the current frame.
   for (std::size_t c = 0; c < 3; ++c)
     EXPECT_NEAR(joined.report.energy_after[c] / joined.report.energy_before[c], 1, 1e-5);
 }
