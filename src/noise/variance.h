@@ -28,8 +28,9 @@ NoiseVariance noise_variance(const Frame& frame, Progress& progress);
 ///     N = (s^2 - c / a) / (1 + h / a),   a = 1/2.
 /// A pixel gets the median of the fits around it, so that the few windows across an edge do not matter. The variance is
 /// raised at spikes (spike_variance.h). It is 0 where the value is 0, since then no sample found any radiance, and
-/// where rounding to half floats explains all of it (a deviation of at most 2^-11 of the value). y: finite, any
-/// channels. features: finite, of y's size, may have no channels. Returns y's shape, y's unit squared.
+/// where rounding to half floats explains all of it (a deviation of at most 2^-11 of the value).
+/// y: finite, any channels.
+/// features: finite, of y's size, may have no channels. Returns y's shape, y's unit squared.
 Image estimate_variance(const Image& y, const Image& features, Progress& progress);
 
 /// Sets the variance of the features whose noise is estimated (noise_is_estimated, polyrecon/roles.h). Renderers carry

@@ -12,9 +12,9 @@ namespace polyrecon {
 namespace {
 
 /// Largest relative gain of a pixel where the whole image takes part, unless all pixels must gain more.
-constexpr double kMostGain = 0.5;
+constexpr double largest_gain = 0.5;
 
-constexpr double kBelowAll = 1e-100;  ///< Below every positive value of an image.
+constexpr double below_all_values = 1e-100;  ///< Below every positive value of an image.
 
 double positive_part(Real value) { return usable(value) ? std::max(static_cast<double>(value), 0.0) : 0; }
 
@@ -87,19 +87,19 @@ double greatest(const Image& image, int channel) {
   return *std::max_element(of_row.begin(), of_row.end());
 }
 
-/// Finds the sharing of least relative squared error in which no pixel gains more than kMostGain: pixels above a limit
-/// gain that, the others share by squares. The limit falls until the bound is met; each step solves for the limit with
-/// the pixels that are known to lie above. Where the bound cannot be met, the limit is below all values, and all pixels
-/// gain the same factor.
+/// Finds the sharing of least relative squared error in which no pixel gains more than largest_gain: pixels above a
+/// limit gain that, the others share by squares. The limit falls until the bound is met; each step solves for the limit
+/// with the pixels that are known to lie above. Where the bound cannot be met, the limit is below all values, and all
+/// pixels gain the same factor.
 Sharing sharing_of(double energy, const Image& image, const Image& kappa, int channel) {
   double limit = greatest(image, channel);
   LimitedSums sums = limited_sums(image, kappa, channel, limit);
-  while (std::abs(energy) * limit > kMostGain * (sums.squares + limit * sums.above) * (1 + 1e-9)) {
-    const double left = std::abs(energy) - kMostGain * sums.above;
-    limit = left > 0 ? std::min(kMostGain * sums.squares / left, limit * (1 - 1e-9)) : 0;
+  while (std::abs(energy) * limit > largest_gain * (sums.squares + limit * sums.above) * (1 + 1e-9)) {
+    const double left = std::abs(energy) - largest_gain * sums.above;
+    limit = left > 0 ? std::min(largest_gain * sums.squares / left, limit * (1 - 1e-9)) : 0;
     sums = limited_sums(image, kappa, channel, limit);
     if (sums.squares > 0) continue;
-    limit = kBelowAll;
+    limit = below_all_values;
     sums = limited_sums(image, kappa, channel, limit);
     break;
   }
@@ -113,8 +113,8 @@ class BoxSums {
   template <typename Term>
   BoxSums(const Image& image, const Term& term)
       : width_(static_cast<std::size_t>(image.width())), sums_(image.pixels(), 0.0) {
-    for_rows((image.height() + kBlock - 1) / kBlock, [&](int block) {
-      for (int y = block * kBlock; y < std::min((block + 1) * kBlock, image.height()); ++y)
+    for_rows((image.height() + block_side - 1) / block_side, [&](int block) {
+      for (int y = block * block_side; y < std::min((block + 1) * block_side, image.height()); ++y)
         for (int x = 0; x < image.width(); ++x)
           at(x, y) = term(x, y) + before(x, y, x, y - 1) + before(x, y, x - 1, y) - before(x, y, x - 1, y - 1);
     });
@@ -130,13 +130,13 @@ class BoxSums {
   }
 
  private:
-  static constexpr int kBlock = 64;
-  static int end_of_block(int i) { return (i / kBlock + 1) * kBlock; }
+  static constexpr int block_side = 64;
+  static int end_of_block(int i) { return (i / block_side + 1) * block_side; }
   double& at(int x, int y) { return sums_[static_cast<std::size_t>(y) * width_ + static_cast<std::size_t>(x)]; }
   double at(int x, int y) const { return sums_[static_cast<std::size_t>(y) * width_ + static_cast<std::size_t>(x)]; }
   /// The entry at (x, y) where that lies in the block of (in_x, in_y), which it is above or left of; else 0.
   double before(int in_x, int in_y, int x, int y) const {
-    return x < in_x / kBlock * kBlock || y < in_y / kBlock * kBlock ? 0 : at(x, y);
+    return x < in_x / block_side * block_side || y < in_y / block_side * block_side ? 0 : at(x, y);
   }
 
   std::size_t width_;

@@ -10,6 +10,7 @@
 #include "outliers/restore.h"
 #include "pipeline/stage.h"
 #include "polyrecon/error.h"
+#include "regression/basis.h"
 #include "temporal/neighbour.h"
 
 namespace polyrecon {
