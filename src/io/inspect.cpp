@@ -7,7 +7,6 @@
 #include "core/halves.h"
 #include "core/relmse.h"
 #include "io/channel_names.h"
-#include "polyrecon/error.h"
 #include "io/channel_reader.h"
 #include "polyrecon/error.h"
 
