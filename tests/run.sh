@@ -8,7 +8,7 @@ samples/install_dependencies.sh --tests
 tests/pipelines/make_venv.sh
 
 echo "== clang-format"
-find src tests -name '*.cpp' -o -name '*.h' | xargs clang-format --dry-run -Werror
+find include src tests -name '*.cpp' -o -name '*.h' | xargs clang-format --dry-run -Werror
 
 echo "== ruff"
 build/venv/bin/ruff check

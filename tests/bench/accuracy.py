@@ -64,7 +64,9 @@ def sweep(options, sample):
     if options.only is None or sample in options.only:
         command = [options.polyrecon, "sweep", "-i", ROOT / "samples" / f"{sample}_16.exr", "--reference"]
         command += [ROOT / "samples" / f"{SAMPLES[sample]}_ref.exr", "-o", options.out / f"{sample}.html"]
-        groups = "quality,presets,stages,levels,stride,radius,order,coverage,patch,bandwidths,features,halves,prior,parts"
+        groups = (
+            "quality,presets,stages,levels,stride,radius,order,coverage,patch,bandwidths,features,halves,prior,parts"
+        )
         command += ["--csv", table, "--vary", groups, "--quiet"]
         subprocess.run([str(word) for word in command], check=True)
     with open(table, newline="", encoding="utf-8") as file:
