@@ -15,8 +15,6 @@ MEMORY_MARGIN = 1.15  # requested memory over that of the model
 MIB = 1 << 20
 AOV_BYTES = 24  # a pixel of a neighbouring frame and an --aov: two halves of three floats
 DEFAULT_RADIUS = 2  # default of `polyrecon denoise --frame-radius`
-# The passes that take part in the fit; other channels are only copied.
-ROLES_OF_THE_FIT = ("beauty", "normal", "albedo", "depth", "visibility", "prior", "alpha")
 
 
 @dataclass(frozen=True)
@@ -45,7 +43,7 @@ def frame_of(inspection):
     """The Frame of what `polyrecon inspect --json` prints."""
     parts = [part for part in inspection["files"][0]["parts"] if part["readable"]]
     window = max((part["data_window"] for part in parts), key=lambda w: w["width"] * w["height"])
-    fit_layers = {role["layer"] for role in inspection["roles"] if role["role"] in ROLES_OF_THE_FIT}
+    fit_layers = {role["layer"] for role in inspection["roles"] if role["in_fit"]}
     fit = sum(len(layer["channels"]) for layer in inspection["layers"] if layer["name"] in fit_layers)
     return Frame(window["width"], window["height"], sum(len(part["channels"]) for part in parts), fit)
 

@@ -45,7 +45,9 @@ class Requirements(unittest.TestCase):
         frame = frame_of(
             json.loads(subprocess.run([POLYRECON, "inspect", "--json", sample], capture_output=True).stdout)
         )
-        self.assertEqual((frame.width, frame.height, frame.channels), (320, 180, 58))
+        # Mean, variance and halves of beauty, normal, albedo, depth and visibility take part in the fit.
+        self.assertEqual((frame.width, frame.height), (320, 180))
+        self.assertEqual((frame.channels, frame.fit_channels), (58, 4 * (3 + 3 + 3 + 1 + 3)))
         with tempfile.TemporaryDirectory() as folder:
             for k in range(1, 7):  # One frame has all four neighbours and a frame after them.
                 os.symlink(sample, f"{folder}/in.{k}.exr")
