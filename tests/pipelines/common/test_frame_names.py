@@ -109,9 +109,9 @@ class TheProgram(unittest.TestCase):
         """The program prints the names of missing files."""
         with tempfile.TemporaryDirectory() as folder:
             for pattern in ("a.####.exr", "b_%04d.exr", "c#.exr", "d.%d.exr"):
-                words = ["denoise", "-i", f"{folder}/{pattern}", "-o", f"{folder}/o.####.exr", "--frames=7,12345"]
+                words = ["denoise", "-i", f"{folder}/{pattern}", "-o", f"{folder}/o.####.exr", "--frames=-3,7,12345"]
                 done = subprocess.run([os.environ["POLYRECON"], *words, "--dry-run"], capture_output=True, text=True)
-                for frame in (7, 12345):
+                for frame in (-3, 7, 12345):
                     self.assertIn(f"{folder}/{frame_path(pattern, frame)}: ", done.stderr)
 
 
