@@ -45,7 +45,7 @@ struct Prepared {
 
 /// Channels that prepare holds for the feature pass in work in addition to the frame and the pair: its two halves, the
 /// same prefiltered, and its widened noise variance.
-constexpr std::size_t feature_in_preparation_channels = 3 * (2 + 2 + 1);
+constexpr std::size_t feature_in_preparation_channels = std::size_t{3} * (2 + 2 + 1);
 
 /// Repairs, splits where the file holds no halves (noise/fission.h), transforms and cleans the features.
 /// variance: noise variance of the beauty's mean, 3 channels (noise/variance.h). Takes the halves and variances of
