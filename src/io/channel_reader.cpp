@@ -95,4 +95,17 @@ const std::vector<float>& ChannelReader::read(int y0, int y1) {
   return band_;
 }
 
+void read_bands(const FileInfo& file, int part, const std::vector<std::string>& channels,
+                const std::function<void(const Band&)>& each) {
+  const Rect& window = file.parts[static_cast<std::size_t>(part)].data_window;
+  const auto width = static_cast<std::size_t>(window.width());
+  ChannelReader reader(file, part, channels);
+  const int lines = reader.lines_per_band();
+  for (int y = window.y0, end = y; y < window.y1; y = end) {
+    end = y + std::min(lines, window.y1 - y);
+    each({width * static_cast<std::size_t>(y - window.y0), width * static_cast<std::size_t>(end - y),
+          reader.read(y, end)});
+  }
+}
+
 }  // namespace polyrecon

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -30,5 +31,16 @@ class ChannelReader {
   std::vector<std::string> channels_;
   std::vector<float> band_;
 };
+
+/// Some lines of a part: one plane of `pixels` samples after the other, in the order of the requested channels.
+struct Band {
+  std::size_t first_pixel;  ///< Index of the first pixel in the data window.
+  std::size_t pixels;
+  const std::vector<float>& samples;
+};
+
+/// Reads channels of a part from the first line to the last, a band at a time. Throws as ChannelReader.
+void read_bands(const FileInfo& file, int part, const std::vector<std::string>& channels,
+                const std::function<void(const Band&)>& each);
 
 }  // namespace polyrecon

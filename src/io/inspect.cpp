@@ -3,30 +3,33 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <map>
+#include <utility>
 
 #include "core/halves.h"
 #include "core/relmse.h"
 #include "io/channel_names.h"
 #include "io/channel_reader.h"
+#include "io/observed_read.h"
 #include "polyrecon/error.h"
 
 namespace polyrecon {
 namespace {
 
-/// Statistics of one layer while the bands of its part go by.
+/// Statistics of a layer while its part is decoded.
 struct LayerTally {
   LayerStatistics statistics;
-  std::vector<std::size_t> planes;  ///< Of the part's channels.
+  std::vector<std::size_t> planes;  ///< Indices of the layer's channels in a band.
   std::size_t finite = 0;
   double sum = 0;
 };
 
-void add_band(const std::vector<float>& band, std::size_t pixels, LayerTally& tally) {
+void add_band(const Band& band, LayerTally& tally) {
   LayerStatistics& s = tally.statistics;
-  for (std::size_t i = 0; i < pixels; ++i) {
+  for (std::size_t i = 0; i < band.pixels; ++i) {
     bool nan = false, infinite = false, negative = false;
     for (const std::size_t plane : tally.planes) {
-      const double v = band[plane * pixels + i];
+      const double v = band.samples[plane * band.pixels + i];
       nan = nan || std::isnan(v);
       infinite = infinite || std::isinf(v);
       negative = negative || v < 0;
@@ -42,48 +45,58 @@ void add_band(const std::vector<float>& band, std::size_t pixels, LayerTally& ta
   }
 }
 
-/// Layers of one part, which is decoded once.
-std::vector<LayerTally> tally_part(const FileInfo& file, int part, const std::vector<const Layer*>& layers) {
-  const PartInfo& info = file.parts[static_cast<std::size_t>(part)];
-  const Rect window = info.data_window;
-  std::vector<std::string> channels;
-  for (const ChannelInfo& channel : info.channels) channels.push_back(channel.name);
-  std::vector<LayerTally> tallies;
-  for (const Layer* layer : layers) {
-    LayerTally tally;
-    tally.statistics.layer = layer->name;
-    tally.statistics.pixels = window.area();
-    for (const std::string& name : layer->channels)
-      tally.planes.push_back(
-          static_cast<std::size_t>(std::find(channels.begin(), channels.end(), name) - channels.begin()));
-    tallies.push_back(std::move(tally));
+/// The statistics of all layers. Parts may be added in any order.
+class Tallies {
+ public:
+  void add(const FrameSource& source, int file, int part, const std::vector<std::string>& channels, const Band& band) {
+    const auto [found, is_new] = parts_.try_emplace({file, part});
+    if (is_new) found->second = begin_part(source, file, part, channels);
+    for (LayerTally& tally : found->second) add_band(band, tally);
   }
-  ChannelReader reader(file, part, channels);
-  const int lines = reader.lines_per_band();
-  for (int y = window.y0; y < window.y1; y += std::min(lines, window.y1 - y)) {
-    const int end = y + std::min(lines, window.y1 - y);
-    const std::size_t pixels = static_cast<std::size_t>(window.width()) * static_cast<std::size_t>(end - y);
-    const std::vector<float>& band = reader.read(y, end);
-    for (LayerTally& tally : tallies) add_band(band, pixels, tally);
-  }
-  for (LayerTally& tally : tallies)
-    if (tally.finite > 0) tally.statistics.mean = tally.sum / static_cast<double>(tally.finite);
-  return tallies;
-}
 
-std::vector<LayerStatistics> statistics_of(const FrameSource& source) {
-  std::vector<LayerStatistics> statistics;
-  for (std::size_t f = 0; f < source.files.size(); ++f)
-    for (std::size_t p = 0; p < source.files[f].parts.size(); ++p) {
-      if (!source.files[f].parts[p].readable()) continue;
-      std::vector<const Layer*> layers;
-      for (const Layer& layer : source.layers)
-        if (layer.file == static_cast<int>(f) && layer.part == static_cast<int>(p)) layers.push_back(&layer);
-      for (LayerTally& tally : tally_part(source.files[f], static_cast<int>(p), layers))
-        statistics.push_back(std::move(tally.statistics));
+  /// Decodes the parts that were not added yet.
+  void add_other_parts(const FrameSource& source) {
+    for (std::size_t f = 0; f < source.files.size(); ++f)
+      for (std::size_t p = 0; p < source.files[f].parts.size(); ++p) {
+        const int file = static_cast<int>(f), part = static_cast<int>(p);
+        if (!source.files[f].parts[p].readable() || parts_.count({file, part}) > 0) continue;
+        std::vector<std::string> channels;
+        for (const ChannelInfo& channel : source.files[f].parts[p].channels) channels.push_back(channel.name);
+        read_bands(source.files[f], part, channels, [&](const Band& band) { add(source, file, part, channels, band); });
+      }
+  }
+
+  /// By file and part.
+  std::vector<LayerStatistics> statistics() const {
+    std::vector<LayerStatistics> all;
+    for (const auto& [place, tallies] : parts_)
+      for (const LayerTally& tally : tallies) {
+        all.push_back(tally.statistics);
+        if (tally.finite > 0) all.back().mean = tally.sum / static_cast<double>(tally.finite);
+      }
+    return all;
+  }
+
+ private:
+  static std::vector<LayerTally> begin_part(const FrameSource& source, int file, int part,
+                                            const std::vector<std::string>& channels) {
+    std::vector<LayerTally> tallies;
+    for (const Layer& layer : source.layers) {
+      if (layer.file != file || layer.part != part) continue;
+      LayerTally tally;
+      tally.statistics.layer = layer.name;
+      tally.statistics.pixels =
+          source.files[static_cast<std::size_t>(file)].parts[static_cast<std::size_t>(part)].data_window.area();
+      for (const std::string& name : layer.channels)
+        tally.planes.push_back(
+            static_cast<std::size_t>(std::find(channels.begin(), channels.end(), name) - channels.begin()));
+      tallies.push_back(std::move(tally));
     }
-  return statistics;
-}
+    return tallies;
+  }
+
+  std::map<std::pair<int, int>, std::vector<LayerTally>> parts_;  ///< By file and part.
+};
 
 /// Mean of variance / relmse_denominator(mean) over all finite samples; the variance is that of the half buffers where
 /// the file holds none. -1 where the file tells no noise.
@@ -133,14 +146,24 @@ double samples_of(const ReadResult& read, const ReadOptions& options) {
 
 }  // namespace
 
+const LayerStatistics* Inspection::statistics_of(const std::string& layer) const {
+  const auto found =
+      std::find_if(statistics.begin(), statistics.end(), [&](const LayerStatistics& s) { return s.layer == layer; });
+  return found == statistics.end() ? nullptr : &*found;
+}
+
 Inspection inspect(const std::string& path, const ReadOptions& options) {
   Inspection result;
+  Tallies tallies;
+  const auto observe = [&](const FrameSource& source, int file, int part, const std::vector<std::string>& channels,
+                           const Band& band) { tallies.add(source, file, part, channels, band); };
   try {
-    ReadResult read = read_frame(path, options);
+    ReadResult read = read_frame(path, options, observe);
     result.noise_level = noise_level(read.frame.beauty);
     result.samples = samples_of(read, options);
     result.source = std::move(read.source);
     result.notes = std::move(read.notes);
+    result.frame = std::move(read.frame);
   } catch (const Error& problem) {
     if (problem.code() != ExitCode::Missing) throw;
     result.source.path = path;
@@ -148,7 +171,8 @@ Inspection inspect(const std::string& path, const ReadOptions& options) {
     result.source.layers = find_layers(result.source.files.front());
     result.notes.emplace_back(problem.what());
   }
-  result.statistics = statistics_of(result.source);
+  tallies.add_other_parts(result.source);
+  result.statistics = tallies.statistics();
   result.missing = missing_roles(result.source);
   return result;
 }

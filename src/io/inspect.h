@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -8,7 +9,7 @@
 
 namespace polyrecon {
 
-/// Counts over all samples of a layer (its alpha excluded).
+/// Counts over all samples of a layer, without its alpha.
 struct LayerStatistics {
   std::string layer;
   std::size_t pixels = 0;
@@ -19,14 +20,18 @@ struct LayerStatistics {
 struct Inspection {
   FrameSource source;
   std::vector<LayerStatistics> statistics;  ///< By file and part; layers of unreadable parts are left out.
-  std::vector<std::string> missing;         ///< Roles that no layer plays: "variance", "albedo", ...
-  double samples = 0;                       ///< Samples per pixel where known, else 0.
-  double noise_level = -1;  ///< Mean over pixels of variance / (mean^2 + 0.01) of the beauty; -1 where unknown.
+  std::vector<std::string> missing;         ///< Roles and companions without a layer: "albedo", "variance", ...
+  double samples = 0;                       ///< Samples per pixel; 0 if unknown.
+  double noise_level = -1;  ///< Mean over pixels of variance / (mean^2 + 0.01) of the beauty; -1 if unknown.
   std::vector<std::string> notes;
+  std::optional<Frame> frame;  ///< As read_frame reads it; none in a file without beauty.
+
+  /// nullptr for a layer of an unreadable part.
+  const LayerStatistics* statistics_of(const std::string& layer) const;
 };
 
-/// Reads the whole file and tells what is in it. Throws like read_frame, except that a file without beauty is described
-/// too.
+/// Reads the whole file, decoding each part once, and describes it. Throws as read_frame, except that a file without
+/// beauty is described too.
 Inspection inspect(const std::string& path, const ReadOptions& options = {});
 
 }  // namespace polyrecon

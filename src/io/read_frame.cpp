@@ -12,6 +12,7 @@
 #include "io/channel_names.h"
 #include "io/choose_layers.h"
 #include "io/exr/file.h"
+#include "io/observed_read.h"
 #include "io/renderers/known_names.h"
 #include "polyrecon/error.h"
 
@@ -37,7 +38,7 @@ class PartReader {
 
   std::size_t samples() const { return samples_; }  ///< Planned so far.
 
-  void read() {
+  void read(const BandObserver& observer) {
     for (auto& [place, wanted] : parts_) {
       const FileInfo& file = source_.files[static_cast<std::size_t>(place.first)];
       const Rect window = file.parts[static_cast<std::size_t>(place.second)].data_window;
@@ -57,7 +58,11 @@ class PartReader {
           planes.push_back(plane);
         }
       }
-      read_planes(file, place.second, channels, planes);
+      if (observer) add_other_channels(file, place.second, channels);
+      read_bands(file, place.second, channels, [&, place = place](const Band& band) {
+        copy_band(band, planes);
+        if (observer) observer(source_, place.first, place.second, channels, band);
+      });
       for (const auto& [from, to] : repeated) std::copy_n(from, window.area(), to);
     }
   }
@@ -67,6 +72,12 @@ class PartReader {
   }
 
  private:
+  static void add_other_channels(const FileInfo& file, int part, std::vector<std::string>& channels) {
+    const std::vector<std::string> used = channels;
+    for (const ChannelInfo& channel : file.parts[static_cast<std::size_t>(part)].channels)
+      if (std::find(used.begin(), used.end(), channel.name) == used.end()) channels.push_back(channel.name);
+  }
+
   struct Wanted {
     std::vector<std::string> channels;
     std::unique_ptr<Image> image;
@@ -168,11 +179,11 @@ class FrameBuilder {
     result_.notes = std::move(choice.notes);
   }
 
-  ReadResult build() {
+  ReadResult build(const BandObserver& observer) {
     window_ = reader_.window_of(layer(passes_.front().mean));
     plan();
     if (options_.accept) options_.accept(result_.source.path, shape());
-    reader_.read();
+    reader_.read(observer);
     result_.frame.data_window = window_;
     result_.frame.sky_depth = sky_depth();
     take_sample_counts();
@@ -302,8 +313,10 @@ class FrameBuilder {
 
 }  // namespace
 
-ReadResult read_frame(const std::string& path, const ReadOptions& options) {
-  return FrameBuilder(choose_layers(path, options), options).build();
+ReadResult read_frame(const std::string& path, const ReadOptions& options) { return read_frame(path, options, {}); }
+
+ReadResult read_frame(const std::string& path, const ReadOptions& options, const BandObserver& observer) {
+  return FrameBuilder(choose_layers(path, options), options).build(observer);
 }
 
 ReadResult read_frame_header(const std::string& path, const ReadOptions& options) {

@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <fstream>
 #include <limits>
 
 #include "io/exr_fixture.h"
@@ -24,9 +26,8 @@ using testing::TestPart;
 using testing::write_exr;
 
 const LayerStatistics& of(const Inspection& inspection, const std::string& layer_name) {
-  const auto found = std::find_if(inspection.statistics.begin(), inspection.statistics.end(),
-                                  [&](const LayerStatistics& s) { return s.layer == layer_name; });
-  if (found == inspection.statistics.end()) throw std::runtime_error("no statistics of " + layer_name);
+  const LayerStatistics* found = inspection.statistics_of(layer_name);
+  if (!found) throw std::runtime_error("no statistics of " + layer_name);
   return *found;
 }
 
@@ -72,11 +73,47 @@ TEST(InspectFile, NoiseLevelFromVarianceOrHalves) {
   EXPECT_THAT(with_halves.missing, Not(Contains("half buffers")));
 }
 
+/// Bytes that this process has read from files, as Linux counts them.
+long long bytes_read() {
+  std::ifstream counts("/proc/self/io");
+  std::string key;
+  long long value = -1;
+  counts >> key >> value;
+  return key == "rchar:" ? value : -1;
+}
+
+TEST(InspectFile, DecodesEachPartOnce) {
+  if (bytes_read() < 0) GTEST_SKIP() << "/proc/self/io cannot be read";
+  const TemporaryFolder folder;
+  TestPart beauty, other;
+  for (TestPart* part : {&beauty, &other}) {
+    part->window = part->display = {0, 0, 256, 256};
+    part->compression = Imf::NO_COMPRESSION;
+  }
+  beauty.channels =
+      join({flat_layer("V.Combined", "RGB", 1), layer("V.Combined Variance", "RGB"), layer("V.X", "XYZ")});
+  beauty.name = "a";
+  other.channels = layer("V.Cryptomatte00", "RGBA");
+  other.name = "b";
+  const std::string path = write_exr(folder / "a.exr", {beauty, other});
+  const long long before = bytes_read();
+  const Inspection inspection = inspect(path);
+  const long long size = static_cast<long long>(std::filesystem::file_size(path));
+  EXPECT_LT(bytes_read() - before, size + size / 10);
+  ASSERT_TRUE(inspection.frame);
+  EXPECT_FALSE(inspection.frame->beauty.variance.empty());
+  EXPECT_EQ(inspection.frame->beauty.mean.at(200, 100, 1), 1);
+  for (const char* name : {"V.Combined", "V.Combined Variance", "V.X", "V.Cryptomatte00"})
+    EXPECT_EQ(of(inspection, name).pixels, 256u * 256u) << name;
+  EXPECT_EQ(of(inspection, "V.Cryptomatte00").maximum, 60);  // of the pattern
+}
+
 TEST(InspectFile, AFileWithoutABeautyIsDescribedToo) {
   const TemporaryFolder folder;
   TestPart part;
   part.channels = layer("V.Something", "XYZ");
   const Inspection inspection = inspect(write_exr(folder / "a.exr", {part}));
+  EXPECT_FALSE(inspection.frame);
   EXPECT_THAT(inspection.missing, Contains("beauty"));
   EXPECT_THAT(inspection.notes, Contains(HasSubstr("no beauty")));
   EXPECT_EQ(of(inspection, "V.Something").nan, 0u);

@@ -155,18 +155,14 @@ Image read_channels(const FileInfo& file, int part, const std::vector<std::strin
 
 void read_planes(const FileInfo& file, int part, const std::vector<std::string>& channels,
                  const std::vector<Real*>& planes) {
-  const Rect window = file.parts[static_cast<std::size_t>(part)].data_window;
-  ChannelReader reader(file, part, channels);
-  const int lines = reader.lines_per_band();
-  for (int y = window.y0; y < window.y1; y += std::min(lines, window.y1 - y)) {
-    const int end = y + std::min(lines, window.y1 - y);
-    const std::vector<float>& band = reader.read(y, end);
-    const std::size_t done = static_cast<std::size_t>(window.width()) * static_cast<std::size_t>(y - window.y0);
-    const std::size_t plane = static_cast<std::size_t>(window.width()) * static_cast<std::size_t>(end - y);
-    in_parallel(channels.size(), [&](std::size_t c) {
-      std::copy_n(band.begin() + static_cast<std::ptrdiff_t>(plane * c), plane, planes[c] + done);
-    });
-  }
+  read_bands(file, part, channels, [&](const Band& band) { copy_band(band, planes); });
+}
+
+void copy_band(const Band& band, const std::vector<Real*>& planes) {
+  in_parallel(planes.size(), [&](std::size_t c) {
+    std::copy_n(band.samples.begin() + static_cast<std::ptrdiff_t>(band.pixels * c), band.pixels,
+                planes[c] + band.first_pixel);
+  });
 }
 
 const AttributeInfo* find_attribute(const PartInfo& part, const std::string& name) {

@@ -7,6 +7,8 @@
 
 namespace polyrecon {
 
+struct Band;
+
 /// Threads that decode and encode chunks in this process; 0: in the calling thread.
 void set_codec_threads(int threads);
 
@@ -20,5 +22,8 @@ Image read_channels(const FileInfo& file, int part, const std::vector<std::strin
 /// The same, into planes of the caller: planes[c] has room for the data window's pixels. Does not look at max_bytes.
 void read_planes(const FileInfo& file, int part, const std::vector<std::string>& channels,
                  const std::vector<Real*>& planes);
+
+/// Copies the first channels of a band (io/channel_reader.h) into as many planes of the caller.
+void copy_band(const Band& band, const std::vector<Real*>& planes);
 
 }  // namespace polyrecon

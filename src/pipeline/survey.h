@@ -1,0 +1,22 @@
+#pragma once
+
+#include "features/prepare.h"
+#include "noise/variance.h"
+#include "polyrecon/frame.h"
+#include "polyrecon/params.h"
+#include "polyrecon/progress.h"
+
+namespace polyrecon {
+
+/// What is known of a frame before any work on its pixels.
+struct Survey {
+  NoiseVariance noise;      ///< Of the beauty.
+  Preparation preparation;  ///< The features that take part, and which steps run.
+};
+
+/// Determines the noise of a frame and decides which of the steps run. Features of unknown noise get a variance in
+/// `frame` if the prefilter may run. Throws Error{CheckFailed} where the beauty has no usable pixel, Error{Interrupted}
+/// when progress asks to stop.
+Survey survey_frame(Frame& frame, const Steps& steps, Progress& progress);
+
+}  // namespace polyrecon
