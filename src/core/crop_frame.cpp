@@ -21,6 +21,7 @@ Frame crop(const Frame& frame, const Rect& r) {
   out.prior = crop(frame.prior, r);
   out.alpha = crop(frame.alpha, r);
   out.sample_count = crop(frame.sample_count, r);
+  out.sky_depth = frame.sky_depth;
   out.motion = crop(frame.motion, r);
   return out;
 }

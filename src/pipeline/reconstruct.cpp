@@ -21,6 +21,7 @@
 #include "pipeline/savings.h"
 #include "pipeline/stage.h"
 #include "pipeline/stages.h"
+#include "pipeline/survey.h"
 #include "temporal/join.h"
 #include "temporal/neighbour.h"
 
@@ -42,11 +43,9 @@ Params params_for_frame(const Frame& frame, Params params) {
   return params;
 }
 
-NoiseVariance measure_noise(Frame& frame, const Params& params, Stages& stages) {
-  return stages.run("noise variance", rows_of(frame) * 2 * (1 + frame.features.size()), [&](Progress& progress) {
-    if (params.steps.prefilter) estimate_feature_variance(frame, progress);
-    return noise_variance(frame, progress);
-  });
+Survey survey_input(Frame& frame, const Params& params, Stages& stages) {
+  return stages.run("noise variance", rows_of(frame) * 2 * (1 + frame.features.size()),
+                    [&](Progress& progress) { return survey_frame(frame, params.steps, progress); });
 }
 
 /// A frame as two noisy halves without outliers, ready for the fit.
@@ -203,18 +202,17 @@ Result reconstruct(Frame& frame, const std::vector<TimedNeighbour>& neighbours, 
   FrameShape shape = shape_of(frame);
   shape.beside += neighbours_channels(shape, static_cast<int>(neighbours.size()));
   require_memory("layer '" + frame.beauty.name + "'", shape, params);
-  require_usable(frame);
   Result result;
   Report& report = result.report;
   Stages stages(progress, report);
   note_input(frame, report);
 
   // The input as two halves of known noise, and the features that describe the scene (equations 1 and 2).
-  const NoiseVariance noise = measure_noise(frame, params, stages);
-  const Preparation preparation = look_at(frame, params.steps);
-  NoisyHalves halves = split_into_halves(frame, preparation, noise, params, stages);
+  const Survey survey = survey_input(frame, params, stages);
+  const NoiseVariance& noise = survey.noise;
+  NoisyHalves halves = split_into_halves(frame, survey.preparation, noise, params, stages);
   HalfPair& pair = halves.prepared.pair;
-  note_preparation(noise, preparation, halves.prepared, report);
+  note_preparation(noise, survey.preparation, halves.prepared, report);
   note_outliers(halves.outliers, params.steps, report);
   if (!neighbours.empty()) {
     const JoinCounts joined = stages.run("neighbours in time", 2, [&](Progress& p) {

@@ -11,6 +11,8 @@
 #include "core/parallel.h"
 #include "core/rect.h"
 #include "core/relmse.h"
+#include "core/repair.h"
+#include "features/prepare.h"
 #include "polyrecon/reconstruct.h"
 #include "sweep/pareto.h"
 
@@ -49,15 +51,24 @@ double noise_of(const Frame& frame, const Rect& r) {
   return sum / static_cast<double>(r.area());
 }
 
-/// Picks `count` tiles at even ranks of their noise.
-std::vector<Rect> choose_tiles(const Frame& frame, std::size_t count) {
+/// The tiles with a usable pixel, without narrow ones at the borders where there are others.
+std::vector<Rect> usable_tiles(const Frame& frame) {
   std::vector<Rect> tiles = aligned_blocks({0, 0, frame.width(), frame.height()}, tile_size);
+  const auto remove = [&](const auto& condition) {
+    tiles.erase(std::remove_if(tiles.begin(), tiles.end(), condition), tiles.end());
+  };
+  remove([&](const Rect& tile) { return !has_usable_pixel(crop(frame.beauty.mean, tile)); });
   std::size_t largest = 0;
   for (const Rect& tile : tiles) largest = std::max(largest, tile.area());
+  remove([&](const Rect& tile) { return 2 * tile.area() < largest; });
+  return tiles;
+}
+
+/// Picks `count` tiles at even ranks of their noise.
+std::vector<Rect> choose_tiles(const Frame& frame, std::size_t count) {
+  const std::vector<Rect> tiles = usable_tiles(frame);
   std::vector<std::pair<double, std::size_t>> ranked;
-  for (std::size_t i = 0; i < tiles.size(); ++i)
-    if (2 * tiles[i].area() >= largest)
-      ranked.emplace_back(noise_of(frame, tiles[i]), i);  // narrow tiles at the borders are no sample
+  for (std::size_t i = 0; i < tiles.size(); ++i) ranked.emplace_back(noise_of(frame, tiles[i]), i);
   std::sort(ranked.begin(), ranked.end());
   count = std::min(count, ranked.size());
   std::vector<Rect> chosen;
@@ -74,6 +85,7 @@ Prediction predict(const Pilot& pilot, std::size_t preset, const std::array<Pres
 }  // namespace
 
 Pilot run_pilot(const Frame& frame, Progress& progress) {
+  require_usable(frame);
   const auto pixels = static_cast<double>(frame.width()) * frame.height();
   const int threads = processors();
   const auto wanted = static_cast<std::size_t>(pilot_share * pixels / (tile_size * tile_size));

@@ -44,10 +44,12 @@ TEST(CropFrame, KeepsEverythingInside) {
   frame.alpha = numbered_pass("", 1, 6).mean;
   frame.sample_count = numbered_pass("", 1, 7).mean;
   frame.motion = numbered_pass("", 4, 8).mean;
+  frame.sky_depth = 100;
   const Rect r{2, 1, 7, 5};
   const Frame part = crop(frame, r);
   EXPECT_EQ(part.data_window, (Rect{-1, 6, 4, 10}));
   expect_crop(part.beauty, frame.beauty, r);
+  EXPECT_EQ(part.sky_depth, 100);
   ASSERT_EQ(part.features.size(), 2u);
   for (std::size_t k = 0; k < 2; ++k) {
     EXPECT_EQ(part.features[k].role, frame.features[k].role);

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
+#include "polyrecon/error.h"
 #include "polyrecon/reconstruct.h"
 #include "support/scene.h"
 
@@ -94,6 +97,16 @@ TEST(Pilot, SeesAPartOfTheFrameAndTheWholeOfItsError) {
   const double whole = reconstruct(frame, presets()[2].params, silent_progress()).report.estimated_relative_mse;
   EXPECT_GT(pilot.relative_mse, whole / 2);
   EXPECT_LT(pilot.relative_mse, whole * 2);
+}
+
+TEST(Pilot, SkipsTilesWithoutAUsablePixel) {
+  Frame frame = test::make_scene(128, 64, 0.1, 3).frame;  // two tiles
+  constexpr Real nan = std::numeric_limits<Real>::quiet_NaN();
+  for (Image* image : {&frame.beauty.mean, &frame.beauty.half_a, &frame.beauty.half_b})
+    paste(Image(64, 64, 3, nan), {0, 0, 64, 64}, *image, 0, 0);
+  EXPECT_DOUBLE_EQ(run_pilot(frame, silent_progress()).share, 0.5);
+  paste(Image(64, 64, 3, nan), {0, 0, 64, 64}, frame.beauty.mean, 64, 0);
+  EXPECT_THROW(run_pilot(frame, silent_progress()), Error);
 }
 
 TEST(Pilot, WorksOnFramesSmallerThanATile) {
