@@ -19,7 +19,7 @@ struct Pass {
   bool variance_is_estimated = false;  ///< The variance was estimated from the mean: the file has none.
 
   bool has_halves() const { return !half_a.empty(); }
-  bool noise_is_told() const { return !variance.empty() || has_halves(); }
+  bool noise_is_known() const { return !variance.empty() || has_halves(); }
 };
 
 /// A pass that guides the reconstruction: f of equation (2). Its role is a feature, which says how many channels it
@@ -54,7 +54,7 @@ struct FrameShape {
   int color_channels = 3;    ///< Beauty and AOVs.
   int feature_channels = 0;  ///< Means of the features.
   int prior_channels = 0;    ///< The prior, with halves and variance; it stays in memory during the fits.
-  int beside = 0;            ///< Other frames in memory at the same time: neighbours in time, the next of a sequence.
+  int other_channels = 0;    ///< Other frames in memory at the same time: neighbours in time, the next of a sequence.
 };
 
 }  // namespace polyrecon

@@ -289,7 +289,7 @@ Decision decide_on_prefilter(const std::string& feature, const Pass& pass, const
                              const Steps& steps) {
   const std::string step = feature + " prefilter";
   if (!steps.prefilter) return {step, false, "not requested"};
-  if (!pass.noise_is_told()) return {step, false, "nothing is known of its noise"};
+  if (!pass.noise_is_known()) return {step, false, "nothing is known of its noise"};
   if (!steps.decide) return {step, true, "requested"};
   const bool noisy = look.noise > noise_floor * look.variance;
   if (!noisy) return {step, false, "the pass is clean", Spared::Prefilter, pass.mean.channels()};

@@ -169,7 +169,7 @@ Image variance_from_halves(const Pass& beauty) {
 
 }  // namespace
 
-bool noise_is_measured(const Frame& frame) { return frame.beauty.noise_is_told(); }
+bool noise_is_measured(const Frame& frame) { return frame.beauty.noise_is_known(); }
 
 Image estimate_variance(const Image& y, const Image& features, Progress& progress) {
   Image fits((y.width() + fit_stride - 1) / fit_stride, (y.height() + fit_stride - 1) / fit_stride, y.channels());
@@ -204,7 +204,7 @@ NoiseVariance noise_variance(const Frame& frame, Progress& progress) {
 
 void estimate_feature_variance(Frame& frame, Progress& progress) {
   for (Feature& feature : frame.features) {
-    if (!noise_is_estimated(feature.role, feature.pass.noise_is_told())) continue;
+    if (!noise_is_estimated(feature.role, feature.pass.noise_is_known())) continue;
     Image mean = feature.pass.mean;
     repair_nonfinite(mean, 2);
     feature.pass.variance = estimate_variance(mean, Image(mean.width(), mean.height(), 0), progress);

@@ -31,7 +31,7 @@ std::size_t pair_channels(const FrameShape& shape) {
 std::size_t kept_channels(const FrameShape& shape) {
   constexpr std::size_t alpha = 1, sample_count = 1, noise_variance = 3, noise_bound = 3;
   return count(shape.color_channels) + alpha + sample_count + count(shape.prior_channels) + noise_variance +
-         noise_bound + count(shape.beside);
+         noise_bound + count(shape.other_channels);
 }
 
 /// Channels held while windows are fitted: the pair and the results of this stage and the one before, each with its
@@ -67,7 +67,7 @@ FrameShape shape_of(const Frame& frame) {
     add(feature.pass);
     const int channels = feature.pass.mean.channels();
     shape.feature_channels += channels;
-    if (noise_is_estimated(feature.role, feature.pass.noise_is_told())) shape.channels += channels;
+    if (noise_is_estimated(feature.role, feature.pass.noise_is_known())) shape.channels += channels;
   }
   return shape;
 }
@@ -86,8 +86,8 @@ MemoryNeeds memory_needs(const FrameShape& shape, const Params& params) {
     return static_cast<std::size_t>(allocator * static_cast<double>(bytes));
   };
   const auto image_bytes = [&](std::size_t channels) { return shape.pixels * channels * sizeof(Real); };
-  const std::size_t preparing =
-      count(shape.channels + shape.beside) + noise_variance + pair_channels(shape) + feature_in_preparation_channels;
+  const std::size_t preparing = count(shape.channels + shape.other_channels) + noise_variance + pair_channels(shape) +
+                                feature_in_preparation_channels;
   const std::size_t holding = kept_channels(shape) + std::max(fitting_channels(shape), finishing_channels(shape));
   MemoryNeeds needs;
   needs.prepare = with_gaps(program_bytes + image_bytes(preparing));

@@ -200,7 +200,7 @@ Result reconstruct(Frame& frame, const std::vector<TimedNeighbour>& neighbours, 
                    Progress& progress) {
   const Params params = params_for_frame(frame, requested);
   FrameShape shape = shape_of(frame);
-  shape.beside += neighbours_channels(shape, static_cast<int>(neighbours.size()));
+  shape.other_channels += neighbours_channels(shape, static_cast<int>(neighbours.size()));
   require_memory("layer '" + frame.beauty.name + "'", shape, params);
   Result result;
   Report& report = result.report;

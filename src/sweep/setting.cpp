@@ -45,7 +45,7 @@ bool has_feature(const Frame& frame, Role role) {
 }
 
 bool may_be_cleaned(const Feature& feature) {
-  const bool told = feature.pass.noise_is_told();
+  const bool told = feature.pass.noise_is_known();
   return told || noise_is_estimated(feature.role, told);
 }
 

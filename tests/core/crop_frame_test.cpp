@@ -68,7 +68,7 @@ TEST(CropFrame, WhatIsNotThereStaysEmpty) {
   frame.beauty.mean = Image(8, 6, 3);
   const Frame part = crop(frame, {0, 0, 4, 4});
   EXPECT_EQ(part.beauty.mean.width(), 4);
-  EXPECT_FALSE(part.beauty.noise_is_told());
+  EXPECT_FALSE(part.beauty.noise_is_known());
   for (const Image* image : {&part.prior.mean, &part.alpha, &part.sample_count, &part.motion})
     EXPECT_TRUE(image->empty());
 }
