@@ -101,8 +101,8 @@ void divide_by_noise(const Image& variance, const Image& scale, double sigma, Im
   for_rows(shares.height(), [&](int y) {
     for (int x = 0; x < shares.width(); ++x) {
       const Real v = relative.at(x, y, 0) + least_relative_variance;
-      shares.at(x, y, 0) /=
-          std::sqrt(v < most_relative_variance ? v : most_relative_variance);  // NaN: radiance underflows
+      shares.at(x, y, 0) /= std::sqrt(
+          v < most_relative_variance ? v : most_relative_variance);  // also where v is NaN, as radiance underflows
     }
   });
 }

@@ -52,7 +52,8 @@ std::size_t raise_undershoot(const Image& input, Image& image) {
       const Rect around = intersect(grow({x, y, x + 1, y + 1}, radius), image.bounds());
       bool any = false;
       for (int c = 0; c < 3; ++c) {
-        if (image.at(x, y, c) >= input.at(x, y, c)) continue;  // not below all inputs, as its own is one of them
+        // A value that is not below the input of its pixel is not below all inputs around it.
+        if (image.at(x, y, c) >= input.at(x, y, c)) continue;
         const Real least = least_over(input, c, around);
         if (image.at(x, y, c) >= least) continue;
         raise(input, around, c, least - image.at(x, y, c), x, y, image);

@@ -13,8 +13,9 @@
 namespace polyrecon {
 namespace {
 
-constexpr int block = 5, block_radius = 2;  // pixels; blocks
-constexpr std::size_t others = 3;           // blocks that must have a spike as high
+constexpr int block = 5;           // pixels
+constexpr int block_radius = 2;    // blocks
+constexpr std::size_t others = 3;  // blocks that must have a spike as high
 // Part of the squared excess that counts as variance. With all of it, highlights of the scene lose more than the noise
 // of spikes is reduced.
 constexpr Real share = Real(0.5);

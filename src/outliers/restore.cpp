@@ -134,7 +134,7 @@ class BoxSums {
   static int end_of_block(int i) { return (i / block_side + 1) * block_side; }
   double& at(int x, int y) { return sums_[static_cast<std::size_t>(y) * width_ + static_cast<std::size_t>(x)]; }
   double at(int x, int y) const { return sums_[static_cast<std::size_t>(y) * width_ + static_cast<std::size_t>(x)]; }
-  /// The entry at (x, y) where that lies in the block of (in_x, in_y), which it is above or left of; else 0.
+  /// The entry at (x, y) if it is in the block of (in_x, in_y), or 0 if it is above or to the left of that block.
   double before(int in_x, int in_y, int x, int y) const {
     return x < in_x / block_side * block_side || y < in_y / block_side * block_side ? 0 : at(x, y);
   }

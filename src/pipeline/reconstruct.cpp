@@ -29,7 +29,7 @@
 namespace polyrecon {
 namespace {
 
-constexpr int smallest_level = 16;           // pixels; smaller levels have no room for a window
+constexpr int smallest_level = 16;           // pixels; windows would cover most of a smaller level
 constexpr double max_restored_gain = 0.001;  // a tenth of the least visible step in brightness (Weber)
 constexpr double max_total_gain = 0.05;      // above what is lost because weights favour ordinary pixels
 constexpr double most_noise_in_prior = 0.9;  // above it the prior is the input, which would validate itself
@@ -225,7 +225,7 @@ Result reconstruct(Frame& frame, const std::vector<TimedNeighbour>& neighbours, 
   const std::size_t max_bytes = tile_memory(shape, params);
   Candidate solved = fit_polynomials(frame, pair, params, max_bytes, stages, report);
 
-  // What the fits may not change, the error that is left, and where a denoised layer has less.
+  // The noise bound, the estimate of the error that is left, and the prior where its error is smaller.
   const BoundEnergy bound = stages.run("noise bound", 1, [&](Progress&) {
     return halves.bound.empty() ? BoundEnergy() : bind_to_noise(pair, halves.bound, max_total_gain, solved);
   });
