@@ -1,9 +1,10 @@
-// Layers of a file: groups of channels, and what each is to the method.
+// Layers of files: groups of channels, and what each is to the method.
 #pragma once
 
 #include <string>
 #include <vector>
 
+#include "polyrecon/file_info.h"
 #include "polyrecon/roles.h"
 
 namespace polyrecon {
@@ -30,5 +31,23 @@ struct Layer {
 
 /// The companion in words: "variance of the mean", "half A".
 const char* name_of(Companion companion);
+
+/// A layer in use.
+struct RoleChoice {
+  Role role = Role::Other;
+  Companion companion = Companion::Mean;
+  std::string layer;  ///< Layer::name.
+  std::string why;    ///< How role and companion were found, as a phrase.
+};
+
+/// Where a frame came from: the files, their layers, and which of them are in use.
+struct FrameSource {
+  std::string path;
+  std::vector<FileInfo> files;     ///< [0] is the file at path; the others hold passes of the same frame.
+  std::vector<Layer> layers;       ///< All layers of all files.
+  std::string view_layer, view;    ///< The ones in use.
+  std::vector<RoleChoice> chosen;  ///< The layers in use: beauty, its companions, features, others.
+  std::string alpha_layer;         ///< The layer that Frame::alpha is read from; empty without one.
+};
 
 }  // namespace polyrecon

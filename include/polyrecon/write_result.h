@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "polyrecon/frame.h"
-#include "polyrecon/read_frame.h"
+#include "polyrecon/layers.h"
 
 namespace polyrecon {
 

@@ -18,13 +18,13 @@ POLYRECON_SIMD void add_values(const Real* in, double* sum, int n) {
   for (int i = 0; i < n; ++i) sum[i] += static_cast<double>(in[i]);
 }
 
-/// max(v, mean of v over 3 x 3): single pixels of too small a variance would refuse every neighbour.
+/// max(v, mean of v over 3 x 3). A single pixel with too small a variance would give no neighbour a weight.
 Image widened_variance(const Image& variance) {
   Image out(variance.width(), variance.height(), variance.channels());
   const int width = out.width();
   for_rows(out.height(), [&](int y) {
     const int top = std::max(y - 1, 0), bottom = std::min(y + 2, out.height());
-    std::vector<double> columns(static_cast<std::size_t>(width) + 2);  // one beyond either border
+    std::vector<double> columns(static_cast<std::size_t>(width) + 2);  // one more on either side
     for (int c = 0; c < out.channels(); ++c) {
       std::fill(columns.begin(), columns.end(), 0.0);
       for (int v = top; v < bottom; ++v) add_values(variance.row(c, v), columns.data() + 1, width);
@@ -49,7 +49,7 @@ POLYRECON_SIMD void add_distances(const Real* a, const Real* b, const Real* va, 
   }
 }
 
-/// out[i] = factor x sum of in[i], in[i + step], ..., one for each of the patch.
+/// out[i] = factor * (in[i] + in[i + step] + ... + in[i + (patch - 1) * step]).
 template <int patch>
 POLYRECON_SIMD void patch_sums(const Real* in, std::ptrdiff_t step, Real factor, Real* out, int n) {
   for (int i = 0; i < n; ++i) {
@@ -74,7 +74,7 @@ void add_patch(int patch, const Real* in, std::ptrdiff_t step, Real factor, Real
   }
 }
 
-/// Weights in place of distances; one that is not a number, of values near the largest there are, counts as far.
+/// Replaces distances by weights. A distance that overflowed to NaN gets the smallest weight.
 POLYRECON_SIMD void weights_of(Real* distance, Real inverse_square, int n) {
   for (int i = 0; i < n; ++i) {
     const Real e = std::max(distance[i] * inverse_square, Real(0));
@@ -86,7 +86,7 @@ POLYRECON_SIMD void accumulate(const Real* weight, const Real* in, double* out, 
   for (int i = 0; i < n; ++i) out[i] += static_cast<double>(weight[i]) * static_cast<double>(in[i]);
 }
 
-/// A tile with a border of repeated pixels: what the offsets are taken from.
+/// A tile of an image with a border, which holds the pixels around the tile and repeats those at the image's edge.
 struct Padded {
   int width, height, margin;
   std::vector<Real> samples;
@@ -148,7 +148,7 @@ class TileFilter {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(tile_.width()) + static_cast<std::size_t>(x);
   }
 
-  /// Distances of single pixels to those at an offset.
+  /// Computes the distance of each pixel to the one at an offset.
   void measure(int dx, int dy) {
     const int r = params_.patch_radius, channels = source_.channels();
     std::fill(pixel_.begin(), pixel_.end(), Real(0));
@@ -159,7 +159,7 @@ class TileFilter {
                       pixel_.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(wide_), wide_);
   }
 
-  /// Turns the distances into weights of patches and adds the pixels at the offset to one row of sums.
+  /// Turns the distances of a row into weights of patches, and adds the pixels at the offset with these weights.
   void add_row(int dx, int dy, int y) {
     const int patch = 2 * params_.patch_radius + 1;
     add_patch(patch, pixel_.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(wide_), wide_, 1,
@@ -178,7 +178,7 @@ class TileFilter {
   Rect tile_;
   const PrefilterParams& params_;
   Padded values_, noise_;
-  int wide_;  ///< The tile and a patch radius on both sides.
+  int wide_;  ///< Width of the tile with a patch radius on both sides.
   std::vector<Real> pixel_, row_sum_, weight_;
   std::vector<double> sum_, total_;
 };
@@ -196,12 +196,12 @@ bool has_noise(const Image& noise, const Rect& tile) {
 
 std::array<Image, 2> prefilter(const std::array<Image, 2>& halves, const Image& variance, const PrefilterParams& params,
                                Progress& progress) {
-  constexpr int tile_side = 64;  // its sums and distances stay in the second cache
+  constexpr int tile_side = 64;  // the sums and distances of a tile stay in the second-level cache
   const Image noise = widened_variance(variance);
   std::array<Image, 2> out = halves;
   auto tiles = aligned_blocks(variance.bounds(), tile_side);
-  const auto clean = [&](const Rect& tile) { return !has_noise(noise, tile); };
-  tiles.erase(std::remove_if(tiles.begin(), tiles.end(), clean), tiles.end());
+  const auto noise_free = [&](const Rect& tile) { return !has_noise(noise, tile); };
+  tiles.erase(std::remove_if(tiles.begin(), tiles.end(), noise_free), tiles.end());
   parallel_for(2 * tiles.size(), progress, [&](std::size_t i) {
     const std::size_t h = i % 2;
     TileFilter(halves[h], halves[1 - h], noise, tiles[i / 2], params).run(out[h]);

@@ -18,10 +18,10 @@
 namespace polyrecon {
 namespace {
 
-constexpr int repair_radius = 8;      // pixels; deeper holes carry no information for their middle anyway
-constexpr double noise_floor = 1e-5;  // noise below this part of a feature's own variance is not worth cleaning
+constexpr int repair_radius = 8;      // pixels; the values around a larger hole say nothing of its middle
+constexpr double noise_floor = 1e-5;  // noise variance over variance of the feature below which it is not prefiltered
 
-/// body(c, y) for every row of every channel; rows side by side.
+/// Calls body(c, y) for every row of every channel, rows in parallel.
 template <typename Body>
 void for_rows_of(const Image& image, const Body& body) {
   for_rows(image.height(), [&](int y) {
@@ -29,7 +29,7 @@ void for_rows_of(const Image& image, const Body& body) {
   });
 }
 
-/// Mean over the usable, non-negative part of the beauty.
+/// Mean of the finite, positive values of the beauty over all pixels.
 double mean_brightness(const Image& beauty) {
   const double sum = ordered_sum(static_cast<std::size_t>(beauty.height()), [&](std::size_t y) {
     double row = 0;
@@ -50,19 +50,19 @@ struct Range {
     low = std::min(low, v);
     high = std::max(high, v);
   }
-  bool holds(double v) const { return low <= v && v <= high; }
+  bool contains(double v) const { return low <= v && v <= high; }
   double largest() const { return std::max(std::abs(low), std::abs(high)); }
 };
 
-/// What a feature's values and noise look like over the frame.
+/// Statistics of a feature's values and noise over the frame. Its usual values are those without spikes.
 struct FeatureLook {
-  Range all, usual;     ///< Of its values; usual: without spikes.
-  double variance = 0;  ///< Of its usual values over the frame, mean over the channels.
-  double noise = 0;     ///< Mean of their own noise variance.
+  Range all, usual;     ///< The range of all values, and of the usual ones.
+  double variance = 0;  ///< Variance of the usual values over the frame, averaged over the channels.
+  double noise = 0;     ///< Mean noise variance of the usual values.
   std::size_t usable_pixels = 0, noisy_pixels = 0;
 };
 
-/// Noise variance of a pass at a pixel as far as the pass tells, else 0.
+/// Noise variance of a pass at a pixel; 0 where it is unknown.
 double noise_at(const Pass& pass, int c, std::size_t i) {
   if (!pass.variance.empty() && usable(pass.variance.plane(c)[i]))
     return static_cast<double>(pass.variance.plane(c)[i]);
@@ -73,12 +73,13 @@ double noise_at(const Pass& pass, int c, std::size_t i) {
 
 bool is_depth(const Feature& feature) { return info_of(feature.role).transform == FeatureTransform::BoundedDepth; }
 
+/// Whether a value is finite and, for a depth, nearer than the sky.
 bool usable_value(const Feature& feature, double sky, Real value) {
   return usable(value) && !(is_depth(feature) && static_cast<double>(value) >= sky);
 }
 
-/// Where a channel's values lie but for spikes: from the 0.5 % quantile to that of 99.5 %, and as far again on either
-/// side. All where they hardly vary, since what does is no spike then.
+/// The range of a channel's values without spikes: from the quantile of 0.5 % to that of 99.5 %, widened by this
+/// distance on either side. It is unbounded where the quantiles are equal, as a value that differs is no spike there.
 Range usual_range(const Feature& feature, double sky, int channel) {
   constexpr std::size_t samples = 1 << 16;
   const Image& mean = feature.pass.mean;
@@ -95,6 +96,7 @@ Range usual_range(const Feature& feature, double sky, int channel) {
   return {low - (high - low), high + (high - low)};
 }
 
+/// sky: Frame::sky_depth.
 FeatureLook look_at_feature(const Feature& feature, double sky) {
   FeatureLook look;
   const Image& mean = feature.pass.mean;
@@ -108,14 +110,14 @@ FeatureLook look_at_feature(const Feature& feature, double sky) {
       if (!usable_value(feature, sky, values[i])) continue;
       ++pixels;
       look.all.add(v);
-      if (!usual.holds(v)) continue;
+      if (!usual.contains(v)) continue;
       ++count;
       look.usual.add(v);
       sum += v;
       square += v * v;
-      const double own_noise = noise_at(feature.pass, c, i);
-      noise += own_noise;
-      noisy += own_noise > 0;
+      const double variance = noise_at(feature.pass, c, i);
+      noise += variance;
+      noisy += variance > 0;
     }
     if (count == 0) continue;
     const double n = static_cast<double>(count), m = sum / n;
@@ -139,7 +141,7 @@ double median_depth(const Image& depth, double sky) {
   return static_cast<double>(*middle);
 }
 
-/// Whether a feature takes part, and why (or why not).
+/// Whether a feature takes part in the fit, and why.
 Decision decide_on_feature(const FeatureLook& look, const Feature& feature, const Steps& steps) {
   const std::string step = std::string("feature ") + name_of(feature.role);
   const Image& mean = feature.pass.mean;
@@ -164,7 +166,7 @@ void transform(const FeatureUse& use, Image& image) {
   });
 }
 
-/// Noise variance after transform(): times the squared slope of the transformation.
+/// Noise variance after transform(): it is multiplied by the squared slope of the transformation.
 void transform_variance(const FeatureUse& use, const Image& mean, Image& variance) {
   for_rows_of(variance, [&](int c, int y) {
     const Real* means = mean.row(c, y);
@@ -191,8 +193,8 @@ void scale(Image& image, Real factor) {
   });
 }
 
-/// Both halves of a pass, taken from it and repaired; split from the mean where the file has none. half_variance: of
-/// one half; may be empty.
+/// Moves the halves out of a pass and repairs them. A pass without halves has its mean split, with half_variance as the
+/// noise variance of one half; where that is empty both halves are the mean.
 std::array<Image, 2> halves_of(Pass& pass, const Image& half_variance, std::uint64_t stream, std::size_t& repaired) {
   if (pass.has_halves()) {
     std::array<Image, 2> halves{std::move(pass.half_a), std::move(pass.half_b)};
@@ -207,8 +209,8 @@ std::array<Image, 2> halves_of(Pass& pass, const Image& half_variance, std::uint
   return split_halves(mean, variance, stream);
 }
 
-/// Noise variance of one half of a feature; empty where nothing is known of it. Where it is estimated both halves are
-/// the mean itself: what a split adds costs as much as it tells.
+/// Noise variance of one half of a feature; empty where it is unknown. An estimated variance is that of the mean, which
+/// then serves as both halves: splitting it adds as much noise as the independence of the halves removes.
 Image feature_half_variance(Pass& pass, std::size_t& repaired) {
   if (!pass.variance.empty()) {
     Image variance = std::move(pass.variance);
@@ -228,7 +230,7 @@ Image feature_half_variance(Pass& pass, std::size_t& repaired) {
   return variance;
 }
 
-/// Pixels in which some channel is below zero.
+/// Number of pixels with a negative channel.
 std::size_t negative_pixels(const Image& image) {
   return static_cast<std::size_t>(ordered_sum(static_cast<std::size_t>(image.height()), [&](std::size_t y) {
     std::size_t count = 0;
@@ -241,8 +243,8 @@ std::size_t negative_pixels(const Image& image) {
   }));
 }
 
-/// Halves of a colour pass that has none: it takes its share, pass / beauty, of what sets the beauty's halves apart.
-/// Passes that add up to the beauty have halves that add up to its halves.
+/// Halves of a colour pass that has none. They differ by the pass's share, pass / beauty, of the difference between the
+/// beauty's halves, so that the halves of passes which add up to the beauty add up to the beauty's halves.
 std::array<Image, 2> split_like(const std::array<Image, 2>& beauty, const Pass& pass, std::size_t& repaired) {
   Image mean = pass.mean;
   repaired += repair_nonfinite(mean, repair_radius);
@@ -251,7 +253,7 @@ std::array<Image, 2> split_like(const std::array<Image, 2>& beauty, const Pass& 
     for (std::size_t i = 0; i < mean.pixels(); ++i) {
       const Real a = beauty[0].plane(c)[i], b = beauty[1].plane(c)[i], sum = a + b;
       if (!(std::abs(sum) > std::numeric_limits<Real>::min())) continue;
-      // Part of the beauty is 0 to 1 of it; a layer that is none (an albedo) may be any multiple of a dark pixel.
+      // A layer that is no part of the beauty, such as an albedo, can be any multiple of a dark pixel: limit the share.
       const Real share = std::clamp(2 * (mean.plane(c)[i] / sum), Real(0), Real(1));
       const Real offset = share * (Real(0.5) * (a - b));
       halves[0].plane(c)[i] += offset;
@@ -260,13 +262,14 @@ std::array<Image, 2> split_like(const std::array<Image, 2>& beauty, const Pass& 
   return halves;
 }
 
-void append_channels(const Image& from, Image& to, int& channel) {
-  const int first = channel;
-  in_parallel(static_cast<std::size_t>(from.channels()), [&](std::size_t k) {
-    const int c = static_cast<int>(k);
-    std::copy(from.plane(c), from.plane(c) + from.pixels(), to.plane(first + c));
-  });
-  channel += from.channels();
+/// Copies the channels of two halves to those of a pair, beginning at `channel`, which is moved to the next free one.
+void append(const std::array<Image, 2>& halves, std::array<Image, 2>& to, int& channel) {
+  for (std::size_t h = 0; h < 2; ++h)
+    in_parallel(static_cast<std::size_t>(halves[h].channels()), [&](std::size_t k) {
+      const int c = static_cast<int>(k);
+      std::copy(halves[h].plane(c), halves[h].plane(c) + halves[h].pixels(), to[h].plane(channel + c));
+    });
+  channel += halves[0].channels();
 }
 
 std::array<Image, 2> prepared_feature(Feature feature, const FeatureUse& use, std::size_t stream,
@@ -284,17 +287,51 @@ std::array<Image, 2> prepared_feature(Feature feature, const FeatureUse& use, st
   return halves;
 }
 
-/// Whether a feature is cleaned, and why (or why not).
+/// Whether a feature is prefiltered, and why.
 Decision decide_on_prefilter(const std::string& feature, const Pass& pass, const FeatureLook& look,
                              const Steps& steps) {
   const std::string step = feature + " prefilter";
   if (!steps.prefilter) return {step, false, "not requested"};
-  if (!pass.noise_is_known()) return {step, false, "nothing is known of its noise"};
+  if (!pass.noise_is_known()) return {step, false, "its noise is unknown"};
   if (!steps.decide) return {step, true, "requested"};
   const bool noisy = look.noise > noise_floor * look.variance;
-  if (!noisy) return {step, false, "the pass is clean", Spared::Prefilter, pass.mean.channels()};
+  if (!noisy) return {step, false, "the pass has no noise", Spared::Prefilter, pass.mean.channels()};
   const double share = static_cast<double>(look.noisy_pixels) / static_cast<double>(pass.mean.pixels());
   return {step, true, fmt::format("the pass is noisy in {:.0f} % of its pixels", 100 * share)};
+}
+
+/// Fills out.pair.color, and takes the halves and variances of the colour passes.
+void prepare_colors(Frame& frame, std::uint64_t stream, bool with_alpha, Prepared& out) {
+  const bool alpha = with_alpha && !frame.alpha.empty();
+  const int channels = ColorLayout(static_cast<int>(frame.aovs.size()), alpha).channels();
+  for (Image& color : out.pair.color) color = Image(frame.width(), frame.height(), channels);
+  int channel = 0;
+  const auto beauty = halves_of(frame.beauty, out.pair.variance, stream, out.repaired_pixels);
+  append(beauty, out.pair.color, channel);
+  frame.beauty.variance = {};
+  for (Pass& aov : frame.aovs) {
+    append(aov.has_halves() ? halves_of(aov, {}, 0, out.repaired_pixels) : split_like(beauty, aov, out.repaired_pixels),
+           out.pair.color, channel);
+    aov.variance = {};
+  }
+  if (alpha) {
+    Pass pass{"alpha", frame.alpha, {}, {}, {}};
+    append(halves_of(pass, {}, 0, out.repaired_pixels), out.pair.color, channel);
+  }
+}
+
+/// Fills out.pair.features, and takes all features of the frame.
+void prepare_features(Frame& frame, const Preparation& preparation, const PrefilterParams& prefilter_params,
+                      Prepared& out, Progress& progress) {
+  int channels = 0;
+  for (const FeatureUse& use : preparation.features) channels += frame.features[use.index].pass.mean.channels();
+  for (Image& features : out.pair.features) features = Image(frame.width(), frame.height(), channels);
+  int channel = 0;
+  for (const FeatureUse& use : preparation.features)
+    append(prepared_feature(std::move(frame.features[use.index]), use, preparation.stream + use.index + 1,
+                            prefilter_params, out.repaired_pixels, progress),
+           out.pair.features, channel);
+  frame.features.clear();
 }
 
 }  // namespace
@@ -338,55 +375,15 @@ Preparation look_at(const Frame& frame, const Steps& steps) {
 Prepared prepare(Frame& frame, const Preparation& preparation, const Image& variance,
                  const PrefilterParams& prefilter_params, bool with_alpha, Progress& progress) {
   Prepared out;
-  HalfPair& pair = out.pair;
-  pair.epsilon = preparation.epsilon;
+  out.pair.epsilon = preparation.epsilon;
   out.independent_halves = frame.beauty.has_halves();
-  pair.variance = variance;
-  repair_nonfinite(pair.variance, repair_radius);
-  make_non_negative(pair.variance);
-  scale(pair.variance, 2);  // of a half, from that of the mean
+  out.pair.variance = variance;
+  repair_nonfinite(out.pair.variance, repair_radius);
+  make_non_negative(out.pair.variance);
+  scale(out.pair.variance, 2);  // half the samples have twice the variance
   out.negative_pixels = negative_pixels(frame.beauty.mean);
-
-  const bool alpha = with_alpha && !frame.alpha.empty();
-  const int channels = ColorLayout(static_cast<int>(frame.aovs.size()), alpha).channels();
-  for (Image& color : pair.color) color = Image(frame.width(), frame.height(), channels);
-  int begin = 0;
-  const auto append = [&](const std::array<Image, 2>& halves) {
-    int end = begin;
-    for (std::size_t h = 0; h < 2; ++h) {
-      end = begin;
-      append_channels(halves[h], pair.color[h], end);
-    }
-    begin = end;
-  };
-  const auto beauty = halves_of(frame.beauty, pair.variance, preparation.stream, out.repaired_pixels);
-  append(beauty);
-  frame.beauty.variance = {};
-  for (Pass& aov : frame.aovs) {
-    append(aov.has_halves() ? halves_of(aov, {}, 0, out.repaired_pixels)
-                            : split_like(beauty, aov, out.repaired_pixels));
-    aov.variance = {};
-  }
-  if (alpha) {
-    Pass pass{"alpha", frame.alpha, {}, {}, {}};
-    append(halves_of(pass, {}, 0, out.repaired_pixels));
-  }
-
-  int feature_channels = 0;
-  for (const FeatureUse& use : preparation.features) feature_channels += frame.features[use.index].pass.mean.channels();
-  for (Image& features : pair.features) features = Image(frame.width(), frame.height(), feature_channels);
-  int channel = 0;
-  for (const FeatureUse& use : preparation.features) {
-    const auto halves = prepared_feature(std::move(frame.features[use.index]), use, preparation.stream + use.index + 1,
-                                         prefilter_params, out.repaired_pixels, progress);
-    int end = channel;
-    for (std::size_t h = 0; h < 2; ++h) {
-      end = channel;
-      append_channels(halves[h], pair.features[h], end);
-    }
-    channel = end;
-  }
-  frame.features.clear();
+  prepare_colors(frame, preparation.stream, with_alpha, out);
+  prepare_features(frame, preparation, prefilter_params, out, progress);
   return out;
 }
 

@@ -14,42 +14,45 @@ namespace polyrecon {
 
 /// A feature pass that takes part in the fit.
 struct FeatureUse {
-  std::size_t index = 0;   ///< Into Frame::features.
-  bool prefilter = false;  ///< It is noisy: prefilter it (features/prefilter.h).
-  double scale = 1;        ///< Factor that brings its values, but for spikes, to order 1.
-  double half_depth = 0;  ///< Depth z enters as z / (z + half_depth): bounded, so that a sky at 1e10 fits; 0: as it is.
+  std::size_t index = 0;   ///< Index into Frame::features.
+  bool prefilter = false;  ///< Whether it is prefiltered (features/prefilter.h).
+  double scale = 1;        ///< Factor that brings its values, except spikes, to order 1.
+  double half_depth = 0;   ///< If > 0, a depth z enters as z / (z + half_depth), which is below 1 even for the sky.
 };
 
-/// What a look at the whole frame settles before any work: only the steps that the scene calls for are run.
+/// The decisions about a frame before it is reconstructed.
 struct Preparation {
   std::vector<FeatureUse> features;
-  double epsilon = 1;        ///< HalfPair::epsilon: (0.3 x mean brightness)^2, so that exposure does not matter.
-  std::uint64_t stream = 0;  ///< Random numbers of the first of up to 64 splits; frames that meet need different ones.
+  double epsilon = 1;  ///< HalfPair::epsilon: (0.3 x mean brightness)^2, so that exposure does not matter.
+  std::uint64_t stream =
+      0;  ///< Random stream of the first of up to 64 splits. Frames that are joined need different ones.
   std::vector<Decision> decisions;
 };
 
-/// Drops features that are absent, not finite, constant, nothing but noise, or more than a model holds, and says which
-/// of the others need cleaning. Throws Error{CheckFailed} where the beauty holds no usable pixel.
-/// steps: what may run. Without steps.decide every pass that has a finite value takes part and is cleaned.
+/// Decides which features take part in the fit and which of them are prefiltered. Features that are not finite,
+/// constant, or nothing but noise are dropped, and so are those beyond the number of channels that the model holds.
+/// Without steps.decide every allowed feature with a finite value takes part and is prefiltered. Throws
+/// Error{CheckFailed} if the beauty has no finite pixel.
 Preparation look_at(const Frame& frame, const Steps& steps = {});
 
-/// Throws Error{CheckFailed} where the beauty holds no usable pixel.
+/// Throws Error{CheckFailed} if the beauty has no finite pixel.
 void require_usable(const Frame& frame);
 
+/// What the fit works on.
 struct Prepared {
   HalfPair pair;
-  bool independent_halves = true;   ///< False where the halves were split from one image.
-  std::size_t repaired_pixels = 0;  ///< Non-finite pixels replaced, over all passes used.
-  std::size_t negative_pixels = 0;  ///< Beauty pixels with a negative channel; kept as they are.
+  bool independent_halves = true;   ///< False if the halves were split from one image.
+  std::size_t repaired_pixels = 0;  ///< Number of non-finite pixels that were replaced, over all passes in use.
+  std::size_t negative_pixels = 0;  ///< Number of beauty pixels with a negative channel. They are kept.
 };
 
 /// Channels that prepare holds for the feature pass in work in addition to the frame and the pair: its two halves, the
 /// same prefiltered, and its widened noise variance.
 constexpr std::size_t feature_in_preparation_channels = std::size_t{3} * (2 + 2 + 1);
 
-/// Repairs, splits where the file holds no halves (noise/fission.h), transforms and cleans the features.
-/// variance: noise variance of the beauty's mean, 3 channels (noise/variance.h). Takes the halves and variances of
-/// the frame's passes and all of its features, and gives their memory back as it goes; the other means stay.
+/// Repairs the passes, splits those without halves (noise/fission.h), and transforms and prefilters the features.
+/// variance: noise variance of the beauty's mean, 3 channels (noise/variance.h). To save memory, the halves and
+/// variances of the frame's passes and all of its features are moved out of the frame; the other means stay.
 Prepared prepare(Frame& frame, const Preparation& preparation, const Image& variance,
                  const PrefilterParams& prefilter_params, bool with_alpha, Progress& progress);
 

@@ -27,9 +27,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view kTemporaryMark = ".polyrecon-";
-constexpr std::size_t kLongestStem = 200;     ///< Of 255 bytes that a name may have.
-constexpr std::chrono::minutes kStaleAge{1};  ///< Younger ones may belong to a run that has not locked its file yet.
+constexpr std::string_view temporary_mark = ".polyrecon-";
+constexpr std::size_t longest_stem = 200;     ///< Of 255 bytes that a name may have.
+constexpr std::chrono::minutes stale_age{1};  ///< Younger ones may belong to a run that has not locked its file yet.
 
 [[noreturn]] void fail(const std::string& target, const std::string& doing, int error) {
   throw Error(ExitCode::CannotWrite,
@@ -43,7 +43,7 @@ fs::path folder_of(const std::string& target) {
 
 /// How names of temporaries for this target begin.
 std::string temporary_prefix(const std::string& target) {
-  return "." + fs::path(target).filename().string().substr(0, kLongestStem) + std::string(kTemporaryMark);
+  return "." + fs::path(target).filename().string().substr(0, longest_stem) + std::string(temporary_mark);
 }
 
 /// Paths of the temporaries in use, for a signal handler: it may neither lock nor allocate.
@@ -128,7 +128,7 @@ void flush_folder(const std::string& target) {
 bool is_abandoned(const fs::path& path) {
   std::error_code failure;
   const auto changed = fs::last_write_time(path, failure);
-  if (failure || fs::file_time_type::clock::now() - changed < kStaleAge) return false;
+  if (failure || fs::file_time_type::clock::now() - changed < stale_age) return false;
   const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW);
   if (descriptor < 0) return false;
   const bool free = ::flock(descriptor, LOCK_EX | LOCK_NB) == 0;

@@ -19,7 +19,7 @@ bool ends_with(std::string_view text, std::string_view end) {
 
 bool starts_with(std::string_view text, std::string_view begin) { return text.substr(0, begin.size()) == begin; }
 
-/// Place of a channel in its layer: R G B or X Y Z first, then the rest in file order.
+/// Sort key of a channel within its layer: R G B or X Y Z come first, the rest follow in the order of the file.
 int channel_order(std::string_view suffix) {
   static constexpr std::string_view known = "RGBXYZUVW";
   if (suffix.size() != 1) return static_cast<int>(known.size());
@@ -34,8 +34,9 @@ std::string_view channel_suffix(std::string_view name) {
   return dot == std::string_view::npos ? name : name.substr(dot + 1);
 }
 
-/// The layer that a channel belongs to. Channels without a prefix belong to their part where the file has several parts
-/// with names (OpenEXR's convention), else R, G, B, A are one layer and any other is one of its own.
+/// The name of the layer that a channel belongs to: its prefix. In files with several named parts, channels without a
+/// prefix belong to a layer with the name of the part (OpenEXR's convention). In other files R, G, B, A without a
+/// prefix are one layer, and every other channel is a layer.
 std::string layer_of_channel(const FileInfo& file, const PartInfo& part, const std::string& channel) {
   const auto dot = channel.rfind('.');
   if (dot != std::string::npos) return channel.substr(0, dot);
@@ -48,7 +49,8 @@ std::string layer_of_channel(const FileInfo& file, const PartInfo& part, const s
   return is_bare_color(channel) ? bare_pass : channel;
 }
 
-/// Takes the stereo view out of a layer's name, if one is in it: "diffuse.left" -> "diffuse" of view "left".
+/// Moves the stereo view, where the name contains one, from the name to the layer: "diffuse.left" becomes "diffuse" of
+/// view "left".
 void separate_view(const PartInfo& part, Layer& layer, std::string& name) {
   layer.view = part.view;
   if (part.views.empty()) return;
@@ -140,13 +142,14 @@ void assign_role(const std::vector<FileInfo>& files, Layer& layer) {
 
 bool same_place(const Layer& a, const Layer& b) { return a.view_layer == b.view_layer && a.view == b.view; }
 
-const Layer* find_pass(const std::vector<Layer>& layers, const Layer& beside, std::string_view pass) {
+/// The layer with this pass in the same view layer and view; nullptr where there is none.
+const Layer* find_pass(const std::vector<Layer>& layers, const Layer& neighbour, std::string_view pass) {
   const auto found = std::find_if(layers.begin(), layers.end(),
-                                  [&](const Layer& l) { return same_place(l, beside) && l.pass == pass; });
+                                  [&](const Layer& l) { return same_place(l, neighbour) && l.pass == pass; });
   return found == layers.end() ? nullptr : &*found;
 }
 
-/// The mean of a Mitsuba second moment: "m2_" stands before the whole name, "m2_aov.albedo" belongs to "aov.albedo".
+/// The layer with this whole name in the same view; nullptr where there is none.
 const Layer* find_whole_name(const std::vector<Layer>& layers, const Layer& layer, std::string_view name) {
   const auto found = std::find_if(layers.begin(), layers.end(),
                                   [&](const Layer& l) { return l.view == layer.view && l.name == name; });
@@ -175,7 +178,7 @@ bool strip(const CompanionAffix& affix, const Layer& layer, std::string& base) {
   return true;
 }
 
-/// A half counts only where the other half exists: "Light A" alone is a light group.
+/// Whether the companion of the other half exists. Without it the layer is no half: "Key A" alone is a light group.
 bool other_half_exists(const std::vector<Layer>& layers, const Layer& layer, const std::string& base,
                        const Renderer& renderer, Companion half) {
   return std::any_of(renderer.affixes.begin(), renderer.affixes.end(), [&](const CompanionAffix& other) {

@@ -19,9 +19,9 @@
 namespace polyrecon {
 namespace {
 
-constexpr std::size_t kBandSamples = std::size_t{1} << 24;
-constexpr int kTallestChunk = 256;
-constexpr std::size_t kMostLines = std::size_t{1} << 20;
+constexpr std::size_t band_samples = std::size_t{1} << 24;
+constexpr int tallest_chunk = 256;
+constexpr std::size_t most_lines = std::size_t{1} << 20;
 
 [[noreturn]] void fail(const FileInfo& file, int part, const std::string& what) {
   const std::string& name = file.parts[static_cast<std::size_t>(part)].name;
@@ -59,7 +59,7 @@ ChannelReader::~ChannelReader() = default;
 int ChannelReader::lines_per_band() const {
   const Rect& window = file_.parts[static_cast<std::size_t>(part_)].data_window;
   const std::size_t line = std::max<std::size_t>(1, static_cast<std::size_t>(window.width()) * channels_.size());
-  return std::max(kTallestChunk, static_cast<int>(std::min(kBandSamples / line, kMostLines)));
+  return std::max(tallest_chunk, static_cast<int>(std::min(band_samples / line, most_lines)));
 }
 
 const std::vector<float>& ChannelReader::read(int y0, int y1) {
@@ -83,7 +83,7 @@ const std::vector<float>& ChannelReader::read(int y0, int y1) {
   try {
     source_->input->readPixels(y0, y1 - 1);
   } catch (const Iex::BaseExc& problem) {
-    int bad = y0;  // found again line by line: the library names the chunk at best
+    int bad = y0;  // the library names the chunk at best, so the line is found by reading line by line
     try {
       for (; bad < y1; ++bad) source_->input->readPixels(bad);
     } catch (const Iex::BaseExc&) {

@@ -9,18 +9,19 @@
 
 namespace polyrecon {
 
-/// Reads some channels of one part a band of lines at a time, so that memory does not grow with the frame.
+/// Reads some channels of one part, a band of lines at a time, so that the memory does not grow with the frame.
 class ChannelReader {
  public:
   /// Throws Error{BadInput} for a part that is not PartInfo::readable(), or that cannot be opened.
   ChannelReader(const FileInfo& file, int part, std::vector<std::string> channels);
   ~ChannelReader();
 
-  /// Lines [y0, y1) of the data window in file coordinates: one plane of (y1 - y0) * width floats after the other.
-  /// Throws Error{BadInput} naming the part and the first line that cannot be read.
+  /// Decodes the lines [y0, y1) of the data window, in the coordinates of the file. Returns a plane of (y1 - y0) *
+  /// width floats for each channel, one after the other. Throws Error{BadInput} naming the part and the first line that
+  /// cannot be read.
   const std::vector<float>& read(int y0, int y1);
 
-  /// How many lines to read at once: whole chunks, and a bounded number of samples.
+  /// Number of lines to read at once: whole chunks of at most about band_samples samples.
   int lines_per_band() const;
 
  private:

@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <filesystem>
 #include <system_error>
 #include <tuple>
@@ -23,7 +22,8 @@ const PartInfo& part_of(const FrameSource& source, const Layer& layer) {
 
 bool covers(const Rect& outer, const Rect& inner) { return intersect(outer, inner) == inner; }
 
-/// The layer of a file that is meant where the file is named for a role: the one that plays it there, else the beauty.
+/// The layer of a file that is used where the file itself is named for a role: the one with that role, else the beauty,
+/// else the first.
 const Layer& layer_for(const std::vector<Layer>& layers, Role wanted) {
   for (const Role role : {wanted, Role::Beauty})
     for (const Layer& layer : layers)
@@ -31,7 +31,7 @@ const Layer& layer_for(const std::vector<Layer>& layers, Role wanted) {
   return layers.front();
 }
 
-/// Every pass of a one-pass-a-file render becomes a layer named after its file.
+/// Adds one layer of another file under the name `pass`.
 void add_file(FrameSource& source, const std::string& path, const std::string& pass, Role role,
               const ReadLimits& limits) {
   source.files.push_back(describe_file(path, limits));
@@ -44,11 +44,13 @@ void add_file(FrameSource& source, const std::string& path, const std::string& p
   source.layers.push_back(std::move(layer));
 }
 
+/// Whether the file holds one pass without a name in the file.
 bool is_one_bare_image(const FrameSource& source) {
   return source.layers.size() == 1 && source.layers.front().view_layer.empty() &&
          (source.layers.front().pass == bare_pass || source.layers.front().channels.size() == 1);
 }
 
+/// Finds the layers of the file, and those of the files with the other passes of a render that has a file for each.
 void open_files(LayerChoice& choice, const std::string& path, const ReadOptions& options) {
   FrameSource& source = choice.source;
   source.path = path;
@@ -64,10 +66,11 @@ void open_files(LayerChoice& choice, const std::string& path, const ReadOptions&
     names.push_back(std::filesystem::path(sibling.path).filename().string());
   }
   classify_layers(source.files, source.layers);
-  choice.notes.push_back(fmt::format("passes from files beside the input: {}", fmt::join(names, ", ")));
+  choice.notes.push_back(fmt::format("passes from files next to the input: {}", fmt::join(names, ", ")));
 }
 
-/// A layer by its whole name, by its name within the view layer, or a single channel taken out of its layer.
+/// The index of a layer by its whole name or its name within the view layer. A channel's name adds a layer with this
+/// channel alone. -1 where there is none.
 int find_layer(FrameSource& source, const std::string& name, const std::string& view_layer) {
   auto& layers = source.layers;
   for (const std::string& candidate : {name, fmt::format("{}.{}", view_layer, name)})
@@ -118,15 +121,15 @@ void choose_view_layer(FrameSource& source, const ReadOptions& options) {
   }
 }
 
-/// Marks the layers named by hand; companions after the means, since they refer to them.
+/// Sets the roles that the user gives; companions after the means that they accompany.
 void apply_map(FrameSource& source, const ReadOptions& options) {
-  const auto own_files = static_cast<int>(source.files.size());
+  const auto files_of_frame = static_cast<int>(source.files.size());
   for (const bool means : {true, false})
     for (const RoleMapping& mapping : options.map) {
       if ((mapping.companion == Companion::Mean) != means) continue;
       int index = find_layer(source, mapping.layer, source.view_layer);
       std::error_code failure;
-      const bool added = index >= 0 && source.layers[static_cast<std::size_t>(index)].file >= own_files;
+      const bool added = index >= 0 && source.layers[static_cast<std::size_t>(index)].file >= files_of_frame;
       if ((index < 0 || added) && std::filesystem::is_regular_file(mapping.layer, failure)) {
         add_file(source, mapping.layer, mapping.layer, mapping.role, options.limits);
         index = static_cast<int>(source.layers.size()) - 1;
@@ -143,8 +146,9 @@ void apply_map(FrameSource& source, const ReadOptions& options) {
     }
 }
 
-/// The mean that plays a role: named by hand, else of the chosen view layer, else of one that has no beauty of its own
-/// (Mitsuba's nested integrators); then by rank, then in file order. Parts that cannot be read are passed over.
+/// The mean for a role: a layer that the user named, else one of the chosen view layer, else one of a view layer
+/// without a beauty (nested layers); among these the one of lowest rank, then the first in the file. Layers of parts
+/// that cannot be read are skipped.
 int find_mean(const FrameSource& source, Role role, bool readable = true) {
   int best = -1;
   const auto key = [&](const Layer& l) {
@@ -160,6 +164,8 @@ int find_mean(const FrameSource& source, Role role, bool readable = true) {
   return best;
 }
 
+/// The companion of a mean that is wanted(companion): one that the user named, else the first in the file; -1 without
+/// one.
 template <class Wanted>
 int find_companion(const FrameSource& source, const Layer& mean, Wanted wanted) {
   int best = -1;
@@ -195,7 +201,8 @@ PassChoice with_companions(const FrameSource& source, Role role, int mean) {
                                              source.path, fmt::join(names, ", ")));
 }
 
-/// Drops layers whose window does not hold the beauty's; alpha is written again, so its window has to be the same.
+/// Drops the layers of a pass whose data window does not contain the beauty's. Alpha is written back, so it needs the
+/// same window.
 void drop_misfits(LayerChoice& choice, PassChoice& pass) {
   const FrameSource& source = choice.source;
   const Layer& beauty = source.layers[static_cast<std::size_t>(choice.passes.front().mean)];
@@ -203,14 +210,15 @@ void drop_misfits(LayerChoice& choice, PassChoice& pass) {
   for (int* index : {&pass.variance, &pass.half_a, &pass.half_b, &pass.mean}) {
     if (*index < 0) continue;
     const Layer& layer = source.layers[static_cast<std::size_t>(*index)];
-    const Rect own = part_of(source, layer).data_window;
-    if (pass.role == Role::Alpha ? own == window : covers(own, window)) continue;
-    choice.notes.push_back(fmt::format("{} is left out: its data window does not hold the beauty's", layer.name));
+    const Rect found = part_of(source, layer).data_window;
+    if (pass.role == Role::Alpha ? found == window : covers(found, window)) continue;
+    choice.notes.push_back(fmt::format("{} is not used: its data window does not contain the beauty's", layer.name));
     *index = -1;
   }
   if (pass.half_a < 0 || pass.half_b < 0) pass.half_a = pass.half_b = -1;
 }
 
+/// Adds the layers that the user wants to be denoised with the beauty.
 void choose_aovs(LayerChoice& choice, const ReadOptions& options) {
   FrameSource& source = choice.source;
   const auto& beauty = source.layers[static_cast<std::size_t>(choice.passes.front().mean)];
@@ -229,13 +237,6 @@ void choose_aovs(LayerChoice& choice, const ReadOptions& options) {
   }
 }
 
-std::vector<const char*> mapped_roles() {
-  std::vector<const char*> names;
-  for (const RoleInfo& info : role_table())
-    if (info.chosen) names.push_back(info.name);
-  return names;
-}
-
 void describe_choice(LayerChoice& choice) {
   FrameSource& source = choice.source;
   for (const PassChoice& pass : choice.passes)
@@ -246,32 +247,18 @@ void describe_choice(LayerChoice& choice) {
     }
 }
 
-}  // namespace
-
-RoleMapping parse_mapping(const std::string& text) {
-  static constexpr std::array companions{std::pair{"variance", Companion::VarianceOfMean},
-                                         std::pair{"half-a", Companion::HalfA}, std::pair{"half-b", Companion::HalfB}};
-  const auto equals = text.find('=');
-  RoleMapping mapping;
-  std::string word = text.substr(0, equals);
-  for (const auto& [name, companion] : companions) {
-    const std::string ending = fmt::format("-{}", name);
-    if (word == name) word = fmt::format("beauty-{}", name);
-    if (word.size() <= ending.size() || word.compare(word.size() - ending.size(), ending.size(), ending) != 0) continue;
-    mapping.companion = companion;
-    word.resize(word.size() - ending.size());
+/// The beauty's alpha channel, unless the user named another layer or the beauty has none.
+void choose_alpha(LayerChoice& choice, const Layer& beauty) {
+  FrameSource& source = choice.source;
+  if (!beauty.alpha.empty()) source.alpha_layer = beauty.name;
+  for (const PassChoice& pass : choice.passes) {
+    if (pass.role != Role::Alpha) continue;
+    const Layer& alpha = source.layers[static_cast<std::size_t>(pass.mean)];
+    if (beauty.alpha.empty() || alpha.rank == rank_by_hand) source.alpha_layer = alpha.name;
   }
-  const auto role = role_from(word);
-  if (equals == std::string::npos || equals + 1 == text.size() || !role || !info_of(*role).chosen)
-    throw Error(
-        ExitCode::Usage,
-        fmt::format("--map {}: expected ROLE=LAYER with a role of {}, variance, half-a, half-b or ROLE-variance, "
-                    "ROLE-half-a, ROLE-half-b",
-                    text, fmt::join(mapped_roles(), ", ")));
-  mapping.role = *role;
-  mapping.layer = text.substr(equals + 1);
-  return mapping;
 }
+
+}  // namespace
 
 LayerChoice choose_layers(const std::string& path, const ReadOptions& options) {
   LayerChoice choice;
@@ -292,13 +279,7 @@ LayerChoice choose_layers(const std::string& path, const ReadOptions& options) {
     if (pass.mean >= 0) choice.passes.push_back(pass);
   }
   choose_aovs(choice, options);
-  const Layer& layer = source.layers[static_cast<std::size_t>(beauty)];
-  if (!layer.alpha.empty()) source.alpha_layer = layer.name;
-  for (const PassChoice& pass : choice.passes)
-    if (pass.role == Role::Alpha) {
-      const Layer& own = source.layers[static_cast<std::size_t>(pass.mean)];
-      if (layer.alpha.empty() || own.rank == rank_by_hand) source.alpha_layer = own.name;
-    }
+  choose_alpha(choice, source.layers[static_cast<std::size_t>(beauty)]);
   describe_choice(choice);
   return choice;
 }

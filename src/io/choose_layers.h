@@ -3,23 +3,26 @@
 #include <string>
 #include <vector>
 
-#include "polyrecon/read_frame.h"
+#include "polyrecon/layers.h"
+#include "polyrecon/read_options.h"
 
 namespace polyrecon {
 
-/// One pass to be read: layers of a FrameSource by index, -1 where there is none.
+/// The layers of one pass that is read, as indices into FrameSource::layers; -1 without one.
 struct PassChoice {
   Role role = Role::Other;
   int mean = -1, variance = -1, half_a = -1, half_b = -1;
 };
 
+/// What is read of a file.
 struct LayerChoice {
   FrameSource source;
-  std::vector<PassChoice> passes;  ///< Beauty first, then features, prior, sample count, alpha of its own, AOVs.
+  std::vector<PassChoice> passes;  ///< In the order of the roles, beauty first; the AOVs follow.
   std::vector<std::string> notes;
 };
 
-/// Decides from the headers which layer plays which role. Throws as read_frame does.
+/// Opens the headers of a file and of the files next to it that hold its other passes, and chooses the layer for each
+/// role. Throws as read_frame does.
 LayerChoice choose_layers(const std::string& path, const ReadOptions& options);
 
 }  // namespace polyrecon

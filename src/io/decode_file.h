@@ -4,7 +4,7 @@
 
 namespace polyrecon {
 
-/// Decodes every flat part of an EXR file, band by band, and throws the pixels away: a file that passes can be read.
+/// Decodes every flat part of an EXR file, to find out whether the file can be read.
 /// Throws Error{Missing} where there is no such file, Error{BadInput} where it is damaged.
 void decode_file(const std::string& path);
 

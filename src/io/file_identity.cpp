@@ -16,7 +16,7 @@ std::string file_identity(const std::string& path) {
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored)) throw Error(ExitCode::Missing, path + ": no such file");
   std::ifstream file(path, std::ios::binary);
-  // Blocks are hashed one after the other, each seeded by the one before: the file need not fit into memory.
+  // The file is hashed in blocks, because it may not fit into memory. The hash of a block seeds the next one.
   std::vector<char> block(std::size_t{4} << 20);
   unsigned long long hash = 0, bytes = 0;
   while (file) {

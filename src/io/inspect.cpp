@@ -99,7 +99,7 @@ class Tallies {
 };
 
 /// Mean of variance / relmse_denominator(mean) over all finite samples; the variance is that of the half buffers where
-/// the file holds none. -1 where the file tells no noise.
+/// the file holds none. -1 where the noise is unknown.
 double noise_level(const Pass& beauty) {
   if (beauty.variance.empty() && !beauty.has_halves()) return -1;
   double sum = 0;

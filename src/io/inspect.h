@@ -14,9 +14,10 @@ struct LayerStatistics {
   std::string layer;
   std::size_t pixels = 0;
   std::size_t nan = 0, infinite = 0, negative = 0;  ///< Pixels with such a sample in any channel.
-  double minimum = 0, maximum = 0, mean = 0;        ///< Of the finite samples.
+  double minimum = 0, maximum = 0, mean = 0;        ///< Over the finite samples.
 };
 
+/// What a file holds.
 struct Inspection {
   FrameSource source;
   std::vector<LayerStatistics> statistics;  ///< By file and part; layers of unreadable parts are left out.

@@ -33,17 +33,16 @@
 namespace polyrecon {
 namespace {
 
-constexpr std::size_t kSumsAtOnce = std::size_t{1} << 18;
-constexpr int kChunkLines = 32;
-constexpr std::size_t kRendersAtOnce = 16;                   ///< That are decoded, then added up.
-constexpr std::size_t kPixelsAtOnce = std::size_t{1} << 12;  ///< Of one channel, whose sums stay in the cache.
+constexpr std::size_t sums_at_once = std::size_t{1} << 18;
+constexpr int chunk_lines = 32;
+constexpr std::size_t renders_at_once = 16;                   ///< Renders that are decoded before they are added up.
+constexpr std::size_t pixels_at_once = std::size_t{1} << 12;  ///< Pixels of one channel whose sums stay in the cache.
 
-/// One render and its layers, which are those of the first render in the same order. A layer that only the first render
-/// has is `absent` in the others.
+/// One render. Its layers are in the order of the first render's.
 struct Render {
   FileInfo file;
   std::vector<Layer> layers;
-  std::vector<bool> absent;
+  std::vector<bool> absent;  ///< For each layer whether only the first render has it; empty for the first render.
 };
 
 const PartInfo& part_of(const Render& render, const Layer& layer) {
@@ -54,6 +53,7 @@ const PartInfo& part_of(const Render& render, const Layer& layer) {
   throw Error(ExitCode::BadInput, fmt::format("{}: does not fit {}: {}", render.file.path, first.file.path, what));
 }
 
+/// Checks that a render has the layers of the first one, and brings its layers into the same order.
 void check_fits(Render& render, const Render& first) {
   std::vector<Layer> ordered;
   for (const Layer& layer : first.layers) {
@@ -81,7 +81,7 @@ void check_fits(Render& render, const Render& first) {
 /// What becomes of a layer.
 enum class Fate { Merged, Kept, Dropped };
 
-/// With alpha, which comes last.
+/// The channels of a layer, its alpha last.
 std::vector<std::string> all_channels(const Layer& layer) {
   std::vector<std::string> channels = layer.channels;
   if (!layer.alpha.empty()) channels.push_back(layer.alpha);
@@ -94,7 +94,8 @@ bool all_uint(const Render& render, const Layer& layer) {
   return false;
 }
 
-/// A plain depth pass beside one for denoising is for compositing: its values must not be mixed.
+/// Whether the view layer has a depth pass of lower rank. This one is then for compositing, and mixed depths are wrong
+/// at edges.
 bool is_second_depth(const Render& first, const Layer& layer) {
   return layer.role == Role::Depth && std::any_of(first.layers.begin(), first.layers.end(), [&](const Layer& other) {
            return other.role == Role::Depth && other.companion == Companion::Mean && other.rank < layer.rank &&
@@ -109,8 +110,8 @@ Fate fate_of(const Render& first, const Layer& layer) {
   return Fate::Merged;
 }
 
-/// Whether a render that lacks the layer has another one of its role.
-bool has_stand_in(const Render& render, const Layer& layer) {
+/// Whether a render without the layer has another one with its role.
+bool has_substitute(const Render& render, const Layer& layer) {
   for (std::size_t l = 0; l < render.layers.size(); ++l) {
     const Layer& other = render.layers[l];
     if (!render.absent[l] && other.role == layer.role && other.companion == layer.companion &&
@@ -120,8 +121,8 @@ bool has_stand_in(const Render& render, const Layer& layer) {
   return false;
 }
 
-/// Layers that only the first render has are kept from it; but all renders have the picture and one layer of each
-/// feature.
+/// Checks that layers which some renders lack are in the first one alone, from which they are copied. Each render needs
+/// the picture and one layer for each feature.
 void check_absent(const std::vector<Render>& renders) {
   const Render& first = renders.front();
   for (std::size_t l = 0; l < first.layers.size(); ++l) {
@@ -130,7 +131,7 @@ void check_absent(const std::vector<Render>& renders) {
     const auto lacking = std::find_if(renders.begin(), renders.end(), lacks);
     if (lacking == renders.end()) continue;
     const bool first_alone = std::all_of(renders.begin() + 1, renders.end(), lacks);
-    if (!first_alone || (fate_of(first, layer) == Fate::Merged && !has_stand_in(*lacking, layer)))
+    if (!first_alone || (fate_of(first, layer) == Fate::Merged && !has_substitute(*lacking, layer)))
       misfit(*lacking, first, fmt::format("no layer {}", layer.name));
   }
 }
@@ -155,7 +156,7 @@ std::vector<Render> open_renders(const std::vector<std::string>& paths, const Re
   return renders;
 }
 
-/// The name of a channel in the one part of the output.
+/// The name of a channel in the output, which has one part.
 std::string output_name(const Render& first, const Layer& layer, const std::string& channel,
                         const std::string& companion = {}) {
   const bool single = first.file.parts.size() == 1;
@@ -168,7 +169,8 @@ std::string output_name(const Render& first, const Layer& layer, const std::stri
   return name + "." + suffix;
 }
 
-/// Attributes of all parts, the first part's before the others', but those that say how a part is stored.
+/// Copies the attributes of all parts except those that describe the storage. The first part that has an attribute
+/// decides.
 void copy_metadata(const Imf::MultiPartInputFile& input, Imf::Header& header) {
   static const std::set<std::string> storage{"name",       "type",       "view",          "channels",
                                              "chunkCount", "tiles",      "version",       "compression",
@@ -179,20 +181,21 @@ void copy_metadata(const Imf::MultiPartInputFile& input, Imf::Header& header) {
       if (copied.insert(a.name()).second) header.insert(a.name(), a.attribute());
 }
 
-/// A channel that is merged: its layer, and its place among all_channels of that.
+/// A channel that is merged: the index of its layer, and its index in all_channels.
 struct Slot {
   std::size_t layer, channel;
 };
 
-/// A band of one render.
+/// The samples of a band of one render.
 struct DecodedRender {
-  std::vector<std::vector<float>> samples;  ///< Of each part.
-  std::vector<const float*> planes;         ///< Of each slot.
+  std::vector<std::vector<float>> samples;  ///< By part.
+  std::vector<const float*> planes;         ///< By slot.
 };
 
+/// Makes the merged file band by band.
 class Merger {
  public:
-  /// first_b: index of the first render of half B, the others being half A; 0: even and odd index.
+  /// first_b: index of the first render of half B; those before it are half A. 0: renders with an odd index are half B.
   Merger(std::vector<Render> renders, const MergeOptions& options, std::size_t first_b)
       : renders_(std::move(renders)), samples_(options.samples), compress_(options.compress), first_b_(first_b) {
     choose_window();
@@ -206,7 +209,7 @@ class Merger {
     Imf::Header header(input.header(0).displayWindow(), {{window_.x0, window_.y0}, {window_.x1 - 1, window_.y1 - 1}});
     header.setType(Imf::SCANLINEIMAGE);
     header.compression() = compress_ ? Imf::ZIP_COMPRESSION : Imf::NO_COMPRESSION;
-    header.zipCompressionLevel() = kZipLevel;
+    header.zipCompressionLevel() = zip_level;
     copy_metadata(input, header);
     header.channels() = output_channels();
     if (const auto views = stereo_views(); !views.empty()) Imf::addMultiView(header, views);
@@ -227,20 +230,18 @@ class Merger {
     for (const std::string& view_layer : counted_) write_counts(view_layer, weights, band);
   }
 
-  /// Lines merged at once, so that the sums take some 25 MB (and one chunk of the tallest usual kind at
-  /// least).
+  /// Lines that are merged at once: as many as the sums of sums_at_once samples have, at least one chunk.
   int lines_per_band() const {
     const std::size_t line = std::max<std::size_t>(1, slots_.size() * static_cast<std::size_t>(window_.width()));
-    return std::max(kChunkLines, static_cast<int>(std::min<std::size_t>(kSumsAtOnce / line, kBandLines)) / kChunkLines *
-                                     kChunkLines);
+    return std::max(chunk_lines, static_cast<int>(std::min<std::size_t>(sums_at_once / line, band_lines)) /
+                                     chunk_lines * chunk_lines);
   }
 
-  /// Throws Error{OutOfMemory} where a band, its sums and the chunks of the inputs beside it need more than that.
+  /// Throws Error{OutOfMemory} if a band, its sums and the decoded chunks of the inputs need more than max_bytes.
   void require_memory(std::size_t max_bytes) const {
     const auto lines = static_cast<std::size_t>(std::min(window_.height(), lines_per_band()));
-    // Of a pixel.
-    std::size_t bytes =
-        slots_.size() * (sizeof(Accumulator) + 2 * sizeof(MeanAccumulator) + (4 + 2 * kRendersAtOnce) * sizeof(float));
+    std::size_t bytes =  // of one pixel
+        slots_.size() * (sizeof(Accumulator) + 2 * sizeof(MeanAccumulator) + (4 + 2 * renders_at_once) * sizeof(float));
     for (const PartInfo& part : first().file.parts) bytes += part.channels.size() * 3 * sizeof(float);
     if (static_cast<std::size_t>(window_.width()) * lines > max_bytes / std::max<std::size_t>(bytes, 1))
       throw Error(ExitCode::OutOfMemory, fmt::format("{}: {} lines of {} pixels need more than the limit of {} MB",
@@ -350,7 +351,7 @@ class Merger {
     }
   }
 
-  /// n_k of every pixel of a band.
+  /// The sample counts n_k of every pixel of a band.
   Weights read_weights(int y0, int y1) {
     const std::size_t pixels = static_cast<std::size_t>(window_.width()) * static_cast<std::size_t>(y1 - y0);
     Weights weights(renders_.size());
@@ -373,7 +374,7 @@ class Merger {
     return weights;
   }
 
-  /// All merged channels of one render; every part is decoded once.
+  /// Decodes the merged channels of one render, each part once.
   DecodedRender decode(std::size_t k, const NativeBand& band) const {
     const Render& render = renders_[k];
     const std::size_t pixels = static_cast<std::size_t>(band.width) * static_cast<std::size_t>(band.y1 - band.y0);
@@ -397,21 +398,21 @@ class Merger {
     return decoded;
   }
 
-  /// Adds renders first .. end - 1 to the sums, each sum in the order of the renders.
+  /// Adds the renders with indices from first to end - 1 to the sums. Each sum is in the order of the renders.
   void add_renders(std::size_t first, std::size_t end, const Weights& weights, const NativeBand& band,
                    std::vector<ChannelSums>& sums) {
     std::vector<DecodedRender> decoded(end - first);
     in_parallel(decoded.size(), [&](std::size_t i) { decoded[i] = decode(first + i, band); });
     const std::size_t pixels = sums.front().all.size();
-    const std::size_t blocks = (pixels + kPixelsAtOnce - 1) / kPixelsAtOnce;
+    const std::size_t blocks = (pixels + pixels_at_once - 1) / pixels_at_once;
     in_parallel(slots_.size() * blocks, [&](std::size_t task) {
-      const std::size_t slot = task / blocks, begin = task % blocks * kPixelsAtOnce;
+      const std::size_t slot = task / blocks, begin = task % blocks * pixels_at_once;
       const std::string& view_layer = renders_.front().layers[slots_[slot].layer].view_layer;
       for (std::size_t k = first; k < end; ++k) {
         const auto known = weights[k].find(view_layer);
         const double* n = known == weights[k].end() ? nullptr : known->second.data();
         const float* samples = decoded[k - first].planes[slot];
-        for (std::size_t i = begin; i < std::min(begin + kPixelsAtOnce, pixels); ++i)
+        for (std::size_t i = begin; i < std::min(begin + pixels_at_once, pixels); ++i)
           add(sums[slot], i, samples[i], n ? n[i] : 1, k);
       }
     });
@@ -421,8 +422,8 @@ class Merger {
     if (slots_.empty()) return;
     const std::size_t pixels = static_cast<std::size_t>(band.width) * static_cast<std::size_t>(band.y1 - band.y0);
     std::vector<ChannelSums> sums(slots_.size(), ChannelSums(pixels));
-    for (std::size_t k = 0; k < renders_.size(); k += kRendersAtOnce)
-      add_renders(k, std::min(k + kRendersAtOnce, renders_.size()), weights, band, sums);
+    for (std::size_t k = 0; k < renders_.size(); k += renders_at_once)
+      add_renders(k, std::min(k + renders_at_once, renders_.size()), weights, band, sums);
     in_parallel(slots_.size(), [&](std::size_t s) {
       const Layer& layer = first().layers[slots_[s].layer];
       if (slots_[s].channel < layer.channels.size())
@@ -450,10 +451,11 @@ class Merger {
   bool is_half_b(std::size_t k) const { return first_b_ > 0 ? k >= first_b_ : k % 2 == 1; }
 
   struct Moments {
-    double mean, variance;  ///< Of the mean.
+    double mean;
+    double variance;  ///< Variance of that mean.
   };
 
-  /// By all renders alike, or as the plain mean of the halves.
+  /// The weighted mean over all renders, or with options.half_b the plain mean of the halves.
   Moments moments(const ChannelSums& sums, std::size_t i) const {
     const Accumulator& all = sums.all[i];
     const MeanAccumulator &a = sums.half_a[i], &b = sums.half_b[i];
@@ -484,7 +486,7 @@ class Merger {
     if (spread) any_spread_ = true;
   }
 
-  /// Bit for bit, whatever the type.
+  /// Copies the channels of a layer with their bits, whatever their type.
   void copy_layer(std::size_t l, NativeBand& band) {
     const Layer& layer = first().layers[l];
     const std::vector<std::string> channels = all_channels(layer);
@@ -551,12 +553,12 @@ class Merger {
   }
 
   std::vector<Render> renders_;
-  double samples_;  ///< Of each render, 0 where the files tell.
+  double samples_;  ///< Samples of each render; 0: as the files say.
   bool compress_;
-  std::size_t first_b_;  ///< First render of half B, 0: even and odd index.
+  std::size_t first_b_;  ///< As in the constructor.
   Rect window_;
   std::vector<std::size_t> merged_, kept_;  ///< Indices of layers.
-  std::vector<Slot> slots_;                 ///< All channels of the merged layers.
+  std::vector<Slot> slots_;                 ///< The channels of all merged layers.
   std::vector<std::string> counted_;        ///< View layers whose sample counts are known.
   std::map<std::string, double> metadata_samples_;
   MergeResult report_;

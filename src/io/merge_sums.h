@@ -7,7 +7,7 @@
 
 namespace polyrecon {
 
-/// Weighted mean of a stream of samples.
+/// The weighted mean of a stream of samples.
 struct MeanAccumulator {
   double weight = 0, mean = 0;
   int renders = 0;
@@ -19,8 +19,8 @@ struct MeanAccumulator {
   }
 };
 
-/// The same and their spread: sums of w^2, w^2 d and w^2 d^2, d being the distance to the first sample, so that little
-/// cancels.
+/// The weighted mean and the variance of that mean, by the sums of w^2, w^2 d and w^2 d^2. d is the distance to the
+/// first sample; sums of the samples themselves would cancel.
 struct Accumulator : MeanAccumulator {
   double origin = 0, squares = 0, first = 0, second = 0;
 
@@ -40,7 +40,7 @@ struct Accumulator : MeanAccumulator {
   }
 };
 
-/// Accumulators of one channel over a band.
+/// The accumulators of one channel, one for each pixel of a band.
 struct ChannelSums {
   std::vector<Accumulator> all;
   std::vector<MeanAccumulator> half_a, half_b;

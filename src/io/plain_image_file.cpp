@@ -16,7 +16,7 @@ namespace {
   throw Error(ExitCode::BadInput, fmt::format("{}: {}", path, what));
 }
 
-/// Rows of a PFM run bottom-up; some versions of OpenImageIO turn them only on request.
+/// The rows of a PFM are stored from the bottom up. Some versions of OpenImageIO reverse them only on request.
 std::unique_ptr<OIIO::ImageInput> open_image(const std::string& path) {
   OIIO::ImageSpec hints;
   hints.attribute("pnm:pfmflip", 1);

@@ -19,13 +19,13 @@
 namespace polyrecon {
 namespace {
 
-/// Collects images to be read, then reads every part once.
+/// Collects the images that are wanted, then decodes every part once.
 class PartReader {
  public:
   PartReader(const FrameSource& source, const ReadLimits& limits) : source_(source), limits_(limits) {}
 
-  /// Plans to read channels of a layer's part; the pointer stays good, the pixels are there after read().
-  Image* plan(const Layer& layer, const std::vector<std::string>& channels) {
+  /// Wants channels of a layer's part. The pointer stays valid; read() fills the image.
+  Image* want(const Layer& layer, const std::vector<std::string>& channels) {
     const Rect window = window_of(layer);
     samples_ += window.area() * channels.size();
     if (samples_ > limits_.max_bytes / sizeof(Real))
@@ -36,7 +36,7 @@ class PartReader {
     return wanted.back().image.get();
   }
 
-  std::size_t samples() const { return samples_; }  ///< Planned so far.
+  std::size_t samples() const { return samples_; }  ///< In all images wanted so far.
 
   void read(const BandObserver& observer) {
     for (auto& [place, wanted] : parts_) {
@@ -99,8 +99,8 @@ Image repeated(const Image& gray, int channels) {
   return out;
 }
 
-/// Mean of the channels. A variance is averaged as if the channels' noise were one and the same, as it is for gray
-/// shadows: the square of the mean standard deviation.
+/// Mean of the channels. The noise of the channels is taken to be fully correlated, as it is in grey shadows: a
+/// variance becomes the square of the mean standard deviation.
 Image averaged(const Image& image, bool is_variance) {
   Image out(image.width(), image.height(), 1);
   for (std::size_t i = 0; i < image.pixels(); ++i) {
@@ -120,7 +120,7 @@ Image with_channels(Image image, int channels, bool is_variance = false) {
   return channels == 1 ? averaged(image, is_variance) : repeated(image, channels);
 }
 
-/// Samples in each pixel: an image, or one number for all, or unknown.
+/// The samples of each pixel: an image, one number for all pixels, or unknown.
 struct SampleCounts {
   const Image* per_pixel = nullptr;
   double everywhere = 0;
@@ -129,8 +129,9 @@ struct SampleCounts {
   double at(std::size_t i) const { return per_pixel ? static_cast<double>(per_pixel->plane(0)[i]) : everywhere; }
 };
 
-Companion kind_of(const Layer& layer, VarianceKind asked) {
-  switch (asked) {
+/// What a variance layer holds: by its name, unless the user says so.
+Companion kind_of(const Layer& layer, VarianceKind by_user) {
+  switch (by_user) {
     case VarianceKind::Mean:
       return Companion::VarianceOfMean;
     case VarianceKind::Sample:
@@ -143,8 +144,8 @@ Companion kind_of(const Layer& layer, VarianceKind asked) {
   return layer.companion;
 }
 
-/// Turns what a variance layer holds into the variance of the mean, in place.
-/// From the mean square m2 of n samples the unbiased one is (m2 - mean^2) / (n - 1), never below zero.
+/// Turns the variance v of one sample, or the mean square m2 of n samples, into the variance of the mean: v / n, or the
+/// unbiased (m2 - mean^2) / (n - 1), at least 0.
 void to_variance_of_mean(Image& variance, const Image& mean, Companion kind, const SampleCounts& counts) {
   for (int c = 0; c < variance.channels(); ++c)
     for (std::size_t i = 0; i < variance.pixels(); ++i) {
@@ -166,11 +167,13 @@ Image times(Image image, const std::array<Real, 4>& factors) {
   return image;
 }
 
-struct PlannedPass {
+/// A pass with the images that are read for it; nullptr without one.
+struct WantedPass {
   PassChoice choice;
   Image *mean = nullptr, *variance = nullptr, *half_a = nullptr, *half_b = nullptr;
 };
 
+/// Makes a frame of the chosen layers.
 class FrameBuilder {
  public:
   FrameBuilder(LayerChoice choice, const ReadOptions& options)
@@ -181,13 +184,13 @@ class FrameBuilder {
 
   ReadResult build(const BandObserver& observer) {
     window_ = reader_.window_of(layer(passes_.front().mean));
-    plan();
+    want_images();
     if (options_.accept) options_.accept(result_.source.path, shape());
     reader_.read(observer);
     result_.frame.data_window = window_;
     result_.frame.sky_depth = sky_depth();
     take_sample_counts();
-    for (PlannedPass& pass : planned_) place(pass);
+    for (WantedPass& pass : wanted_) place(pass);
     if (alpha_) result_.frame.alpha = std::move(*alpha_);
     return std::move(result_);
   }
@@ -195,21 +198,21 @@ class FrameBuilder {
  private:
   const Layer& layer(int index) const { return result_.source.layers[static_cast<std::size_t>(index)]; }
 
-  void plan() {
+  void want_images() {
     const auto image = [&](int index) {
-      return index < 0 ? nullptr : reader_.plan(layer(index), layer(index).channels);
+      return index < 0 ? nullptr : reader_.want(layer(index), layer(index).channels);
     };
     for (const PassChoice& p : passes_)
-      planned_.push_back({p, image(p.mean), image(p.variance), image(p.half_a), image(p.half_b)});
+      wanted_.push_back({p, image(p.mean), image(p.variance), image(p.half_a), image(p.half_b)});
     const Layer& beauty = layer(passes_.front().mean);
-    if (result_.source.alpha_layer == beauty.name) alpha_ = reader_.plan(beauty, {beauty.alpha});
+    if (result_.source.alpha_layer == beauty.name) alpha_ = reader_.want(beauty, {beauty.alpha});
   }
 
   FrameShape shape() const {
     FrameShape shape{window_.area(), static_cast<int>(reader_.samples() / window_.area()), 3};
     for (const PassChoice& pass : passes_) {
-      if (pass.role == Role::Color) shape.color_channels += 3;
       const RoleInfo& info = info_of(pass.role);
+      if (pass.role == Role::Color) shape.color_channels += info.channels;
       if (info.feature) shape.feature_channels += info.channels;
       if (noise_is_estimated(pass.role, pass.variance >= 0 || pass.half_a >= 0)) shape.channels += info.channels;
       if (pass.role == Role::Prior)
@@ -219,82 +222,86 @@ class FrameBuilder {
     return shape;
   }
 
+  /// The image on the frame's window; empty without one.
   Image take(Image* image, int index, int channels, bool is_variance = false) {
     if (!image) return {};
     return with_channels(cropped(std::move(*image), reader_.window_of(layer(index)), window_), channels, is_variance);
   }
 
-  void take_sample_counts() {
-    const FileInfo& file = result_.source.files.front();
-    const auto metadata = samples_in_metadata(file, result_.source.view_layer);
-    counts_.everywhere = options_.samples > 0 ? options_.samples : metadata.value_or(0);
-    for (PlannedPass& pass : planned_) {
-      if (pass.choice.role != Role::SampleCount) continue;
-      Image counts = take(pass.mean, pass.choice.mean, 1);
-      if (is_sample_fraction(layer(pass.choice.mean).pass)) {
-        if (counts_.everywhere <= 0) {
-          result_.notes.push_back(
-              fmt::format("{} is left out: it holds fractions of an unknown sample count; give --samples",
-                          layer(pass.choice.mean).name));
-          continue;
-        }
-        for (std::size_t i = 0; i < counts.pixels(); ++i)
-          counts.plane(0)[i] = static_cast<Real>(counts.plane(0)[i] * counts_.everywhere);
-      }
-      result_.frame.sample_count = std::move(counts);
-      counts_.per_pixel = &result_.frame.sample_count;
+  /// The counts of a sample-count layer; empty, with a note, where it holds fractions of an unknown number.
+  Image take_counts(WantedPass& wanted) {
+    const Layer& from = layer(wanted.choice.mean);
+    Image counts = take(wanted.mean, wanted.choice.mean, 1);
+    if (!is_sample_fraction(from.pass)) return counts;
+    if (counts_.everywhere <= 0) {
+      result_.notes.push_back(
+          fmt::format("{} is not used: it holds fractions of an unknown sample count; give --samples", from.name));
+      return {};
     }
+    for (std::size_t i = 0; i < counts.pixels(); ++i)
+      counts.plane(0)[i] = static_cast<Real>(counts.plane(0)[i] * counts_.everywhere);
+    return counts;
   }
 
-  Image take_variance(PlannedPass& planned, const Image& mean) {
-    if (!planned.variance) return {};
-    const Layer& from = layer(planned.choice.variance);
+  /// Finds the samples per pixel, which variances need: of the sample-count layer, else by --samples or the metadata.
+  void take_sample_counts() {
+    const auto metadata = samples_in_metadata(result_.source.files.front(), result_.source.view_layer);
+    counts_.everywhere = options_.samples > 0 ? options_.samples : metadata.value_or(0);
+    for (WantedPass& pass : wanted_)
+      if (pass.choice.role == Role::SampleCount) result_.frame.sample_count = take_counts(pass);
+    if (!result_.frame.sample_count.empty()) counts_.per_pixel = &result_.frame.sample_count;
+  }
+
+  /// The variance of the mean; empty, with a note, where it needs a sample count that is unknown.
+  Image take_variance(WantedPass& wanted, const Image& mean) {
+    if (!wanted.variance) return {};
+    const Layer& from = layer(wanted.choice.variance);
     const Companion kind = kind_of(from, options_.variance_kind);
-    Image variance = take(planned.variance, planned.choice.variance, mean.channels(), kind != Companion::SecondMoment);
+    Image variance = take(wanted.variance, wanted.choice.variance, mean.channels(), kind != Companion::SecondMoment);
     if (kind == Companion::VarianceOfMean) return variance;
     if (!counts_.known()) {
       result_.notes.push_back(fmt::format(
-          "{} is left out: it is the {} and the sample count is unknown; give --samples", from.name, name_of(kind)));
+          "{} is not used: it is the {} and the sample count is unknown; give --samples", from.name, name_of(kind)));
       return {};
     }
     to_variance_of_mean(variance, mean, kind, counts_);
     return variance;
   }
 
-  Pass take_pass(PlannedPass& planned) {
-    const int channels = info_of(planned.choice.role).channels;
+  Pass take_pass(WantedPass& wanted) {
+    const int channels = info_of(wanted.choice.role).channels;
     Pass pass;
-    pass.name = layer(planned.choice.mean).name;
-    pass.mean = take(planned.mean, planned.choice.mean, channels);
-    pass.variance = take_variance(planned, pass.mean);
-    pass.half_a = take(planned.half_a, planned.choice.half_a, channels);
-    pass.half_b = take(planned.half_b, planned.choice.half_b, channels);
+    pass.name = layer(wanted.choice.mean).name;
+    pass.mean = take(wanted.mean, wanted.choice.mean, channels);
+    pass.variance = take_variance(wanted, pass.mean);
+    pass.half_a = take(wanted.half_a, wanted.choice.half_a, channels);
+    pass.half_b = take(wanted.half_b, wanted.choice.half_b, channels);
     return pass;
   }
 
-  void place(PlannedPass& planned) {
+  void place(WantedPass& wanted) {
     Frame& frame = result_.frame;
-    const RoleInfo& info = info_of(planned.choice.role);
+    const RoleInfo& info = info_of(wanted.choice.role);
     if (info.feature) {
-      frame.features.push_back({info.role, take_pass(planned)});
+      frame.features.push_back({info.role, take_pass(wanted)});
       return;
     }
     switch (info.role) {
       case Role::Beauty:
-        frame.beauty = take_pass(planned);
+        frame.beauty = take_pass(wanted);
         break;
       case Role::Prior:
-        frame.prior = take_pass(planned);
+        frame.prior = take_pass(wanted);
         break;
       case Role::Color:
-        frame.aovs.push_back(take_pass(planned));
+        frame.aovs.push_back(take_pass(wanted));
         break;
       case Role::Alpha:
-        if (!alpha_) frame.alpha = take(planned.mean, planned.choice.mean, info.channels);
+        if (!alpha_) frame.alpha = take(wanted.mean, wanted.choice.mean, info.channels);
         break;
       case Role::Motion:
-        frame.motion = times(take(planned.mean, planned.choice.mean, info.channels),
-                             motion_factors(layer(planned.choice.mean).pass));
+        frame.motion =
+            times(take(wanted.mean, wanted.choice.mean, info.channels), motion_factors(layer(wanted.choice.mean).pass));
         break;
       default:  // sample counts, which are taken first
         break;
@@ -305,7 +312,7 @@ class FrameBuilder {
   std::vector<PassChoice> passes_;
   ReadResult result_;
   PartReader reader_;
-  std::vector<PlannedPass> planned_;
+  std::vector<WantedPass> wanted_;
   Rect window_;
   Image* alpha_ = nullptr;
   SampleCounts counts_;

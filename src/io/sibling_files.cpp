@@ -12,12 +12,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Whether the word names a pass that has a role. Words of two letters are too often something else.
 bool is_pass(const std::string& word) {
   const auto known = classify_pass(word);
   return word.size() > 2 && known && known->role != Role::Other;
 }
 
-/// The same with a companion's ending: "AlbedoVariance", "ColorA".
+/// Whether the word is a pass or a pass with the ending of a companion: "AlbedoVariance", "ColorA".
 bool is_pass_or_companion(const std::string& word) {
   static const std::vector<std::string> endings = pass_file_endings();
   return std::any_of(endings.begin(), endings.end(), [&](const std::string& ending) {

@@ -35,14 +35,14 @@
 namespace polyrecon {
 namespace {
 
-constexpr float kHalfMaximum = 65504;
+constexpr float half_maximum = 65504;
 
-/// Where the new samples of one channel come from: a plane, or the mean of three.
+/// The source of a channel's new samples: a plane of an image, or the mean of all its planes.
 struct NewChannel {
   const Image* image = nullptr;
   int plane = 0;
   bool mean = false;
-  std::string noisy_name;  ///< Channel that keeps the old samples; empty where they are not kept.
+  std::string noisy_name;  ///< Channel for the old samples; empty where they are not kept.
 
   float at(std::size_t i) const {
     if (!mean) return static_cast<float>(image->plane(plane)[i]);
@@ -52,10 +52,10 @@ struct NewChannel {
   }
 };
 
-using NewChannels = std::map<std::string, NewChannel>;  ///< By whole channel name.
+using NewChannels = std::map<std::string, NewChannel>;  ///< The key is the whole name of the channel.
 
-/// What happens to one part.
-struct PartPlan {
+/// How one part is written.
+struct PartRewrite {
   Imf::Header header;
   NewChannels replaced;
   bool copied_raw() const { return replaced.empty(); }
@@ -69,7 +69,8 @@ const Layer& layer_named(const FrameSource& source, const std::string& name) {
   return *found;
 }
 
-/// "ViewLayer.Combined.R" -> "ViewLayer.Combined Noisy.R"; channels without a layer take the layer's pass.
+/// "ViewLayer.Combined.R" becomes "ViewLayer.Combined Noisy.R". A channel without a layer gets the layer's pass in
+/// front.
 std::string noisy_name(const Layer& layer, const std::string& channel) {
   const auto dot = channel.rfind('.');
   if (dot == std::string::npos) return layer.pass + noisy_suffix + "." + channel;
@@ -81,10 +82,10 @@ std::vector<std::string> channels_to_replace(const Layer& layer, const Replaceme
   return layer.channels;
 }
 
-void plan_replacement(const FrameSource& source, const Replacement& replacement, const WriteOptions& options,
-                      std::vector<PartPlan>& parts) {
+void add_replacement(const FrameSource& source, const Replacement& replacement, const WriteOptions& options,
+                     std::vector<PartRewrite>& parts) {
   const Layer& layer = layer_named(source, replacement.layer);
-  PartPlan& part = parts[static_cast<std::size_t>(layer.part)];
+  PartRewrite& part = parts[static_cast<std::size_t>(layer.part)];
   const auto& window = part.header.dataWindow();
   const auto channels = channels_to_replace(layer, replacement);
   const Image& image = replacement.image;
@@ -103,7 +104,7 @@ void plan_replacement(const FrameSource& source, const Replacement& replacement,
   }
 }
 
-/// Whether encoding the part's decoded samples again with its own compression could change them.
+/// Whether samples that were decoded from the part could change when they are encoded with its compression again.
 bool is_lossy(const Imf::Header& header) {
   const auto has = [&](Imf::PixelType type) {
     for (auto c = header.channels().begin(); c != header.channels().end(); ++c)
@@ -133,11 +134,11 @@ void add_provenance(Imf::Header& header, const Provenance& provenance) {
                   Imf::FloatAttribute(static_cast<float>(provenance.estimated_relative_mse)));
 }
 
-/// float -> the bits of the channel's type. Counts half values that had to be brought into range.
+/// Stores a value as the channel's type. Counts half values that were out of range and are saturated.
 void store(NativeChannel& channel, std::size_t i, float value, std::size_t& saturated) {
   if (channel.type == Imf::HALF) {
-    if (std::abs(value) > kHalfMaximum) {
-      value = std::copysign(kHalfMaximum, value);
+    if (std::abs(value) > half_maximum) {
+      value = std::copysign(half_maximum, value);
       ++saturated;
     }
     const half h(value);
@@ -151,7 +152,8 @@ void store(NativeChannel& channel, std::size_t i, float value, std::size_t& satu
   }
 }
 
-/// Brings a band of the input into the form of the output: new samples in, old ones to their noisy names.
+/// Makes a band of the output from one of the input: copies the samples, moves replaced ones to their noisy names and
+/// puts the new ones in their place.
 void apply(const NewChannels& replaced, NativeBand& old, NativeBand& band, int window_y0, std::size_t& saturated) {
   for (NativeChannel& channel : band.channels)
     if (NativeChannel* same = old.find(channel.name)) channel.samples.swap(same->samples);
@@ -168,10 +170,10 @@ std::string part_title(const Imf::Header& header, int part) {
   return header.hasName() ? fmt::format("part {} \"{}\"", part, header.name()) : fmt::format("part {}", part);
 }
 
-/// The input is read again while it is written: it must still be the file that was read before.
+/// Checks that the input, which is read a second time for the result, is still the file that the frame was read from.
 void check_unchanged(const FrameSource& source) {
   const FileInfo& then = source.files.front();
-  ReadLimits limits;  // it may have been read with wider ones
+  ReadLimits limits;  // the frame may have been read with wider ones
   std::size_t channels = 0;
   for (const PartInfo& part : then.parts) {
     limits.max_pixels = std::max(limits.max_pixels, part.data_window.area());
@@ -187,18 +189,18 @@ void check_unchanged(const FrameSource& source) {
                       [](const ChannelInfo& x, const ChannelInfo& y) { return x.name == y.name && x.type == y.type; });
   }
   if (!same)
-    throw Error(ExitCode::BadInput, fmt::format("{}: was changed while it was worked on; run again", source.path));
+    throw Error(ExitCode::BadInput, fmt::format("{}: was changed while it was denoised; run again", source.path));
 }
 
-/// One rewriting of a file; write() and verify() are the two halves of an atomic write.
+/// A file that is written again with changes. write() and verify() are the two steps of write_atomically.
 class Rewrite {
  public:
   Rewrite(const FrameSource& source, const std::vector<Replacement>& replacements, const WriteOptions& options)
       : path_(source.path), input_(source.path.c_str(), Imf::globalThreadCount(), false) {
     for (int p = 0; p < input_.parts(); ++p) parts_.push_back({input_.header(p), {}});
-    for (const Replacement& replacement : replacements) plan_replacement(source, replacement, options, parts_);
+    for (const Replacement& replacement : replacements) add_replacement(source, replacement, options, parts_);
     for (std::size_t p = 0; p < parts_.size(); ++p) {
-      parts_[p].header.zipCompressionLevel() = kZipLevel;
+      parts_[p].header.zipCompressionLevel() = zip_level;
       if (parts_[p].copied_raw() || !is_lossy(parts_[p].header)) continue;
       parts_[p].header.compression() = Imf::ZIP_COMPRESSION;
       notes_.push_back(
@@ -210,22 +212,22 @@ class Rewrite {
 
   void write(const std::string& path) {
     std::vector<Imf::Header> headers;
-    for (const PartPlan& part : parts_) headers.push_back(part.header);
+    for (const PartRewrite& part : parts_) headers.push_back(part.header);
     saturated_ = 0;
     hashes_.clear();
     Imf::MultiPartOutputFile output(path.c_str(), headers.data(), static_cast<int>(headers.size()), true);
     for (int p = 0; p < static_cast<int>(parts_.size()); ++p)
       parts_[static_cast<std::size_t>(p)].copied_raw() ? copy_raw(output, p) : write_changed(output, p);
     if (saturated_ > 0)
-      notes_.push_back(fmt::format("{} half samples were beyond {} and are written as that", saturated_, kHalfMaximum));
+      notes_.push_back(fmt::format("{} half samples were beyond {} and are written as that", saturated_, half_maximum));
   }
 
   void verify(const std::string& path) {
-    input_.flushPartCache();  // a part stays what it was first opened as, and copying opens tiled ones as such
+    input_.flushPartCache();  // copying opened tiled parts as tiled, and the cache would keep them so
     Imf::MultiPartInputFile written(path.c_str(), Imf::globalThreadCount(), false);
     auto expected = hashes_.cbegin();
     for (int p = 0; p < static_cast<int>(parts_.size()); ++p) {
-      const PartPlan& part = parts_[static_cast<std::size_t>(p)];
+      const PartRewrite& part = parts_[static_cast<std::size_t>(p)];
       const bool same = part.copied_raw() ? same_chunks(path_, path, p) : same_samples(written, p, expected);
       if (!same) throw std::runtime_error(fmt::format("{} differs when it is read back", part_title(part.header, p)));
       if (part.copied_raw()) decode(p);
@@ -252,7 +254,7 @@ class Rewrite {
     }
   }
 
-  /// old: of the input; its memory is used.
+  /// Makes `band` of the output. `old` is a band of the input, whose memory is used.
   void make_band(Imf::InputPart& from, int p, NativeBand& old, NativeBand& band, std::size_t& saturated) {
     old.take_lines(band.y0, band.y1);
     try {
@@ -275,7 +277,7 @@ class Rewrite {
     });
   }
 
-  /// Decodes every band of the written part and compares it with what was remembered of it.
+  /// Decodes every band of the written part and compares its hashes with those taken when it was written.
   bool same_samples(Imf::MultiPartInputFile& written, int p, std::vector<std::size_t>::const_iterator& expected) {
     Imf::InputPart back(written, p);
     NativeBand found(back.header());
@@ -288,7 +290,7 @@ class Rewrite {
     return true;
   }
 
-  /// A part that was copied unseen is decoded once, so that damage in it does not pass on in silence.
+  /// Decodes a part that was copied chunk by chunk, so that damage in it is reported.
   void decode(int p) {
     const Imf::Header& header = input_.header(p);
     bool plain = !Imf::isDeepData(header.type());
@@ -307,13 +309,13 @@ class Rewrite {
 
   std::string path_;
   Imf::MultiPartInputFile input_;
-  std::vector<PartPlan> parts_;
+  std::vector<PartRewrite> parts_;
   std::size_t saturated_ = 0;
-  std::vector<std::size_t> hashes_;  ///< Of each channel of each band of the parts written anew, in their order.
+  std::vector<std::size_t> hashes_;  ///< For each changed part, band and channel, in the order of writing.
   std::vector<std::string> notes_;
 };
 
-/// Inputs of other formats: the replaced layers alone go into a new file.
+/// Writes the replaced layers alone into a new EXR file, for inputs of other formats.
 std::vector<std::string> write_as_exr(const FrameSource& source, const std::vector<Replacement>& replacements,
                                       const std::string& target, const WriteOptions& options) {
   const PartInfo& part = source.files.front().parts.front();
@@ -345,7 +347,7 @@ Imf::Header map_header(const std::vector<MapChannel>& channels, const Rect& data
                        const MapAttributes& attributes) {
   Imf::Header header(to_box(display_window), to_box(data_window));
   header.compression() = Imf::ZIP_COMPRESSION;
-  header.zipCompressionLevel() = kZipLevel;
+  header.zipCompressionLevel() = zip_level;
   header.setType(Imf::SCANLINEIMAGE);
   for (const MapChannel& channel : channels) header.channels().insert(channel.name, Imf::Channel(Imf::FLOAT));
   header.insert("polyrecon/version", Imf::StringAttribute(POLYRECON_VERSION));

@@ -73,7 +73,7 @@ TEST(Steps, EachDecisionHasAReasonAndWhatItSaves) {
   EXPECT_GT(sky.saved_seconds, 0.1 * fits->seconds);  // of the fits' time, not of another stage's
   const Decision& prefilter = decision(decided.report, "feature albedo prefilter");
   EXPECT_FALSE(prefilter.run);
-  EXPECT_EQ(prefilter.reason, "the pass is clean");
+  EXPECT_EQ(prefilter.reason, "the pass has no noise");
   EXPECT_GT(prefilter.saved_seconds, 0);
   EXPECT_LT(prefilter.saved_seconds, decided.cpu_seconds);
   EXPECT_EQ(decision(decided.report, "feature albedo").saved_seconds, 0);  // it runs

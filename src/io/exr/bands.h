@@ -40,19 +40,19 @@ std::size_t size_of(Imf::PixelType type);
 std::vector<std::size_t> hashes_of(const NativeBand& band);
 
 /// Of 9, for all that is written: zlib takes a fifth less time than at the usual 4, files grow by 4 %.
-constexpr int kZipLevel = 2;
+constexpr int zip_level = 2;
 
-constexpr int kBandLines = 256;  ///< A multiple of the lines in a chunk, whatever the compression.
+constexpr int band_lines = 256;  ///< A multiple of the lines in a chunk, whatever the compression.
 
 /// The bands that cover a part: so many lines each, or a row of tiles, in the order in which the part's line order has
 /// them written.
-std::vector<std::pair<int, int>> bands_of(const Imf::Header& header, int lines = kBandLines);
+std::vector<std::pair<int, int>> bands_of(const Imf::Header& header, int lines = band_lines);
 
 /// Decodes the lines of band from a flat part whose channels have one sample a pixel.
 void read_band(Imf::InputPart& input, NativeBand& band);
 
 /// Writes a part band by band; make fills the lines of each band. The bands are those of bands_of, in its order.
 void write_bands(Imf::MultiPartOutputFile& output, int part, const std::function<void(NativeBand&)>& make,
-                 int lines = kBandLines);
+                 int lines = band_lines);
 
 }  // namespace polyrecon

@@ -136,11 +136,11 @@ struct ChunkLayout {
   std::size_t packed() const { return sizes() + (deep ? 24 : 4); }
 };
 
-constexpr std::size_t kLongestChunkHeader = 44;
+constexpr std::size_t longest_chunk_header = 44;
 
 /// What is wrong with a chunk; empty where all its bytes are there.
 std::string fault_of(const FileBytes& file, std::uint64_t offset, const ChunkLayout& layout, std::size_t part) {
-  std::array<unsigned char, kLongestChunkHeader> raw{};
+  std::array<unsigned char, longest_chunk_header> raw{};
   if (offset > file.size() || file.size() - offset < layout.packed() || !file.read(offset, raw.data(), layout.packed()))
     return "the file ends before it";
   if (layout.several_parts && number(raw.data(), 4) != part) return "it is marked as another part's";

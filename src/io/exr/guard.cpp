@@ -18,8 +18,8 @@
 namespace polyrecon {
 namespace {
 
-constexpr std::uint64_t kSmallClaim = std::uint64_t{16} << 20;  ///< Bytes that may be claimed without question.
-constexpr std::uint64_t kMinimumChunkBytes = 16;                ///< Its offset in the table, its place and its size.
+constexpr std::uint64_t small_claim = std::uint64_t{16} << 20;  ///< Bytes that may be claimed without question.
+constexpr std::uint64_t minimum_chunk_bytes = 16;               ///< Its offset in the table, its place and its size.
 
 [[noreturn]] void fail(const std::string& path, const std::string& what) {
   throw Error(ExitCode::BadInput, fmt::format("{}: {}", path, what));
@@ -208,7 +208,7 @@ void check_claims(const std::string& path, std::uint64_t file_bytes, const std::
       const auto& tiles = header.tileDescription();
       if (tiles.xSize == 0 || tiles.ySize == 0 || std::uint64_t{tiles.xSize} * tiles.ySize > limits.max_pixels)
         fail(path, fmt::format("{}: tiles of {} x {} pixels", part_title(header, p), tiles.xSize, tiles.ySize));
-      if (std::uint64_t{tiles.xSize} * tiles.ySize * bytes_per_pixel(header) > kSmallClaim &&
+      if (std::uint64_t{tiles.xSize} * tiles.ySize * bytes_per_pixel(header) > small_claim &&
           (tiles.xSize > width || tiles.ySize > height))
         fail(path, fmt::format("{}: tiles of {} x {} pixels in an image of {} x {}", part_title(header, p), tiles.xSize,
                                tiles.ySize, width, height));
@@ -221,7 +221,7 @@ void check_claims(const std::string& path, std::uint64_t file_bytes, const std::
   }
   if (channels > limits.max_channels)
     fail(path, fmt::format("{} channels, more than --max-channels {}", channels, limits.max_channels));
-  if (chunks > file_bytes / kMinimumChunkBytes || (claimed > kSmallClaim && least > file_bytes))
+  if (chunks > file_bytes / minimum_chunk_bytes || (claimed > small_claim && least > file_bytes))
     fail(path, fmt::format("incomplete: the header claims {} chunks and {} MB of pixels, the file has {} bytes", chunks,
                            claimed >> 20, file_bytes));
 }
