@@ -28,9 +28,9 @@ TEST(Prefilter, WithoutNoiseAnEdgeStaysToTheBit) {
     EXPECT_LT(test::max_difference(out, edge), 1e-6);
 }
 
-/// An edge of 1 in noise of 0.1 (each half): ten standard deviations, so every weight across it is cut to nothing
-/// beyond the reach of a patch. The search holds 121 pixels; the noise left must be well under a tenth of its variance,
-/// the edge's contrast stay.
+/// An edge of height 1 in noise of standard deviation 0.1 in each half. Weights across the edge are 0 except within a
+/// patch radius. The search window has 121 pixels, so the variance that remains must be well below a tenth of that of
+/// the noise, and the contrast of the edge must stay.
 TEST(Prefilter, TakesTheNoiseAndKeepsTheEdge) {
   test::Random random(3);
   const double sigma = 0.1;
@@ -51,9 +51,9 @@ TEST(Prefilter, TakesTheNoiseAndKeepsTheEdge) {
 }
 
 TEST(Prefilter, TheHalvesErrorsStayIndependent) {
-  // Half 0 is noisy, half 1 exact: what is weighed on half 1 averages half 0 over all of a flat area, so its filtered
-  // noise is that of a plain mean of the 121 pixels in the search, 1/121 of the variance (overlapping means: 48 x 40 /
-  // 121 independent ones).
+  // Half 0 is noisy and half 1 exact. Weights measured on half 1 average half 0 over a flat area evenly, so the
+  // filtered half 0 has the noise of a plain mean of the 121 pixels in the search window: 1/121 of the variance. The
+  // means overlap, so the image has 48 x 40 / 121 independent ones.
   test::Random random(4);
   const Image flat(width, height, 1, Real(1));
   const Image noisy = test::image_of(width, height, 1, [&](int, int, int) { return 1 + 0.1 * random.normal(); });

@@ -51,11 +51,11 @@ TEST(LookAt, KeepsFeaturesThatVary) {
   Image holes = ramp;
   holes.at(3, 3, 0) = nan;
   EXPECT_EQ(reason_of(holes, Role::Visibility), "");
-  // One depth everywhere, and sky: the outline is what it says.
+  // One depth everywhere in front of the sky: the feature is the outline.
   EXPECT_EQ(reason_of(image_of(width, height, 1, [](int x, int, int) { return x < 9 ? 4 : 1e10; }), Role::Depth), "");
 }
 
-/// The sun in a mirror: one pixel of an albedo that is thousands, and its noise with it.
+/// The sun in a mirror: one pixel of the albedo has a value of thousands, and so has its noise.
 TEST(LookAt, ASpikeIsNeitherTheScaleOfAFeatureNorItsNoise) {
   Frame frame = make_scene(width, height, 0.1, 1).frame;
   Feature& albedo = frame.features.front();
@@ -71,7 +71,7 @@ TEST(LookAt, ASpikeIsNeitherTheScaleOfAFeatureNorItsNoise) {
   EXPECT_EQ(after.features.front().scale, before.features.front().scale);
 }
 
-TEST(LookAt, CleansOnlyNoisyFeatures) {
+TEST(LookAt, PrefiltersOnlyNoisyFeatures) {
   Frame frame = make_scene(width, height, 0.1, 1).frame;
   frame.features.resize(2);
   frame.features[1].pass.variance = Image(width, height, 3, Real(0.001));
@@ -177,7 +177,7 @@ TEST(Prepare, LayersThatAddUpHaveHalvesThatAddUp) {
   }
 }
 
-TEST(Prepare, BadPixelsAreMendedAndCounted) {
+TEST(Prepare, NonFinitePixelsAreRepairedAndCounted) {
   Frame frame = make_scene(width, height, 0.1, 6).frame;
   frame.beauty.half_a.at(4, 4, 1) = nan;
   frame.beauty.half_b.at(9, 9, 0) = std::numeric_limits<Real>::infinity();
@@ -192,7 +192,7 @@ TEST(Prepare, BadPixelsAreMendedAndCounted) {
   }
 }
 
-TEST(Prepare, AlphaIsTheLastChannelIfItIsAskedFor) {
+TEST(Prepare, AlphaIsTheLastChannelIfRequested) {
   Frame frame = make_scene(width, height, 0.1, 7).frame;
   frame.alpha = Image(width, height, 1, Real(0.25));
   EXPECT_EQ(prepared(frame).pair.color[0].channels(), 4);

@@ -100,7 +100,7 @@ TEST(ChannelNames, Blender5HasOnePartForEachPass) {
   EXPECT_EQ(named(layers, "ViewLayer.Denoising Depth").part, 4);
 }
 
-TEST(ChannelNames, OwnCompanionsOfEveryPass) {
+TEST(ChannelNames, CompanionsThatMergeWrites) {
   const auto layers = find_layers(file_with({part_with(
       channels({"L.Combined.RGB", "L.Combined Variance.RGB", "L.Combined A.RGB", "L.Combined B.RGB", "L.Visibility.Z",
                 "L.Visibility Variance.Z", "L.Visibility A.Z", "L.Visibility B.Z", "L.Sample Count.X"}))}));
@@ -281,7 +281,7 @@ TEST(ChannelNames, IdentifiersAreNoColor) {
   expect_role(layers, "id", Role::Other);
 }
 
-TEST(ChannelNames, ANoisyLayerKeptBesideItsResultIsTheBeautyAgain) {
+TEST(ChannelNames, ANoisyLayerNextToItsResultIsTheBeautyAgain) {
   const auto layers = find_layers(file_with({part_with(channels({"L.Combined.RGB", "L.Combined Noisy.RGB"}))}));
   expect_role(layers, "L.Combined Noisy", Role::Beauty);
   expect_role(layers, "L.Combined", Role::Prior);

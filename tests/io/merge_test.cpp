@@ -55,7 +55,7 @@ std::string samples_attribute(const std::string& path) {
   return find_attribute(describe_file(path).parts[0], "cycles.V.samples")->value;
 }
 
-TEST(MergeRenders, HalvesOfTheirOwnAreAveragedAlikeWhateverTheirCounts) {
+TEST(MergeRenders, GivenHalvesAreAveragedAlikeWhateverTheirCounts) {
   // A: 1 (1 sample), 4 (2 samples): mean 3. B: 5 (10 samples), 8 (20 samples): mean 7. The picture is 5, not the 73 /
   // 11 of all samples alike. One sample: (1 * 62^2 + 4 * 29^2 + 100 * 18^2 + 400 * 15^2) / 11^2 / (33 - 505 / 33); the
   // picture's variance is that times (1 / 3 + 1 / 30) / 4.
@@ -128,7 +128,7 @@ TEST(MergeRenders, MetadataWeighTheRenders) {
   EXPECT_EQ(find_attribute(describe_file(out).parts[0], "cycles.V.samples")->value, "16");
 }
 
-TEST(MergeRenders, LongRendersTellMoreOfTheVarianceThanShortOnes) {
+TEST(MergeRenders, LongRendersWeighMoreInTheVarianceThanShortOnes) {
   // 1, 1 and 2 samples of 0, 4, 2: mean 2; (1 * 4 + 1 * 4 + 4 * 0) / (16 - 6) = 0.8, while all renders alike would say
   // (1 * 4 + 1 * 4 + 2 * 0) / (2 * 4) = 1.
   const TemporaryFolder folder;
@@ -169,7 +169,7 @@ TEST(MergeRenders, SampleCountPassesWeighEveryPixel) {
   const auto mean = stored_floats(out, 0, "V.Combined.R"), variance = stored_floats(out, 0, "V.Combined Variance.R"),
              half_b = stored_floats(out, 0, "V.Combined B.R"), count = stored_floats(out, 0, "V.Sample Count.X");
   EXPECT_EQ(mean[0], 1);
-  EXPECT_TRUE(std::isnan(variance[0]));  // one render tells nothing of the spread
+  EXPECT_TRUE(std::isnan(variance[0]));  // one render has no spread
   EXPECT_EQ(half_b[0], 1);
   EXPECT_EQ(count[0], 8);
   EXPECT_EQ(mean[1], 3);

@@ -99,13 +99,13 @@ TEST(ReadFrame, OnePartForEachPassAndAPrior) {
     parts.back().name = name;
     seed += 10;
   }
-  FrameShape told;
+  FrameShape found;
   ReadOptions options;
-  options.accept = [&](const std::string&, const FrameShape& shape) { told = shape; };
+  options.accept = [&](const std::string&, const FrameShape& shape) { found = shape; };
   const ReadResult read = read_frame(write_exr(folder / "a.exr", parts), options);
-  EXPECT_EQ(told.prior_channels, 3);
-  EXPECT_EQ(told.channels, 3 + 1 + 3 + 2 * 3 + 1);  // noisy, its alpha, prior, albedo and its noise, depth
-  EXPECT_EQ(told.feature_channels, 4);
+  EXPECT_EQ(found.prior_channels, 3);
+  EXPECT_EQ(found.channels, 3 + 1 + 3 + 2 * 3 + 1);  // noisy, its alpha, prior, albedo and its noise, depth
+  EXPECT_EQ(found.feature_channels, 4);
   EXPECT_EQ(read.frame.beauty.name, "V.Noisy Image");
   EXPECT_TRUE(holds(read.frame.beauty.mean, 0, parts[0].window, 10));
   EXPECT_TRUE(holds(read.frame.prior.mean, 0, parts[0].window, 0));
@@ -154,7 +154,7 @@ TEST(ReadFrame, ASampleVarianceIsDividedByTheSampleCount) {
   EXPECT_EQ(everywhere(read.frame.beauty.variance, 1), 0.75);
 }
 
-TEST(ReadFrame, AnUnknownSampleCountLeavesTheVarianceOutUnlessGiven) {
+TEST(ReadFrame, AVarianceThatNeedsAnUnknownSampleCountIsNotUsed) {
   const TemporaryFolder folder;
   const std::string path =
       write_exr(folder / "a.exr", {part_of(join({flat_layer("", "RGB", 2), flat_layer("Variance", "RGB", 12)}))});
@@ -312,7 +312,7 @@ TEST(ReadFrame, ARoleFromAnotherFile) {
   ASSERT_THAT(read.source.files, SizeIs(2));
 }
 
-TEST(ReadFrame, ARoleFromAFileOfManyLayersIsTheLayerThatPlaysItThereElseTheBeauty) {
+TEST(ReadFrame, ARoleFromAFileOfManyLayersIsTheLayerWithThatRoleElseTheBeauty) {
   const TemporaryFolder folder;
   const TestPart noisy = part_of(layer("", "RGB"));
   const std::string in = write_exr(folder / "in.exr", {noisy});
@@ -348,7 +348,7 @@ TEST(ReadFrame, OnePassAFileIsGathered) {
   EXPECT_THAT(read.notes, Contains(HasSubstr("sceneAlbedo.exr")));
 }
 
-TEST(ReadFrame, AovsAskedForAndTheirCompanions) {
+TEST(ReadFrame, RequestedAovsAndTheirCompanions) {
   const TemporaryFolder folder;
   const std::string path = write_exr(
       folder / "a.exr",
@@ -395,14 +395,14 @@ TEST(ReadFrame, NeedsMemoryWithinTheLimit) {
   EXPECT_NO_THROW(read_frame(path, options));
 }
 
-TEST(PlanFrame, ChoosesAsReadFrameDoes) {
+TEST(ReadFrameHeader, ChoosesAsReadFrameDoes) {
   const TemporaryFolder folder;
   const std::string path = write_exr(folder / "a.exr", {part_of(join({layer("", "RGB"), layer("albedo", "RGB")}))});
-  const ReadResult plan = read_frame_header(path), read = read_frame(path);
-  EXPECT_TRUE(plan.frame.beauty.mean.empty());
-  ASSERT_EQ(plan.source.chosen.size(), read.source.chosen.size());
-  for (std::size_t i = 0; i < plan.source.chosen.size(); ++i)
-    EXPECT_EQ(plan.source.chosen[i].layer, read.source.chosen[i].layer);
+  const ReadResult header = read_frame_header(path), read = read_frame(path);
+  EXPECT_TRUE(header.frame.beauty.mean.empty());
+  ASSERT_EQ(header.source.chosen.size(), read.source.chosen.size());
+  for (std::size_t i = 0; i < header.source.chosen.size(); ++i)
+    EXPECT_EQ(header.source.chosen[i].layer, read.source.chosen[i].layer);
 }
 
 TEST(ParseMapping, RefusesWhatItDoesNotKnow) {

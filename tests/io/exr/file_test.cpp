@@ -91,7 +91,7 @@ INSTANTIATE_TEST_SUITE_P(Compressions, LossyFile,
                                                               Imf::DWAB_COMPRESSION),
                                             ::testing::Values(0, 32)));
 
-TEST(DescribeFile, TellsPartsChannelsAndAttributes) {
+TEST(DescribeFile, FindsPartsChannelsAndAttributes) {
   const TemporaryFolder folder;
   TestPart first = mixed_part(), second;
   first.name = "alpha";
@@ -141,7 +141,7 @@ TEST(DescribeFile, OtherFilesAreNoInput) {
   EXPECT_EQ(error_of([&] { describe_file(folder / ""); }).code(), ExitCode::BadInput);
 }
 
-/// What a renderer leaves while it works: the header is there, the pixels are not, offsets are zero.
+/// A file while a renderer writes it: the header is there, the pixels are missing, the offsets are zero.
 TEST(Case02, UnwrittenChunksAreToldApart) {
   const TemporaryFolder folder;
   TestPart part;
@@ -222,7 +222,7 @@ void patch(std::string& bytes, const std::string& key, std::size_t skip, std::ui
   for (std::size_t i = 0; i < 4; ++i) bytes[at + key.size() + skip + i] = static_cast<char>(value >> (8 * i));
 }
 
-/// A few hundred bytes that claim much more: refused at once, before anything of the claimed size is allocated.
+/// Files of a few hundred bytes that claim much more are refused at once, before anything of that size is allocated.
 class Case03HeaderBomb : public ::testing::TestWithParam<std::function<void(std::string&)>> {};
 
 TEST_P(Case03HeaderBomb, IsRefusedAtOnce) {
@@ -236,34 +236,35 @@ TEST_P(Case03HeaderBomb, IsRefusedAtOnce) {
   const auto begin = std::chrono::steady_clock::now();
   EXPECT_EQ(error_of([&] { read_all(folder / "a.exr"); }).code(), ExitCode::BadInput);
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
-  EXPECT_LT(seconds.count(), 1.0);  // what a user may be made to wait; it takes milliseconds
+  EXPECT_LT(seconds.count(), 1.0);  // it takes milliseconds
 }
 
 // dataWindow\0 box2i\0 size(4) xmin ymin xmax ymax
-const std::string kWindow("dataWindow\0box2i\0", 17);
+const std::string window_attribute("dataWindow\0box2i\0", 17);
 // tiles\0 tiledesc\0 size(4) xsize ysize mode
-const std::string kTiles("tiles\0tiledesc\0", 15);
+const std::string tiles_attribute("tiles\0tiledesc\0", 15);
 
 INSTANTIATE_TEST_SUITE_P(
     Claims, Case03HeaderBomb,
-    ::testing::Values([](std::string& b) { patch(b, kWindow, 12, 60000), patch(b, kWindow, 16, 60000); },
-                      [](std::string& b) { patch(b, kWindow, 12, 0x7ffffffe); },
-                      [](std::string& b) { patch(b, kWindow, 16, 0x7ffffffe); },
-                      [](std::string& b) { patch(b, kWindow, 4, 0x80000000), patch(b, kWindow, 12, 0x7fffffff); },
-                      [](std::string& b) { patch(b, kWindow, 12, 0xfffffff0); },  // xMax < xMin
-                      [](std::string& b) { patch(b, kTiles, 4, 0x7fffffff), patch(b, kTiles, 8, 0x7fffffff); },
-                      [](std::string& b) {
-                        patch(b, kTiles, 4, 1), patch(b, kTiles, 8, 1), patch(b, kWindow, 12, 16000),
-                            patch(b, kWindow, 16, 16000);
-                      },
-                      [](std::string& b) { patch(b, kTiles, 4, 0); },
-                      [](std::string& b) { patch(b, kWindow, 0, 0x7fffffff); },  // the size of the attribute itself
-                      [](std::string& b) { patch(b, std::string("channels\0chlist\0", 16), 0, 0xffffffff); },
-                      // a size that is not the type's: OpenEXR reads on from another place
-                      [](std::string& b) { patch(b, std::string("pixelAspectRatio\0float\0", 23), 0, 40); }));
+    ::testing::Values(
+        [](std::string& b) { patch(b, window_attribute, 12, 60000), patch(b, window_attribute, 16, 60000); },
+        [](std::string& b) { patch(b, window_attribute, 12, 0x7ffffffe); },
+        [](std::string& b) { patch(b, window_attribute, 16, 0x7ffffffe); },
+        [](std::string& b) { patch(b, window_attribute, 4, 0x80000000), patch(b, window_attribute, 12, 0x7fffffff); },
+        [](std::string& b) { patch(b, window_attribute, 12, 0xfffffff0); },  // xMax < xMin
+        [](std::string& b) { patch(b, tiles_attribute, 4, 0x7fffffff), patch(b, tiles_attribute, 8, 0x7fffffff); },
+        [](std::string& b) {
+          patch(b, tiles_attribute, 4, 1), patch(b, tiles_attribute, 8, 1), patch(b, window_attribute, 12, 16000),
+              patch(b, window_attribute, 16, 16000);
+        },
+        [](std::string& b) { patch(b, tiles_attribute, 4, 0); },
+        [](std::string& b) { patch(b, window_attribute, 0, 0x7fffffff); },  // the size of the attribute itself
+        [](std::string& b) { patch(b, std::string("channels\0chlist\0", 16), 0, 0xffffffff); },
+        // a size that is not the type's: OpenEXR reads on from another place
+        [](std::string& b) { patch(b, std::string("pixelAspectRatio\0float\0", 23), 0, 40); }));
 
-/// The tightest packing there is must not be taken for a lie: an image of one value in every compression.
-TEST(Case03, ConstantImagesAreBelieved) {
+/// The smallest files for their size are accepted: images of one value in every compression.
+TEST(Case03, ConstantImagesAreAccepted) {
   const TemporaryFolder folder;
   for (int compression = 0; compression < Imf::NUM_COMPRESSION_METHODS; ++compression) {
     TestPart part;
