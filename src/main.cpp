@@ -21,21 +21,22 @@ namespace {
 using polyrecon::Command;
 using polyrecon::ExitCode;
 
-/// One line, whatever a library put into its message.
+/// Prints the message as one line; messages of libraries may contain line breaks.
 int fail(ExitCode code, std::string message) {
   std::replace(message.begin(), message.end(), '\n', ' ');
   std::fputs(fmt::format("polyrecon: {}\n", message).c_str(), stderr);
   return static_cast<int>(code);
 }
 
-/// Parses the command line into the work to do. Returns nothing to do after --help or --version, with exit code 0.
+/// Parses the command line. The command is empty after --help and --version, which need no work.
 Command parse(int argc, char** argv) {
   CLI::App app;
   Command chosen;
   polyrecon::setup_app(app, chosen);
   const auto known = app.get_subcommands([&](const CLI::App* sub) { return argc > 1 && sub->get_name() == argv[1]; });
   if (argc > 1 && argv[1][0] != '-' && known.empty())
-    throw polyrecon::Error(ExitCode::Usage, fmt::format("no command '{}' (polyrecon --help lists them)", argv[1]));
+    throw polyrecon::Error(ExitCode::Usage,
+                           fmt::format("'{}' is no command (polyrecon --help lists the commands)", argv[1]));
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
@@ -46,7 +47,8 @@ Command parse(int argc, char** argv) {
   return chosen;
 }
 
-/// Images come and go by the dozen: memory that went back to the system each time would be cleared for each anew.
+/// Keeps freed memory in the process: images are allocated and freed by the dozen, and the system clears memory that it
+/// gets back before it is used again.
 void keep_freed_memory() {
 #ifdef __GLIBC__
   mallopt(M_MMAP_THRESHOLD, 1 << 30);
@@ -72,7 +74,7 @@ int main(int argc, char** argv) {
   } catch (const polyrecon::Error& e) {
     return fail(code_of(e), e.what());
   } catch (const std::bad_alloc&) {
-    return fail(ExitCode::OutOfMemory, "not enough memory: lower --max-memory, or give fewer passes");
+    return fail(ExitCode::OutOfMemory, "not enough memory: lower --max-memory, or use fewer passes");
   } catch (const std::exception& e) {
     return fail(ExitCode::Internal, std::string("internal error: ") + e.what());
   }

@@ -4,7 +4,7 @@ namespace polyrecon {
 
 void setup_app(CLI::App& app, Command& chosen) {
   app.name("polyrecon");
-  app.description("Rebuilds clean images from noisy Monte Carlo renders by adaptive polynomials.");
+  app.description("Denoises Monte Carlo renders by adaptive polynomial reconstruction.");
   app.set_version_flag("--version", "polyrecon " POLYRECON_VERSION);
   app.require_subcommand(1);
   app.fallthrough(false);
@@ -24,7 +24,7 @@ void setup_app(CLI::App& app, Command& chosen) {
       "  polyrecon denoise -i render.exr -o clean.exr\n"
       "  polyrecon inspect render.exr\n"
       "  polyrecon merge part*.exr -o merged.exr\n"
-      "Each command has a --help of its own.");
+      "polyrecon COMMAND --help describes a command.");
   setup_denoise(app, chosen);
   setup_inspect(app, chosen);
   setup_merge(app, chosen);

@@ -6,8 +6,8 @@
 
 namespace polyrecon {
 
-/// Gives app the whole command line: every sub-command with its options, help and examples. Parsing it sets chosen.
-/// The man pages and shell completions are made from the same tree (src/manual).
+/// Adds the whole command line to app: every command with its options, help and examples. Parsing sets `chosen`. Man
+/// pages, shell completions and docs/reference/command_line.md are generated from the same tree (src/manual).
 void setup_app(CLI::App& app, Command& chosen);
 
 }  // namespace polyrecon

@@ -5,10 +5,11 @@
 
 namespace polyrecon {
 
-/// The work of the sub-command that was parsed; run after parsing, so that its errors are not the parser's.
+/// The work of the command that was parsed. It runs after the parsing, so that its errors are not reported as the
+/// parser's.
 using Command = std::function<void()>;
 
-/// Each adds one sub-command to app, with its options and examples; parsing it sets chosen.
+/// Each adds one command to app, with its options and examples. Parsing that command sets `chosen`.
 void setup_denoise(CLI::App& app, Command& chosen);
 void setup_inspect(CLI::App& app, Command& chosen);
 void setup_merge(CLI::App& app, Command& chosen);

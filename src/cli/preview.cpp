@@ -29,19 +29,20 @@ struct PreviewOptions {
   bool false_color = false;
 };
 
-/// What a person wants to see first: the picture, else what a map is about, else the first thing there is.
+/// The layer to show unless one was named: the picture, else the main layer of a map, else the first layer.
 const Layer& main_layer(const LayeredFile& file) {
   if (const Layer* color = color_layer(file)) return *color;
   for (const char* name : {"relmse", "samples", "order"})
     if (const Layer* map = find_layer(file, name)) return *map;
-  if (file.layers.empty()) throw Error(ExitCode::Missing, file.info.path + ": holds no layer to show");
+  if (file.layers.empty()) throw Error(ExitCode::Missing, file.info.path + ": has no layer to show");
   return file.layers.front();
 }
 
 const Layer& wanted_layer(const LayeredFile& file, const std::string& name) {
   if (name.empty()) return main_layer(file);
   if (const Layer* layer = find_layer(file, name)) return *layer;
-  throw Error(ExitCode::Missing, fmt::format("{}: no layer '{}' (polyrecon inspect lists them)", file.info.path, name));
+  throw Error(ExitCode::Missing,
+              fmt::format("{}: has no layer '{}' (polyrecon inspect lists the layers)", file.info.path, name));
 }
 
 Image mean_of_channels(const Image& image) {
@@ -52,7 +53,7 @@ Image mean_of_channels(const Image& image) {
   return out;
 }
 
-/// Three channels are a picture; anything else, or all on request, is shown in false colours.
+/// Layers of three channels are shown as pictures, all others in false colours, as on request are all.
 Panel make_panel(const std::string& path, const PreviewOptions& o) {
   const LayeredFile file = open_layers(path);
   const Layer& layer = wanted_layer(file, o.layer);
@@ -79,7 +80,7 @@ void run(const PreviewOptions& o) {
   for (const std::string& input : o.inputs) panels.push_back(make_panel(input, o));
   write_png(o.output, compose(panels));
   if (!has_font())
-    std::fputs("polyrecon: no font was found, captions are left out: install DejaVu Sans (fonts-dejavu-core)\n",
+    std::fputs("polyrecon: found no font, so the picture has no captions; install DejaVu Sans (fonts-dejavu-core)\n",
                stderr);
 }
 
@@ -87,15 +88,15 @@ void run(const PreviewOptions& o) {
 
 void setup_preview(CLI::App& app, Command& chosen) {
   const auto o = std::make_shared<PreviewOptions>();
-  CLI::App* sub = app.add_subcommand("preview", "Shows layers and maps as a PNG, several files side by side");
+  CLI::App* sub = app.add_subcommand("preview", "Makes a PNG of layers or maps, of several files side by side");
   sub->add_option("inputs", o->inputs, "Images or maps")->required()->type_name("FILE...");
   sub->add_option("-o,--output", o->output, "PNG to write")->required()->type_name("FILE");
   sub->add_option("--layer", o->layer, "Layer to show in place of the beauty")->type_name("NAME");
   add_display_options(*sub, o->display);
   sub->add_flag("--false-colour,--false-color", o->false_color,
-                "Logarithmic false colours with a legend (maps have them anyway)");
+                "Show logarithmic false colours with a legend, as maps always do");
   sub->footer(
-      "Colours go through OpenColorIO: the configuration named by $OCIO, or a built-in sRGB one.\n"
+      "OpenColorIO converts the colours, by the configuration in $OCIO or a built-in one for sRGB.\n"
       "Examples:\n"
       "  polyrecon preview clean.exr -o clean.png --view Filmic --exposure 1\n"
       "  polyrecon preview noisy.exr clean.exr reference.exr error.exr -o compared.png\n"

@@ -24,7 +24,7 @@
 namespace polyrecon {
 namespace {
 
-/// All groups but "parts", which nobody chooses between.
+/// All groups but "parts": users do not choose between its settings.
 std::vector<std::string> trade_groups() {
   std::vector<std::string> groups = setting_groups();
   groups.erase(std::remove(groups.begin(), groups.end(), "parts"), groups.end());
@@ -39,7 +39,7 @@ struct SweepOptions {
   bool quiet = false;
 };
 
-/// "NAME=FILE:SECONDS": FILE may hold colons, NAME no equals sign.
+/// The value of --also, "NAME=FILE:SECONDS". FILE may contain colons; NAME contains no equals sign.
 struct PeerFile {
   std::string name, file;
   double seconds = 0;
@@ -72,7 +72,7 @@ Image read_color(const LayeredFile& file, const Image& reference) {
   Image image = read_layer(file, layer);
   if (!reference.empty() && !image.same_shape(reference))
     throw Error(ExitCode::BadInput,
-                fmt::format("{}: layer '{}' is {} x {} pixels, the reference has {} x {}", file.info.path, layer.name,
+                fmt::format("{}: layer '{}' has {} x {} pixels, the reference has {} x {}", file.info.path, layer.name,
                             image.width(), image.height(), reference.width(), reference.height()));
   return image;
 }
@@ -89,7 +89,7 @@ SweepInput read_input(const std::string& path, const Image& reference) {
   ReadResult read = read_frame(path);
   if (read.frame.width() != reference.width() || read.frame.height() != reference.height())
     throw Error(ExitCode::BadInput,
-                fmt::format("{}: is {} x {} pixels, the reference has {} x {}", path, read.frame.width(),
+                fmt::format("{}: has {} x {} pixels, the reference has {} x {}", path, read.frame.width(),
                             read.frame.height(), reference.width(), reference.height()));
   const double samples = samples_in_metadata(read.source.files.front(), read.source.view_layer).value_or(0);
   return {file_name(path), samples, std::move(read.frame)};
@@ -131,33 +131,35 @@ void run(const SweepOptions& o) {
 
 void setup_sweep(CLI::App& app, Command& chosen) {
   const auto o = std::make_shared<SweepOptions>();
-  CLI::App* sub = app.add_subcommand("sweep", "Shows what accuracy costs in time, on a render with a reference");
-  sub->add_option("-i,--input", o->inputs,
-                  "Noisy render; repeated: the same frame at other samples, tried by the qualities only")
+  CLI::App* sub = app.add_subcommand("sweep", "Measures time and error of many settings on a render with a reference");
+  sub->add_option(
+         "-i,--input", o->inputs,
+         "Noisy render; repeat it for the same frame with other sample counts, which are tried by the qualities only")
       ->required()
       ->expected(1)
       ->take_all()
       ->type_name("FILE");
   sub->add_option("--reference", o->reference, "Converged render of the frame")->required()->type_name("FILE");
-  sub->add_option("-o,--output", o->output, "Report to write: one HTML page")->required()->type_name("FILE");
+  sub->add_option("-o,--output", o->output, "Report to write, an HTML page")->required()->type_name("FILE");
   sub->add_option("--csv", o->csv, "Write all figures as CSV too")->type_name("FILE");
-  sub->add_option("--also", o->also, "Draw another program's result beside ours (repeatable)")
+  sub->add_option("--also", o->also, "Result of another program to compare with (repeatable)")
       ->expected(1)
       ->take_all()
       ->type_name("NAME=FILE:SECONDS");
   sub->add_option("--vary", o->groups,
-                  "What to vary, all but parts unless given: " + fmt::format("{}", fmt::join(setting_groups(), ", ")))
+                  "Parameters to vary; default: all but parts. There are " +
+                      fmt::format("{}", fmt::join(setting_groups(), ", ")))
       ->delimiter(',')
       ->check(CLI::IsMember(setting_groups()).description(""))
       ->type_name("GROUP,...");
-  sub->add_option("-t,--threads", o->threads, "Threads to use; 0: all processors")
+  sub->add_option("-t,--threads", o->threads, "Threads to use; 0: one for each processor")
       ->check(CLI::Range(0, 4096))
       ->capture_default_str();
   sub->add_flag("-q,--quiet", o->quiet, "Print nothing but errors");
   sub->footer(
-      "Short runs are repeated, up to three times and two seconds; the median counts. \"parts\" takes each part of the "
-      "method "
-      "out alone.\n"
+      "Short runs are repeated, up to three times and two seconds; the median counts. The group \"parts\" disables one "
+      "part\n"
+      "of the method at a time.\n"
       "Examples:\n"
       "  polyrecon sweep -i render.exr --reference ref.exr -o report.html --csv figures.csv\n"
       "  polyrecon sweep -i 16.exr -i 64.exr -i 256.exr --reference ref.exr -o report.html --vary quality\n"

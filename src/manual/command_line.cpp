@@ -10,7 +10,7 @@ OptionInfo describe(const CLI::Option& option) {
   OptionInfo info;
   for (const std::string& name : option.get_snames()) info.names.push_back("-" + name);
   for (const std::string& name : option.get_lnames()) info.names.push_back("--" + name);
-  // CLI11 appends what a value is checked for: "FLOAT:POSITIVE".
+  // CLI11 appends the check of a value to its type: "FLOAT:POSITIVE".
   if (option.get_items_expected_max() > 0)
     info.value = option.get_type_name().substr(0, option.get_type_name().find(':'));
   info.help = option.get_description();
@@ -20,7 +20,7 @@ OptionInfo describe(const CLI::Option& option) {
   return info;
 }
 
-/// "  command" lines below "Examples:" are examples; all else are remarks.
+/// Indented lines below "Examples:" are examples; all other lines are remarks.
 void split_footer(const std::string& footer, CommandInfo& info) {
   std::istringstream lines(footer);
   bool examples = false;

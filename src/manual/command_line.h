@@ -6,14 +6,15 @@
 
 namespace polyrecon {
 
-/// The command line as plain data, read from CLI11's tree: what man pages and shell completions are made of.
+/// The command line as plain data, read from CLI11's tree. Man pages, shell completions and the reference page are
+/// generated from it.
 struct OptionInfo {
   std::vector<std::string> names;  ///< "-o", "--output"; empty for a positional.
-  std::string value;               ///< What it takes: "FILE", "draft|standard|best"; empty for a flag.
+  std::string value;               ///< Its type: "FILE", "draft|standard|best"; empty for a flag.
   std::string help, group;
   bool required = false;
 
-  /// The names that it takes, where they are a closed list.
+  /// The names that it takes, if there are a few; else empty.
   std::vector<std::string> choices() const;
   bool takes_file() const;
   bool is_flag() const { return value.empty(); }
@@ -22,13 +23,13 @@ struct OptionInfo {
 struct CommandInfo {
   std::string name, summary;
   std::vector<OptionInfo> positionals, options;
-  std::string remarks;                      ///< Of the footer: all that stands before "Examples:".
-  std::vector<std::string> examples;        ///< A command line each.
-  std::vector<CommandInfo> commands;        ///< Empty for a sub-command.
-  std::vector<std::string> groups() const;  ///< Of the options, in order of appearance.
+  std::string remarks;                      ///< The footer without its examples.
+  std::vector<std::string> examples;        ///< One command line each.
+  std::vector<CommandInfo> commands;        ///< Empty for a command.
+  std::vector<std::string> groups() const;  ///< The groups of the options, in their order.
 };
 
-/// Reads app and, one level deep, its sub-commands.
+/// Describes app and its commands. Hidden options are left out.
 CommandInfo describe(const CLI::App& app);
 
 }  // namespace polyrecon

@@ -19,14 +19,14 @@ std::vector<std::string> names_of(const std::vector<OptionInfo>& options) {
   return names;
 }
 
-/// Within '...' of a shell that ends the quotes for a quote.
+/// Quoted by '...', where a quote inside ends and reopens the quotes.
 std::string quoted(const std::string& text) {
   std::string out;
   for (const char c : text) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
   return "'" + out + "'";
 }
 
-/// What bash offers after an option that takes a value.
+/// The shell function that offers the values of an option.
 std::string bash_values(const OptionInfo& option) {
   if (!option.choices().empty()) return fmt::format("_polyrecon_words '{}'", fmt::join(option.choices(), " "));
   return option.takes_file() ? "_polyrecon_files" : ":";
@@ -41,7 +41,7 @@ std::string bash_command(const CommandInfo& command) {
   return text + fmt::format("      options='{}' ;;\n", fmt::join(names_of(command.options), " "));
 }
 
-/// One argument of zsh's _arguments: '(-o --output)'{-o,--output}'[help]:FILE:_files'.
+/// An argument of zsh's _arguments: '*'{-o,--output}'[help]:FILE:_files'.
 std::string zsh_argument(const OptionInfo& option) {
   std::string help;
   for (const char c : option.help) help += c == '[' || c == ']' || c == ':' ? std::string("\\") + c : std::string(1, c);
@@ -68,7 +68,7 @@ std::string fish_option(const std::string& condition, const OptionInfo& option) 
     text += option.takes_file() ? " -r -F" : " -x";
     if (!choices.empty()) text += fmt::format(" -a '{}'", fmt::join(choices, " "));
   }
-  // fish escapes a quote by a backslash, and so a backslash too.
+  // In fish, a backslash escapes quotes and backslashes.
   std::string help;
   for (const char c : option.help) help += c == '\'' || c == '\\' ? std::string("\\") + c : std::string(1, c);
   return text + fmt::format(" -d '{}'\n", help);

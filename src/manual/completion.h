@@ -6,8 +6,8 @@
 
 namespace polyrecon {
 
-/// Completion scripts: the commands, the options of each, the values of options that take one of a few names, and file
-/// names where a file is asked for.
+/// Completion scripts for three shells. They complete commands, options, values of options that take one of a few
+/// names, and file names.
 std::string bash_completion(const CommandInfo& program);
 std::string zsh_completion(const CommandInfo& program);
 std::string fish_completion(const CommandInfo& program);

@@ -9,7 +9,7 @@
 namespace polyrecon {
 namespace {
 
-/// Text that roff prints as it stands: "\" and "-" are its own, and so is a dot or quote that begins a line.
+/// Escapes text for roff, in which "\" and "-" have a meaning, and a dot or a quote at the begin of a line.
 std::string escape(const std::string& text) {
   std::string out;
   for (const char c : text) {
@@ -61,7 +61,7 @@ std::string options_of(const CommandInfo& command) {
 
 std::string literal(const std::string& text) { return ".nf\n" + escape(text) + ".fi\n"; }
 
-/// Lines that belong together are filled; those that are indented, a list, stay lines.
+/// Plain lines become filled paragraphs; indented lines, which are lists, stay lines.
 std::string remarks_of(const CommandInfo& command) {
   std::string text, list;
   std::istringstream lines(command.remarks);

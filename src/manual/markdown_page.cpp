@@ -8,7 +8,7 @@
 namespace polyrecon {
 namespace {
 
-/// Text that Markdown shows as it stands, in a table's cell too.
+/// Escapes text for Markdown, also for the cells of a table.
 std::string escape(const std::string& text) {
   constexpr std::string_view special = "\\`*_<[|";
   std::string out;
@@ -19,7 +19,7 @@ std::string escape(const std::string& text) {
   return out;
 }
 
-/// A code span. A table's cell ends at "|" even inside of one.
+/// A code span. "|" is escaped because it ends the cell of a table even there.
 std::string code(const std::string& text) {
   std::string out = "`";
   for (const char c : text) {
@@ -54,7 +54,7 @@ std::string options_of(const CommandInfo& command) {
   return command.positionals.empty() ? text : header + text;
 }
 
-/// Indented lines, a list, become a block of code; the others a paragraph.
+/// Indented lines, which are lists, become a code block; the others a paragraph.
 std::string remarks_of(const CommandInfo& command) {
   std::string text;
   bool in_list = false;

@@ -1,5 +1,6 @@
-// The functions that need libOpenImageIO, as the program has them: the first call loads the module where they are. That
-// library brings some 200 others, whose linking would take ten times as long as the rest of the program's start.
+// The functions that need libOpenImageIO, as the program contains them: the first call loads the module that has the
+// real ones. That library depends on some 200 others; linking them takes ten times as long as the rest of the program's
+// start.
 
 #include <dlfcn.h>
 #include <fmt/format.h>
@@ -13,10 +14,10 @@
 namespace polyrecon {
 namespace {
 
-/// Where the module is, as seen from the program, is fixed; both may be moved together. (/proc/self/exe says nothing
-/// where /proc is not mounted.)
+/// The module has a fixed place relative to the program, so that both can be moved together. The program's path is not
+/// taken from /proc/self/exe, because /proc may not be mounted.
 std::string module_path() {
-  // NOLINTNEXTLINE(performance-no-int-to-ptr): the system tells the address as a number
+  // NOLINTNEXTLINE(performance-no-int-to-ptr): the system returns the address as a number
   const auto* program = reinterpret_cast<const char*>(::getauxval(AT_EXECFN));
   const auto folder = std::filesystem::canonical(program).parent_path();
   return (folder / POLYRECON_PICTURES).lexically_normal().string();

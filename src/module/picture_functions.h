@@ -6,7 +6,7 @@
 
 namespace polyrecon {
 
-/// All functions that need libOpenImageIO, as the program gets them from the module that it loads at the first call.
+/// The functions that need libOpenImageIO. The program gets them from a module that it loads at the first call.
 struct PictureFunctions {
   decltype(&polyrecon::false_color) false_color;
   decltype(&polyrecon::flip_color) flip_color;
@@ -18,7 +18,7 @@ struct PictureFunctions {
   decltype(&polyrecon::encode_png) encode_png;
 };
 
-/// What the program looks up in the module.
+/// The symbol that the program looks up in the module.
 extern "C" const PictureFunctions polyrecon_picture_functions;
 
 }  // namespace polyrecon

@@ -14,7 +14,7 @@
 namespace polyrecon {
 namespace {
 
-constexpr std::size_t pictured_points = 4;  // of the front; the fastest and the most accurate among them
+constexpr std::size_t pictured_points = 4;  // settings of the front that get a picture, the first and last included
 
 constexpr const char* style = R"(
 :root{color-scheme:light dark;--ground:#fff;--text:#1d2129;--soft:#69707d;--line:#d9dde3;--shade:#f4f6f8}
@@ -41,7 +41,7 @@ figure{margin:0}figure img{width:100%;display:block;image-rendering:pixelated;ma
 
 CostPoint cost_of(const Trial& trial) { return {trial.seconds, trial.score.relative_mse}; }
 
-/// The swept input's Pareto front, as indices into its trials.
+/// The Pareto front of an input's trials, as indices.
 std::vector<std::size_t> front_of(const SweptInput& input) {
   std::vector<CostPoint> points;
   for (const Trial& trial : input.trials) points.push_back(cost_of(trial));
@@ -52,7 +52,7 @@ std::string samples_text(double samples) { return samples > 0 ? fmt::format("{:g
 
 std::string percent(double factor) { return fmt::format("{:+.1f} %", 100 * (factor - 1)); }
 
-/// Where the error hardly falls a price would be a number that means nothing.
+/// The price of 10 % less error; where the error hardly falls, only that it is high.
 std::string price_text(const CostPoint& cheap, const CostPoint& dear, const char* what) {
   const double price = price_of_ten_percent(cheap, dear);
   return price > 100 ? fmt::format("10 % less error costs over 100x the {}", what)
@@ -75,7 +75,7 @@ std::string details_of(const Trial& trial) {
   return fmt::format("{:.3g} s, relMSE {:.4g}", trial.seconds, trial.score.relative_mse);
 }
 
-/// The points by what was varied, each group in a colour.
+/// Time and error of each setting, coloured by what was varied.
 std::string front_section(const Sweep& sweep) {
   const SweptInput& input = sweep.inputs.front();
   LogPlot plot{"seconds", "relMSE", {}, {}, {{"noisy input", input.noisy.relative_mse}}};
@@ -95,8 +95,9 @@ std::string front_section(const Sweep& sweep) {
   plot.series.push_back(std::move(peers));
   for (const std::size_t i : front_of(input))
     plot.front.emplace_back(input.trials[i].seconds, input.trials[i].score.relative_mse);
-  return "<h2>Accuracy against time</h2>\n<p class='soft'>Further left is faster, further down more accurate. The line "
-         "joins the settings that no other one beats in both. Each setting but the presets differs from "
+  return "<h2>Accuracy against time</h2>\n<p class='soft'>Further left is faster, further down is more accurate. The "
+         "line "
+         "connects the settings that no other one beats in both. Each setting but the presets differs from "
          "standard in one thing.</p>\n" +
          svg_of(plot);
 }
@@ -122,7 +123,7 @@ std::string price_section(const SweptInput& input) {
   return html + "</table></div>\n";
 }
 
-/// Error against samples: the noisy renders, and what each quality makes of them.
+/// Error over samples per pixel, of the noisy renders and of each quality's results.
 std::string samples_section(const Sweep& sweep) {
   std::vector<const SweptInput*> inputs;
   for (const SweptInput& input : sweep.inputs)
@@ -175,7 +176,7 @@ std::string stages_section(const SweptInput& input) {
   return "<h2>Time by stage</h2>\n" + svg_of(bars);
 }
 
-/// The fastest and the most accurate point of the front, and some between.
+/// The fastest and the most accurate setting of the front, and some between.
 std::vector<std::size_t> pictured(const SweptInput& input) {
   std::vector<std::size_t> front = front_of(input);
   if (front.size() <= pictured_points) return front;
@@ -226,8 +227,8 @@ std::string figures_section(const Sweep& sweep) {
   for (const SweptInput& input : sweep.inputs) {
     html += fmt::format("<h2>All figures: {}</h2>\n", escaped(input.name));
     html +=
-        "<p class='soft'>Times and errors are also given over those of standard; trimmed leaves out the 0.1 % worst "
-        "pixels; energy is the mean over the reference's; \"estimated\" is what the error map says without the "
+        "<p class='soft'>Times and errors are also given relative to standard. Trimmed: without the 0.1 % worst "
+        "pixels. Energy: the mean relative to the reference's. Estimated: by the error map, which does not know the "
         "reference. Shaded: the front.</p>\n<div class='table'><table><tr><th>setting</th><th class='text'>group</th>"
         "<th>seconds</th><th>/ standard</th><th>relMSE</th><th>/ standard</th><th>trimmed</th><th>energy</th>"
         "<th>estimated</th></tr>\n";

@@ -6,9 +6,10 @@
 
 namespace polyrecon {
 
-/// The report on a sweep as one HTML page that needs nothing beside it: plots as inline SVG, pictures as data URIs, no
-/// script. Sections: the points and their Pareto front, what accuracy costs along it, samples (with several inputs),
-/// time by stage, pictures of some points of the front, all figures. version: of the program.
+/// The report on a sweep as an HTML page in a single file: plots are inline SVG, pictures data URIs, and there is no
+/// script. Sections: time and error of each setting with their Pareto front, the cost of accuracy along the front, the
+/// error over the samples (with several inputs), the time of each stage, pictures of some settings, all figures.
+/// version: of the program.
 std::string page_of(const Sweep& sweep, const std::string& version);
 
 }  // namespace polyrecon

@@ -24,7 +24,7 @@ Image relative_error(const Image& image, const Image& reference) {
   return out;
 }
 
-/// Where the errors sum to most, each pixel's counted as at most 1 so that a single firefly does not decide.
+/// The part with the largest sum of errors. A pixel counts at most 1, so that a single firefly does not decide.
 Rect worst_part(const std::vector<Image>& errors, const Rect& frame) {
   const int width = std::max(frame.width() / parts, 1), height = std::max(frame.height() / parts, 1);
   const int step_x = std::max(width / 2, 1), step_y = std::max(height / 2, 1);
@@ -50,7 +50,7 @@ Rect worst_part(const std::vector<Image>& errors, const Rect& frame) {
 std::vector<PicturedResult> picture_results(const std::vector<Picture>& pictures, const Image& reference) {
   std::vector<Image> errors;
   for (const Picture& picture : pictures) errors.push_back(relative_error(*picture.linear, reference));
-  // The first picture is the noisy one, which is bad everywhere: it says nothing of where results are.
+  // The first picture is the noisy one, whose errors are large everywhere: it does not help to find the part.
   const Rect part = worst_part({errors.begin() + (errors.size() > 1 ? 1 : 0), errors.end()}, reference.bounds());
   LogRange range;
   for (const Image& error : errors) {

@@ -12,15 +12,15 @@ struct Picture {
   const Image* linear = nullptr;  ///< 3 channels, radiance.
 };
 
-/// A picture as a page shows it: data URIs of PNG.
+/// The pictures of a result as a page shows them: PNG as data URIs.
 struct PicturedResult {
   std::string name, details;
   std::string whole;  ///< The frame, at most 640 pixels wide.
-  std::string part;   ///< A sixteenth of the frame, pixel for pixel: where the pictures are worst.
-  std::string error;  ///< Squared relative error in false colours; empty for the reference itself.
+  std::string part;   ///< A sixteenth of the frame at full size, where the errors are largest.
+  std::string error;  ///< Squared relative error in false colours; empty for the reference.
 };
 
-/// All pictures have the reference's size and share the part that is enlarged and the scale of the error.
+/// The pictures must have the reference's size. All show the same part, and their errors have one scale.
 std::vector<PicturedResult> picture_results(const std::vector<Picture>& pictures, const Image& reference);
 
 }  // namespace polyrecon

@@ -10,9 +10,9 @@ namespace polyrecon {
 namespace {
 
 constexpr double width = 1000, height = 620, left = 74, right = 16, top = 14, bottom = 52;
-constexpr double letter_width = 6.1, letter_height = 11;  // of the labels, pixels: a sans-serif of 11 px
+constexpr double letter_width = 6.1, letter_height = 11;  // of the labels in pixels, for a sans-serif font of 11 px
 
-/// A logarithmic axis between two ends, in pixels from begin to end.
+/// A logarithmic axis from the pixel `begin` to the pixel `end`.
 class LogAxis {
  public:
   LogAxis(double low, double high, double begin, double end) : begin_(begin), end_(end) {
@@ -21,7 +21,7 @@ class LogAxis {
     high_ = std::log(high * margin);
   }
   double at(double value) const { return begin_ + (end_ - begin_) * (std::log(value) - low_) / (high_ - low_); }
-  /// 1, 2 and 5 times the powers of ten; the powers alone where the axis is long, more between where it is short.
+  /// 1, 2 and 5 times the powers of ten; only the powers on a long axis, more values on a short one.
   std::vector<double> ticks() const {
     std::vector<double> out;
     const double decades = (high_ - low_) / std::log(10.0);
@@ -48,7 +48,7 @@ bool overlap(const Box& a, const Box& b) { return a.x0 < b.x1 && b.x0 < a.x1 && 
 
 bool drawn(const PlotPoint& p) { return std::isfinite(p.x) && std::isfinite(p.y) && p.x > 0 && p.y > 0; }
 
-/// Finds each label a free place, first beside its point, then further off.
+/// Finds a free place for each label, as close to its point as possible.
 class Labels {
  public:
   void keep_free(const Box& box) { taken_.push_back(box); }
@@ -66,7 +66,7 @@ class Labels {
         taken_.push_back(box);
         return (distance > 20 ? leader(x, y, box, color) : std::string()) + text_at(cx, cy, text);
       }
-    return text_at(x, y - letter_height, text);  // no free place: readable enough beside its neighbour
+    return text_at(x, y - letter_height, text);  // no free place: it overlaps another label
   }
 
  private:
@@ -135,7 +135,7 @@ std::string polyline(const Points& points, const LogAxis& x, const LogAxis& y, c
   return path.empty() ? path : fmt::format("<path class='{}' stroke='{}' d='{}'/>\n", css_class, color, path);
 }
 
-/// A line of names with their colours.
+/// The names of the series with their colours.
 std::string legend(const std::vector<std::pair<std::string, std::string>>& entries) {
   std::string html = "<p class='legend'>";
   for (const auto& [name, color] : entries)

@@ -10,33 +10,33 @@ enum class Marker { Disc, Diamond, Square };
 
 struct PlotPoint {
   double x = 0, y = 0;
-  std::string name;     ///< Written beside the point.
-  std::string details;  ///< Shown where the pointer rests on it.
+  std::string name;     ///< Written next to the point.
+  std::string details;  ///< Shown while the pointer is on it.
 };
 
 struct PlotSeries {
   std::string name;   ///< In the legend.
   std::string color;  ///< CSS
   Marker marker = Marker::Disc;
-  bool joined = false;  ///< By a line through the points, in their order.
+  bool joined = false;  ///< Whether a line connects the points in their order.
   std::vector<PlotPoint> points;
 };
 
-/// Both axes are logarithmic; points that are not positive and finite are left out.
+/// A plot with two logarithmic axes. Points that are not positive and finite are not drawn.
 struct LogPlot {
   std::string x_label, y_label;
   std::vector<PlotSeries> series;
-  std::vector<std::pair<double, double>> front;        ///< Drawn as a line of its own.
+  std::vector<std::pair<double, double>> front;        ///< Drawn as a separate line.
   std::vector<std::pair<std::string, double>> levels;  ///< Named horizontal lines.
 };
 
-/// One bar a row, made of the parts.
+/// A bar for each row, made of parts.
 struct StackedBars {
   std::string unit;
   std::vector<std::string> parts;
   struct Row {
     std::string name;
-    std::vector<double> values;  ///< As parts.
+    std::vector<double> values;  ///< One for each of the parts.
   };
   std::vector<Row> rows;
 };
@@ -45,10 +45,10 @@ struct StackedBars {
 std::string svg_of(const LogPlot& plot);
 std::string svg_of(const StackedBars& bars);
 
-/// Text as it must stand in HTML and SVG, inside attributes too.
+/// Escapes text for HTML and SVG, also for the inside of attributes.
 std::string escaped(const std::string& text);
 
-/// One of ten colours that are told apart by colour-blind eyes as well as ten can be.
+/// One of ten colours that colour-blind readers can distinguish as well as is possible with ten.
 std::string plot_color(std::size_t index);
 
 }  // namespace polyrecon

@@ -15,7 +15,7 @@ class Settings {
   bool wants(const std::string& group) const {
     return std::find(groups_.begin(), groups_.end(), group) != groups_.end();
   }
-  /// Names are unique: what was added first stays.
+  /// Names are unique: a second setting of the same name is ignored.
   void add(const Setting& setting) {
     const auto same = [&](const Setting& s) { return s.name == setting.name; };
     if (wants(setting.group) && std::none_of(list_.begin(), list_.end(), same)) list_.push_back(setting);
@@ -26,7 +26,7 @@ class Settings {
     change(setting);
     add(setting);
   }
-  /// One setting for each value of one number that is not Quality::Standard's own.
+  /// One setting for each value of a parameter other than that of Quality::Standard.
   template <typename Value>
   void vary(const std::string& group, Value Params::*member, const std::vector<Value>& values) {
     for (const Value value : values)
@@ -44,9 +44,9 @@ bool has_feature(const Frame& frame, Role role) {
   return std::any_of(frame.features.begin(), frame.features.end(), [&](const Feature& f) { return f.role == role; });
 }
 
-bool may_be_cleaned(const Feature& feature) {
-  const bool told = feature.pass.noise_is_known();
-  return told || noise_is_estimated(feature.role, told);
+bool may_be_prefiltered(const Feature& feature) {
+  const bool known = feature.pass.noise_is_known();
+  return known || noise_is_estimated(feature.role, known);
 }
 
 void add_numbers(const Frame& frame, Settings& list) {
@@ -86,11 +86,11 @@ void add_inputs(const Frame& frame, Settings& list) {
   if (!frame.prior.mean.empty()) list.vary("prior", "without prior", [](Setting& s) { s.without_prior = true; });
 }
 
-/// Each part of the method taken out alone: the ablation of docs/results/accuracy.md. What a number can switch off is
-/// varied above (stages 1, levels 1, order 0, coverage 0, no guided windows, features, halves, prior).
+/// The ablation of docs/results/accuracy.md: each setting disables one part of the method. Parts that a number disables
+/// are in the other groups: stages 1, levels 1, order 0, coverage 0, no guided windows, features, halves, prior.
 void add_parts(const Frame& frame, Settings& list) {
   const auto without = [&](const char* name, const auto& change) { list.vary("parts", name, change); };
-  without("weights from the own half", [](Setting& s) { s.params.parts.cross_filter = false; });
+  without("weights from the same half", [](Setting& s) { s.params.parts.cross_filter = false; });
   without("no shrinkage", [](Setting& s) { s.params.parts.shrinkage = false; });
   without("no patch weights", [](Setting& s) {
     s.params.first_bandwidths = s.params.later_bandwidths = {Real(1e6)};  // all pixels of a window weigh the same
@@ -100,7 +100,7 @@ void add_parts(const Frame& frame, Settings& list) {
   without("one stage, one level", [](Setting& s) { s.params.stages = s.params.levels = 1; });
   without("no firefly removal", [](Setting& s) { s.params.steps.fireflies = false; });
   without("no variance floor", [](Setting& s) { s.params.parts.variance_floor = false; });
-  if (std::any_of(frame.features.begin(), frame.features.end(), may_be_cleaned))
+  if (std::any_of(frame.features.begin(), frame.features.end(), may_be_prefiltered))
     without("no feature prefilter", [](Setting& s) { s.params.steps.prefilter = false; });
   without("no noise bound", [](Setting& s) { s.params.parts.noise_bound = false; });
   without("no raising of undershoot", [](Setting& s) { s.params.parts.raise_undershoot = false; });

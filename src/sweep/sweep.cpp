@@ -10,7 +10,7 @@
 namespace polyrecon {
 namespace {
 
-/// Stages in the order of their first appearance.
+/// The names of all stages, in the order of their first appearance.
 std::vector<std::string> stage_names(const Sweep& sweep) {
   std::vector<std::string> names;
   for (const SweptInput& input : sweep.inputs)
@@ -26,7 +26,7 @@ std::string quoted(const std::string& text) {
   return out + "\"";
 }
 
-/// CSV has no NaN: what is not finite is empty.
+/// CSV has no NaN: values that are not finite are empty.
 std::string number(double value) { return std::isfinite(value) ? fmt::format("{:.7g}", value) : std::string(); }
 
 std::string score_fields(const Score& s) {

@@ -9,7 +9,7 @@
 
 namespace polyrecon {
 
-/// A noisy render that is swept.
+/// A noisy render to reconstruct by many settings.
 struct SweepInput {
   std::string name;    ///< File name.
   double samples = 0;  ///< Samples per pixel; 0: unknown.
@@ -19,12 +19,12 @@ struct SweepInput {
 /// Another program's result on the first input.
 struct Peer {
   std::string name;
-  double seconds = 0;  ///< As its user measured them.
+  double seconds = 0;  ///< As the user measured them.
   Image beauty;        ///< 3 channels.
   Score score;         ///< Filled by run_sweep.
 };
 
-/// A noisy render and what was made of it.
+/// A noisy render and its reconstructions.
 struct SweptInput {
   std::string name;
   double samples = 0;
@@ -33,22 +33,23 @@ struct SweptInput {
   std::vector<Trial> trials;  ///< The first is Quality::Standard.
 };
 
-/// Everything a report on a sweep tells.
+/// The results of a sweep.
 struct Sweep {
-  std::vector<SweptInput> inputs;  ///< By the order given; the first has all settings, further ones the qualities.
+  std::vector<SweptInput>
+      inputs;  ///< In the order given. The first one was tried with all settings, the others with the qualities.
   std::vector<Peer> peers;
   std::string reference_name;
   Reference reference;
   int threads = 0;
 };
 
-/// Tries every setting of the groups on the first input, the qualities on the others, and scores the peers. Progress
-/// counts settings. Throws as reconstruct and score do.
+/// Tries all settings of the groups on the first input and the qualities on the others, and scores the peers. The steps
+/// of progress are settings. Throws as reconstruct and score do.
 Sweep run_sweep(const std::vector<SweepInput>& inputs, const std::vector<std::string>& groups,
                 const Reference& reference, std::vector<Peer> peers, Progress& progress);
 
-/// One line per trial, noisy input and peer: input, samples, group, setting, runs, seconds, relMSE, trimmed, energy,
-/// estimated relMSE, seconds of each stage. Names are quoted as RFC 4180 says.
+/// A CSV line for each trial, noisy input and peer: input, samples, group, setting, runs, seconds, relMSE, trimmed,
+/// energy, estimated relMSE, seconds of each stage. Names are quoted as in RFC 4180.
 std::string csv_of(const Sweep& sweep);
 
 }  // namespace polyrecon

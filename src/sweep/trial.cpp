@@ -12,7 +12,7 @@ namespace {
 constexpr double enough_seconds = 2;
 constexpr std::size_t most_runs = 3;
 
-/// Passes on nothing but the wish to stop: a sweep counts settings, not the stages inside.
+/// Forwards cancellation only: the steps of a sweep are settings, not the stages of a reconstruction.
 class OnlyCancels : public Progress {
  public:
   explicit OnlyCancels(const Progress& of) : of_(of) {}
@@ -27,7 +27,7 @@ struct Run {
   Result result;
 };
 
-/// frame: a copy, since reconstruct takes its passes.
+/// frame: a copy, because reconstruct moves passes out of it.
 Run run_once(Frame frame, const Params& params, Progress& progress) {
   const auto start = std::chrono::steady_clock::now();
   Result result = reconstruct(frame, params, progress);

@@ -12,25 +12,25 @@
 
 namespace polyrecon {
 
-/// What an image is measured against.
+/// A converged render that results are compared with.
 struct Reference {
   Image mean;      ///< 3 channels.
-  Image variance;  ///< Of mean; empty where unknown.
+  Image variance;  ///< Variance of mean; empty if unknown.
 };
 
-/// What a setting cost and reached.
+/// Time and error of a setting.
 struct Trial {
   std::string name, group;
-  double seconds = 0;  ///< Wall clock of the reconstruction, without files; the median where it ran more than once.
-  int runs = 0;        ///< How often it ran.
-  std::vector<StageTime> stages;  ///< Of the median run.
+  double seconds = 0;             ///< Wall-clock time of the reconstruction, without files; the median of all runs.
+  int runs = 0;                   ///< Number of runs.
+  std::vector<StageTime> stages;  ///< Times of the median run.
   Score score;
-  double estimated_relative_mse = 0;  ///< By the error map, which does not know the reference.
+  double estimated_relative_mse = 0;  ///< Mean of the error map, which does not know the reference.
   Image beauty;                       ///< 3 channels.
 };
 
-/// Reconstructs the frame by the setting and scores it. Short runs are repeated, up to three times and two seconds,
-/// so that a moment's disturbance does not count. Throws as reconstruct and score do.
+/// Reconstructs the frame by the setting and scores the result. A short run is repeated until there are three runs or
+/// two seconds have passed, so that a brief disturbance does not change the median. Throws as reconstruct and score do.
 Trial run_trial(const Frame& frame, const Setting& setting, const Reference& reference, Progress& progress);
 
 }  // namespace polyrecon

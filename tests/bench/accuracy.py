@@ -27,7 +27,7 @@ BUDGET_SETTINGS = (
 )
 # Each part of the method alone, and the setting of the sweep that takes it out.
 PARTS = (
-    ("weights and features from the other half", "weights from the own half"),
+    ("weights and features from the other half", "weights from the same half"),
     ("half buffers of the file (else split from the mean)", "without half buffers"),
     ("shrinkage factors", "no shrinkage"),
     ("second stage", "stages 1"),

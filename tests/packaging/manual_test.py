@@ -94,6 +94,12 @@ class Manual(unittest.TestCase):
             self.assertIn(option, text)
         self.assertIn("polyrecon denoise -i render.exr -o clean.exr", text)
 
+    def test_hidden_options_are_in_no_page_and_no_completion(self):
+        """`--effects` is the former name of `--steps`, which still works."""
+        for file in (path for path in SHARE.rglob("*") if path.is_file()):
+            self.assertNotIn("effects", file.read_text(encoding="utf-8"), file)
+        self.assertIn("--steps", (SHARE / "bash-completion" / "completions" / "polyrecon").read_text(encoding="utf-8"))
+
     def test_bash(self):
         script = SHARE / "bash-completion" / "completions" / "polyrecon"
         self.check_completions(self.shell(["bash", "--norc", "--noprofile", "-i"], f"source '{script}'"))

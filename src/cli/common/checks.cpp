@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Whether two paths are one file, or would be once they are written.
+/// Whether two paths are the same file, or will be once they are written.
 bool same_file(const std::string& a, const std::string& b) {
   std::error_code error;
   if (fs::equivalent(a, b, error) && !error) return true;
@@ -27,8 +27,8 @@ bool same_file(const std::string& a, const std::string& b) {
 void require_readable(const std::string& path) {
   std::error_code error;
   if (!fs::exists(path, error)) throw Error(ExitCode::Missing, path + ": no such file");
-  if (fs::is_directory(path, error)) throw Error(ExitCode::BadInput, path + ": is a folder, give a file");
-  if (!std::ifstream(path)) throw Error(ExitCode::BadInput, path + ": cannot be opened, check its permissions");
+  if (fs::is_directory(path, error)) throw Error(ExitCode::BadInput, path + ": is a folder; name a file");
+  if (!std::ifstream(path)) throw Error(ExitCode::BadInput, path + ": cannot be opened; check its permissions");
 }
 
 void require_different_files(const std::vector<std::string>& inputs, const std::vector<NamedPath>& outputs) {
@@ -38,10 +38,10 @@ void require_different_files(const std::vector<std::string>& inputs, const std::
     if (output.path.empty()) continue;
     for (const std::string& input : inputs)
       if (!input.empty() && same_file(output.path, input))
-        throw Error(ExitCode::Usage, output.path + ": is the input too, give " + output.option + " another name");
+        throw Error(ExitCode::Usage, output.path + ": is an input; give " + output.option + " another name");
     for (std::size_t j = 0; j < i; ++j)
       if (!outputs[j].path.empty() && same_file(output.path, outputs[j].path))
-        throw Error(ExitCode::Usage, output.path + ": named by both " + outputs[j].option + " and " + output.option);
+        throw Error(ExitCode::Usage, output.path + ": is named by both " + outputs[j].option + " and " + output.option);
   }
 }
 
@@ -49,7 +49,7 @@ void require_writable(const std::vector<std::string>& outputs) {
   std::set<std::pair<fs::path, bool>> tried;
   for (const std::string& output : outputs) {
     std::error_code ignored;
-    // What a folder takes it takes for every name but one that is a folder itself.
+    // A folder that takes one file takes all names, except that of a folder in it.
     if (!output.empty() && tried.emplace(fs::path(output).parent_path(), fs::is_directory(output, ignored)).second)
       check_writable(output);
   }

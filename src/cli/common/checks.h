@@ -5,22 +5,22 @@
 
 namespace polyrecon {
 
-/// Checks that come before any work. A path of an option is empty where the option was not given.
+/// A path and the option that named it; empty where the option was not given.
 struct NamedPath {
   std::string option;  ///< "--error-map"
   std::string path;
 };
 
-/// Throws Error{Missing} unless path is a file that can be opened.
+/// Throws Error{Missing} where the file does not exist, Error{BadInput} where it is a folder or cannot be opened.
 void require_readable(const std::string& path);
 
-/// Throws Error{Usage} where two outputs, or an output and an input, are one file (by links too).
+/// Throws Error{Usage} where two outputs, or an output and an input, are the same file, also through links.
 void require_different_files(const std::vector<std::string>& inputs, const std::vector<NamedPath>& outputs);
 
-/// Throws Error{CannotWrite} where an output's folder cannot be written to; each folder is tried once.
+/// Throws Error{CannotWrite} where the folder of an output cannot be written to. Each folder is tried once.
 void require_writable(const std::vector<std::string>& outputs);
 
-/// Both, for commands that write a few files once.
+/// Both checks, for commands that write a few files.
 void require_outputs(const std::vector<std::string>& inputs, const std::vector<NamedPath>& outputs);
 
 }  // namespace polyrecon

@@ -3,8 +3,9 @@
 namespace polyrecon {
 
 void add_display_options(CLI::App& app, DisplayParams& display) {
-  app.add_option("--view", display.view, "View of the display: Standard, Filmic, or one of $OCIO's")->type_name("NAME");
-  app.add_option("--exposure", display.exposure, "Brighter (or darker) by so many stops")
+  app.add_option("--view", display.view, "View transform: Standard, Filmic, or a view of the configuration in $OCIO")
+      ->type_name("NAME");
+  app.add_option("--exposure", display.exposure, "Exposure correction in stops; negative values darken the picture")
       ->check(CLI::Range(-64.0, 64.0))
       ->type_name("STOPS");
 }

@@ -9,7 +9,7 @@
 
 namespace polyrecon {
 
-/// An image file with its layers, for the commands that look at single layers instead of a frame.
+/// An image file and its layers, for commands that work on single layers rather than on a frame.
 struct LayeredFile {
   FileInfo info;
   std::vector<Layer> layers;
@@ -18,7 +18,7 @@ struct LayeredFile {
 /// Throws as describe_file does.
 LayeredFile open_layers(const std::string& path);
 
-/// The layer by its whole name, or nullptr.
+/// The layer of this whole name, or nullptr.
 const Layer* find_layer(const LayeredFile& file, const std::string& name);
 
 /// The picture (io/channel_names.h) if it has three channels, else nullptr.
@@ -30,7 +30,7 @@ const Layer& require_color_layer(const LayeredFile& file);
 /// The variance of the layer's mean with as many channels, or nullptr.
 const Layer* variance_layer(const LayeredFile& file, const Layer& layer);
 
-/// The samples of all channels of the layer.
+/// All channels of a layer.
 Image read_layer(const LayeredFile& file, const Layer& layer);
 
 /// The cost of a sample in each pixel, 1 channel: a render-time pass, or the only channel of the file.

@@ -26,7 +26,7 @@ bool has_channel(const PartInfo& part, const std::string& name) {
 /// The image on the whole display window, zero where it has no pixels.
 Image on_display(const Image& image, const MapWindows& windows) {
   if (windows.display.area() > ReadLimits{}.max_pixels)
-    throw Error(ExitCode::BadInput, "the display window is too large to export a sample map for");
+    throw Error(ExitCode::BadInput, "the display window is too large for a sample map in a renderer's format");
   Image out(windows.display.width(), windows.display.height(), image.channels());
   const Rect seen = intersect(windows.data, windows.display);
   if (seen.empty()) return out;
@@ -69,7 +69,7 @@ ErrorMapFile read_error_map(const std::string& path) {
   const PartInfo& part = file.parts.front();
   for (const char* name : {"mse.R", "mse.G", "mse.B", "relmse.Y", "relvariance.Y"})
     if (!has_channel(part, name))
-      throw Error(ExitCode::Missing, path + ": no channel " + name + ": give a file that denoise --error-map wrote");
+      throw Error(ExitCode::Missing, path + ": no channel " + name + "; name a file that denoise --error-map wrote");
   ErrorMapFile result;
   result.map.mse = read_channels(file, 0, {"mse.R", "mse.G", "mse.B"});
   result.map.relative_mse = read_channels(file, 0, {"relmse.Y"});

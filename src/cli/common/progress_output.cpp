@@ -16,13 +16,13 @@
 namespace polyrecon {
 namespace {
 
-/// Cancels on a signal, says nothing.
+/// Shows nothing; cancels on a signal.
 class SignalProgress : public RunProgress {
  public:
   bool cancelled() const override { return caught_signal() != 0; }
 };
 
-/// Counts steps over all threads and shows them from time to time.
+/// Counts the steps of all threads and shows them at intervals.
 class ShownProgress : public SignalProgress {
  public:
   void begin(std::string_view stage, std::size_t steps) override {
@@ -35,7 +35,7 @@ class ShownProgress : public SignalProgress {
   }
   void advance(std::size_t steps) override {
     done_ += steps;
-    // A thread that finds another one printing goes on with its work.
+    // If another thread is printing, this one continues with its work.
     const std::unique_lock lock(mutex_, std::try_to_lock);
     if (!lock || Clock::now() - shown_ < std::chrono::milliseconds(100)) return;
     shown_ = Clock::now();
@@ -51,7 +51,7 @@ class ShownProgress : public SignalProgress {
   virtual void show(Event event) = 0;
 
   const std::string& stage() const { return stage_; }
-  /// Totals are estimates: never more than all.
+  /// At most total(), which is an estimate.
   std::size_t done() const { return std::min<std::size_t>(done_, total_); }
   std::size_t total() const { return total_; }
   double seconds() const { return std::chrono::duration<double>(Clock::now() - begun_).count(); }
@@ -113,17 +113,18 @@ class JsonProgress final : public ShownProgress {
   }
 };
 
-/// https://github.com/OpenJobDescription/openjd-specifications/wiki/How-Jobs-Are-Run: lines that the session reads from
-/// the task's output. The percentage is of the whole run and never falls.
+/// Lines that an Open Job Description session reads from the output of a task, as described in
+/// https://github.com/OpenJobDescription/openjd-specifications/wiki/How-Jobs-Are-Run. The percentage is that of the
+/// whole run and never falls.
 class OpenJdProgress final : public ShownProgress {
  protected:
   void show(Event event) override {
-    // The fits take nearly all of a frame's time; what comes before and after them is worth a few percent.
+    // The fits take nearly all of a frame's time; the stages before and after them get 5 % each.
     constexpr double fits_begin = 0.05, fits_end = 0.95;
     if (stage() != "polynomials" || !total()) return;
     const double part = event == Event::End ? 1.0 : static_cast<double>(done()) / static_cast<double>(total());
-    tell((static_cast<double>(frames_done_) + fits_begin + part * (fits_end - fits_begin)) /
-         static_cast<double>(frames_));
+    print((static_cast<double>(frames_done_) + fits_begin + part * (fits_end - fits_begin)) /
+          static_cast<double>(frames_));
   }
 
  public:
@@ -131,19 +132,19 @@ class OpenJdProgress final : public ShownProgress {
     frames_done_ = done;
     frames_ = total;
     if (done < total) put(fmt::format("openjd_status: {} ({} of {})", label, done + 1, total));
-    tell(static_cast<double>(done) / static_cast<double>(total));
+    print(static_cast<double>(done) / static_cast<double>(total));
   }
   void failed(const std::string& message) override { put("openjd_fail: " + message); }
 
  private:
-  void tell(double part) {
-    if (100 * part < told_ + 0.1) return;
-    told_ = 100 * part;
-    put(fmt::format("openjd_progress: {:.1f}", told_));
+  void print(double part) {
+    if (100 * part < printed_ + 0.1) return;
+    printed_ = 100 * part;
+    put(fmt::format("openjd_progress: {:.1f}", printed_));
   }
 
   std::size_t frames_done_ = 0, frames_ = 1;
-  double told_ = -1;
+  double printed_ = -1;
 };
 
 }  // namespace

@@ -13,7 +13,7 @@ namespace {
 const std::map<std::string, SampleMapFormat> formats{
     {"appleseed", SampleMapFormat::Appleseed}, {"luxcore", SampleMapFormat::Luxcore}, {"vray", SampleMapFormat::Vray}};
 
-/// How to use the file in the renderer.
+/// How to use the file in a renderer.
 std::string usage_of(const SampleMap& map, SampleMapFormat format) {
   switch (format) {
     case SampleMapFormat::Appleseed:

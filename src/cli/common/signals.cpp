@@ -56,7 +56,7 @@ int caught_signal() { return arrived; }
 void require_output_written() {
   const bool failed = std::fflush(stdout) != 0 || std::ferror(stdout) != 0;
   if (failed && !reader_gone)
-    throw Error(ExitCode::CannotWrite, "standard output: cannot be written, is the disk full?");
+    throw Error(ExitCode::CannotWrite, "standard output: cannot be written; check that the disk is not full");
 }
 
 }  // namespace polyrecon

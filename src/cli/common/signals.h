@@ -2,19 +2,19 @@
 
 namespace polyrecon {
 
-/// From here on SIGINT and SIGTERM end the process with 130 or 143 and leave no temporary file: at once, or, where the
-/// running work asks for signals itself (poll_signals), by asking it to stop; should it not within four seconds, or at
-/// a second signal, the process ends all the same. A reader of our output that goes away (SIGPIPE) stops no work.
+/// After this call, SIGINT and SIGTERM end the process with exit code 130 or 143 and leave no temporary file. After
+/// poll_signals they only request that the work stops; a second signal, or four seconds without effect, ends the
+/// process. A reader of standard output that goes away (SIGPIPE) stops nothing.
 void catch_signals();
 
-/// The work from here on asks caught_signal() now and then, and stops when one arrived.
+/// States that the work checks caught_signal() regularly and stops once a signal has arrived.
 void poll_signals();
 
-/// The signal that arrived, 0 before.
+/// The signal that has arrived; 0: none.
 int caught_signal();
 
-/// To be called once everything is printed. Throws Error{CannotWrite} where standard output could not be written, on a
-/// full disk for example; that its reader has gone is no error.
+/// Call it when everything is printed. Throws Error{CannotWrite} where standard output could not be written, for
+/// example on a full disk. A reader that has gone away is no error.
 void require_output_written();
 
 }  // namespace polyrecon

@@ -11,7 +11,7 @@
 namespace polyrecon {
 namespace {
 
-/// The features, then the other steps.
+/// All steps: the features by name, then the others.
 std::vector<std::string> step_names() {
   std::vector<std::string> names;
   for (const RoleInfo& info : role_table())
@@ -46,7 +46,7 @@ void apply_steps(const std::string& text, Params& params) {
   for (const std::string& word : words)
     if (std::find(names.begin(), names.end(), word) == names.end())
       throw Error(ExitCode::Usage,
-                  fmt::format("--steps: no step '{}'; there are {} (or auto, all)", word, fmt::join(names, ", ")));
+                  fmt::format("--steps: '{}' is no step; name auto, all, or some of {}", word, fmt::join(names, ", ")));
   const auto listed = [&](const char* name) { return std::find(words.begin(), words.end(), name) != words.end(); };
   for (const RoleInfo& info : role_table())
     if (info.feature && !listed(info.name)) params.steps.features.erase(info.role);

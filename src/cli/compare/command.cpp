@@ -27,7 +27,7 @@ struct CompareOptions {
 };
 
 void run(const CompareOptions& o) {
-  if (o.files.size() < 2) throw Error(ExitCode::Usage, "compare needs an image and a reference");
+  if (o.files.size() < 2) throw Error(ExitCode::Usage, "compare needs at least two files: an image and the reference");
   for (const std::string& file : o.files) require_readable(file);
   require_outputs(o.files, {{"--html", o.html}, {"--picture", o.picture}});
   const std::string& reference_path = o.files.back();
@@ -47,20 +47,22 @@ void run(const CompareOptions& o) {
 
 void setup_compare(CLI::App& app, Command& chosen) {
   const auto o = std::make_shared<CompareOptions>();
-  CLI::App* sub = app.add_subcommand("compare", "Measures images against a converged reference");
+  CLI::App* sub = app.add_subcommand("compare", "Measures the error of images against a converged reference");
   sub->add_option("files", o->files, "One or more images, then the reference")
       ->required()
       ->type_name("IMAGE... REFERENCE");
   sub->add_flag("--json", o->json, "Print JSON");
-  sub->add_option("--html", o->html, "Write figures and pictures as one HTML page")->type_name("FILE");
-  sub->add_option("--picture", o->picture, "Write a PNG: reference, images, where they differ")->type_name("FILE");
+  sub->add_option("--html", o->html, "Write the figures and pictures as one HTML page")->type_name("FILE");
+  sub->add_option("--picture", o->picture, "Write a PNG of the reference, the images and their errors")
+      ->type_name("FILE");
   add_display_options(*sub, o->display);
   sub->footer(
-      "relMSE is the mean over pixels and RGB of ((x - r)^2 - Var(r)) / (r^2 + 0.01), Var(r) from the reference's "
-      "layer\n"
-      "'<layer> Variance'; trimmed leaves out the 0.1 % worst pixels; energy is mean(x) / mean(r) - 1; FLIP is the "
-      "mean\n"
-      "of HDR-FLIP, what a viewer notices when the pictures alternate, 0 to 1; bad counts pixels that are not finite.\n"
+      "relMSE is the mean over pixels and RGB of ((x - r)^2 - Var(r)) / (r^2 + 0.01), with Var(r) from the "
+      "reference's\n"
+      "variance layer. trimmed is relMSE without the 0.1 % worst pixels. energy is mean(x) / mean(r) - 1. FLIP is the\n"
+      "mean of HDR-FLIP, the difference that a viewer notices when the pictures alternate, 0 to 1. bad is the number "
+      "of\n"
+      "pixels that are not finite.\n"
       "Examples:\n"
       "  polyrecon compare clean.exr reference.exr\n"
       "  polyrecon compare noisy.exr clean.exr other.exr reference.exr --json\n"

@@ -27,7 +27,7 @@ Comparison compare_layers(const LayeredFile& image, const Layer& layer, const La
   Image x = read_layer(image, layer), r = read_layer(reference, reference_layer);
   if (!x.same_shape(r))
     throw Error(ExitCode::BadInput,
-                fmt::format("{}: layer '{}' is {} x {} pixels, the reference has {} x {}", image.info.path, layer.name,
+                fmt::format("{}: layer '{}' has {} x {} pixels, the reference has {} x {}", image.info.path, layer.name,
                             x.width(), x.height(), r.width(), r.height()));
   Comparison found{
       image.info.path, layer.name, score(x, r, variance_of(reference, reference_layer)), 0, {}, {}, {}, {}};

@@ -43,20 +43,20 @@ th{color:var(--soft);font-weight:600}th:first-child,td:first-child{text-align:le
 
 std::string file_name(const std::string& path) { return std::filesystem::path(path).filename().string(); }
 
-/// One state of the viewer.
+/// A picture that the viewer can show.
 struct View {
   std::string name, picture;  ///< picture: a data URI.
-  std::string below;          ///< HTML: the scale of a false-colour picture.
+  std::string below;          ///< HTML below it: the scale of a picture in false colours.
 };
 
-/// The colours from the low to the high end, and what these ends are.
+/// A bar of colours, the values of its ends, and what the values are.
 std::string scale(const Image& colors, const std::string& low, const std::string& high, const std::string& meaning) {
   return fmt::format(
       "<img class='scale' alt='' src='{}'><div class='ends soft'><span>{}</span><span>{}</span><span>{}</span></div>",
       png_data_uri(colors), low, meaning, high);
 }
 
-/// 256 values from low to high: evenly spaced, or evenly in their logarithm.
+/// 256 values from low to high, evenly spaced or evenly spaced in their logarithm.
 Image ramp(double low, double high, bool logarithmic) {
   Image values(256, 1, 1);
   for (int i = 0; i < 256; ++i)
@@ -71,7 +71,7 @@ std::string error_scale(const LogRange& range) {
                fmt::format("{:.3g}", range.high), "squared relative error, logarithmic");
 }
 
-/// Reference, images, then the differences: neighbours alternate by one press of an arrow key.
+/// The reference, the images, then the differences: one press of an arrow key shows the next one.
 std::vector<View> views_of(const std::vector<const Comparison*>& images, const LogRange& range,
                            const DisplayParams& display) {
   const auto picture = [](const Image& rgb) { return png_data_uri(at_most_wide(rgb, widest)); };
@@ -88,7 +88,7 @@ std::vector<View> views_of(const std::vector<const Comparison*>& images, const L
   return views;
 }
 
-/// Radio buttons over a stage that shows the picture of the one that is on. No script: style alone does it.
+/// Radio buttons above the picture of the selected one. The style sheet switches the pictures, without a script.
 std::string viewer(const std::vector<View>& views, std::size_t section) {
   std::string buttons, figures, rules;
   for (std::size_t i = 0; i < views.size(); ++i) {
@@ -103,7 +103,7 @@ std::string viewer(const std::vector<View>& views, std::size_t section) {
                      figures);
 }
 
-/// Rows of figures; the best one of each column stands out where there are several images.
+/// A row of figures for each image. Where there are several, the best figure of each column stands out.
 std::string table(const std::vector<const Comparison*>& images) {
   struct Column {
     const char* name;
@@ -142,7 +142,7 @@ std::string comparison_page(const std::string& reference, const std::vector<Comp
       "<meta name='viewport' content='width=device-width,initial-scale=1'><title>Against {0}</title>"
       "<style>{1}</style></head><body>\n<h1>Against {0}</h1>\n"
       "<p class='soft'>relMSE: mean of ((x - r)² - Var r) / (r² + 0.01); trimmed: without the 0.1 % worst pixels; "
-      "energy: mean(x) / mean(r) - 1; FLIP: what a viewer notices when the pictures alternate, 0 to 1. "
+      "energy: mean(x) / mean(r) - 1; FLIP: the difference that a viewer notices when the pictures alternate, 0 to 1. "
       "Arrow keys alternate the pictures.</p>\n",
       escaped(reference), style);
   std::size_t section = 0;

@@ -96,7 +96,7 @@ void FrameFetcher::add_neighbours(const FrameFiles& files, LoadedFrame& loaded) 
 FrameFetcher::Prepared FrameFetcher::neighbour(const NeighbourFile& file, LoadedFrame& loaded) {
   const auto known = prepared_.find(file.path);
   if (known != prepared_.end()) return known->second;
-  const double patience = file.is_worked_too ? job_.run.wait : 0;
+  const double patience = file.is_denoised_too ? job_.run.wait : 0;
   Cancellable progress(cancelled_);
   try {
     return wait_for(file.path, patience, [&] {

@@ -27,7 +27,7 @@ struct NeighbourFile {
   int offset = 0;  ///< In frames; in a list of files, in files.
   int number = 0;  ///< Its frame number; in a list of files, its index.
   std::string path;
-  bool is_worked_too = false;  ///< Whether the run denoises this frame too.
+  bool is_denoised_too = false;  ///< Whether the run denoises this frame too.
 };
 
 /// The files of one frame that `denoise` reads and writes.

@@ -32,7 +32,7 @@ class Outcome {
  public:
   explicit Outcome(bool strict) : strict_(strict) {}
 
-  /// To be called inside a catch block.
+  /// Call it inside a catch block.
   void failed(const FrameFiles& files, const Error& error) {
     if (strict_ || !concerns_one_frame(error.code())) throw;
     std::fputs(fmt::format("polyrecon: {}: {}\n", files.label(), error.what()).c_str(), stderr);

@@ -163,9 +163,9 @@ TEST(Job, ResolvesTheFilesOfASequence) {
   EXPECT_TRUE(last.outputs.report.empty());
   ASSERT_EQ(last.neighbours.size(), 2u);
   EXPECT_EQ(last.neighbours[0].path, "shot.0002.exr");
-  EXPECT_TRUE(last.neighbours[0].is_worked_too);
+  EXPECT_TRUE(last.neighbours[0].is_denoised_too);
   EXPECT_EQ(last.neighbours[1].path, "shot.0004.exr");
-  EXPECT_FALSE(last.neighbours[1].is_worked_too);
+  EXPECT_FALSE(last.neighbours[1].is_denoised_too);
   EXPECT_EQ(job.params.temporal.radius, 1);
   EXPECT_TRUE(job.read.motion);
 }
