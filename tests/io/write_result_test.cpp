@@ -14,6 +14,7 @@
 
 #include "io/exr/file.h"
 #include "io/exr_fixture.h"
+#include "polyrecon/read_frame.h"
 
 namespace polyrecon {
 namespace {
