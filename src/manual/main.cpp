@@ -52,7 +52,7 @@ int main(int argc, char** argv) {
     const polyrecon::CommandInfo program = program_of_command_line();
     if (argc == 3 && std::string(argv[1]) == "--markdown")
       write(argv[2], polyrecon::markdown_page(program));
-    else if (argc == 2)
+    else if (argc == 2 && argv[1][0] != '-')
       write_all(program, argv[1]);
     else
       throw std::runtime_error("give the folder to write to, or --markdown and the page");
