@@ -36,21 +36,19 @@ Image on_display(const Image& image, const MapWindows& windows) {
   return out;
 }
 
-std::vector<MapChannel> channels_for(SampleMapFormat format, const SampleMap& map, const MapWindows& windows) {
-  switch (format) {
-    case SampleMapFormat::Appleseed:
-      return {{"R", on_display(map.importance, windows)}};
-    case SampleMapFormat::Luxcore:
-      return {{"Y", on_display(map.importance, windows)}};
-    case SampleMapFormat::Vray: {
-      Image mask = on_display(map.samples, windows);
-      for (std::size_t i = 0; i < mask.pixels(); ++i) mask.plane(0)[i] = mask.plane(0)[i] >= Real{0.5} ? 1 : 0;
-      return {{"R", mask}, {"G", mask}, {"B", mask}};
-    }
-    case SampleMapFormat::Polyrecon:
-      break;
-  }
-  return {{"samples.Y", map.samples}, {"importance.Y", map.importance}};
+Image values_for(SampleMapFormat::Values values, const SampleMap& map) {
+  if (values == SampleMapFormat::Values::Importance) return map.importance;
+  Image mask = map.samples;
+  for (std::size_t i = 0; i < mask.pixels(); ++i) mask.plane(0)[i] = mask.plane(0)[i] >= Real{0.5} ? 1 : 0;
+  return mask;
+}
+
+std::vector<MapChannel> channels_for(const SampleMapFormat* format, const SampleMap& map, const MapWindows& windows) {
+  if (!format) return {{"samples.Y", map.samples}, {"importance.Y", map.importance}};
+  const Image values = on_display(values_for(format->values, map), windows);
+  std::vector<MapChannel> channels;
+  for (const std::string& name : format->channels) channels.push_back({name, values});
+  return channels;
 }
 
 }  // namespace
@@ -85,7 +83,7 @@ void write_order_map(const std::string& target, const Image& order, const MapWin
 }
 
 void write_sample_map(const std::string& target, const SampleMap& map, const MapWindows& windows,
-                      const SampleMapOrigin& origin, SampleMapFormat format) {
+                      const SampleMapOrigin& origin, const SampleMapFormat* format) {
   MapAttributes attributes;
   attributes.numbers = {{"min", map.min},
                         {"max", map.max},
@@ -98,8 +96,7 @@ void write_sample_map(const std::string& target, const SampleMap& map, const Map
                         {"errorAfter", map.error_after}};
   const Rect& display = windows.display;
   const Rect canvas{0, 0, display.width(), display.height()};
-  const bool ours = format == SampleMapFormat::Polyrecon;
-  write_maps(target, channels_for(format, map, windows), ours ? windows.data : canvas, ours ? display : canvas,
+  write_maps(target, channels_for(format, map, windows), format ? canvas : windows.data, format ? canvas : display,
              attributes);
 }
 

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "io/renderers/renderers.h"
 #include "polyrecon/error_map.h"
 #include "polyrecon/image.h"
 #include "polyrecon/sample_map.h"
@@ -31,9 +32,6 @@ ErrorMapFile read_error_map(const std::string& path);
 /// Writes the channel order.Y.
 void write_order_map(const std::string& target, const Image& order, const MapWindows& windows);
 
-/// The programs that read sample maps; docs/reference/formats.md describes their formats.
-enum class SampleMapFormat { Polyrecon, Appleseed, Luxcore, Vray };
-
 /// Attributes of a sample map that do not follow from its samples.
 struct SampleMapOrigin {
   double budget = 0;  ///< Extra samples per pixel; 0 where a target was given.
@@ -42,10 +40,10 @@ struct SampleMapOrigin {
   int seed = 0;
 };
 
-/// Writes a sample map. The format Polyrecon has the channels samples.Y and importance.Y over the data window. The
-/// others cover the display window from (0, 0) and are 0, no more samples, outside the data window. Appleseed: R =
-/// samples / maximum. Luxcore: Y = importance. Vray: R = G = B = 1 in pixels that get half a sample or more, else 0.
+/// Writes a sample map: the channels samples.Y and importance.Y over the data window, or the channels that a renderer
+/// reads. These cover the display window from (0, 0) and are 0, no more samples, outside the data window. format:
+/// nullptr, or the format of a renderer.
 void write_sample_map(const std::string& target, const SampleMap& map, const MapWindows& windows,
-                      const SampleMapOrigin& origin, SampleMapFormat format);
+                      const SampleMapOrigin& origin, const SampleMapFormat* format);
 
 }  // namespace polyrecon

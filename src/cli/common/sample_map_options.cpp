@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <map>
+#include <string_view>
 
 #include "cli/common/layers.h"
 #include "polyrecon/error.h"
@@ -10,25 +11,22 @@
 namespace polyrecon {
 namespace {
 
-const std::map<std::string, SampleMapFormat> formats{
-    {"appleseed", SampleMapFormat::Appleseed}, {"luxcore", SampleMapFormat::Luxcore}, {"vray", SampleMapFormat::Vray}};
+/// The renderers' formats by what is typed after --export.
+std::map<std::string, const SampleMapFormat*> formats() {
+  std::map<std::string, const SampleMapFormat*> by_option;
+  for (const Renderer& renderer : renderers())
+    if (!renderer.sample_map.option.empty()) by_option[renderer.sample_map.option] = &renderer.sample_map;
+  return by_option;
+}
 
-/// How to use the file in a renderer.
-std::string usage_of(const SampleMap& map, SampleMapFormat format) {
-  switch (format) {
-    case SampleMapFormat::Appleseed:
-      return fmt::format(
-          "; in appleseed, set texture_controlled_pixel_renderer's min_samples to 0 and max_samples to {:.0f}",
-          map.max);
-    case SampleMapFormat::Luxcore:
-      return "; in LuxCore, load it into the USER_IMPORTANCE channel and set "
-             "sampler.sobol.adaptive.userimportanceweight to 1";
-    case SampleMapFormat::Vray:
-      return "; in V-Ray, use it as the render mask texture (V-Ray takes no sample counts)";
-    case SampleMapFormat::Polyrecon:
-      break;
-  }
-  return {};
+/// How to use the file in the renderer.
+std::string usage_of(const SampleMap& map, const SampleMapFormat* format) {
+  if (!format) return {};
+  std::string usage = "; " + format->usage;
+  const std::string_view place = "{max}";
+  if (const std::size_t at = usage.find(place); at != std::string::npos)
+    usage.replace(at, place.size(), fmt::format("{:.0f}", map.max));
+  return usage;
 }
 
 std::string summary(const SampleMap& map, const SampleMapOptions& options) {
@@ -73,8 +71,8 @@ std::vector<CLI::Option*> add_sample_map_options(OptionSet& set, SampleMapOption
                            ->capture_default_str();
   CLI::Option* seed = set.add(Changes::Result, "--seed", o.seed, "Seed of the next render to write into the map")
                           ->capture_default_str();
-  CLI::Option* format = set.add_choice(Changes::Result, "--export", o.format, formats,
-                                       "Write the map in the format of a renderer: appleseed, luxcore or vray");
+  CLI::Option* format =
+      set.add_choice(Changes::Result, "--export", o.format, formats(), "Write the map in the format of a renderer");
   return {budget, max_samples, cost, frame, seed, format};
 }
 

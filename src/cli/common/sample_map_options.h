@@ -14,9 +14,9 @@ namespace polyrecon {
 struct SampleMapOptions {
   SampleMapParams params;
   std::string cost;  ///< Image file with the cost of a sample in each pixel; empty: all cost the same.
-  SampleMapFormat format = SampleMapFormat::Polyrecon;
-  int frame = 0;  ///< Written into the map.
-  int seed = 0;   ///< Seed of the next render, written into the map.
+  const SampleMapFormat* format = nullptr;  ///< The format of a renderer; nullptr: samples.Y and importance.Y.
+  int frame = 0;                            ///< Written into the map.
+  int seed = 0;                             ///< Seed of the next render, written into the map.
 };
 
 /// Adds --budget, --target, --max-samples, --cost, --frame, --seed and --export. Returns those that have no meaning

@@ -18,6 +18,11 @@ Renderer luxcore() {
       {"SAMPLECOUNT", Role::SampleCount, 1},
   };
   r.pass_files = true;
+  r.sample_map = {"luxcore",
+                  {"Y"},
+                  SampleMapFormat::Values::Importance,
+                  "in LuxCore, load it into the USER_IMPORTANCE channel and set "
+                  "sampler.sobol.adaptive.userimportanceweight to 1"};
   return r;
 }
 

@@ -44,6 +44,18 @@ struct SamplesAttribute {
   bool of_sequence = false;  ///< A render of a part of the samples has the number of all of them.
 };
 
+/// The form in which a renderer takes a sample map (--export).
+struct SampleMapFormat {
+  enum class Values {
+    Importance,  ///< Samples over the largest number of samples, 0 to 1.
+    Mask         ///< 1 for at least half a sample, else 0.
+  };
+  std::string option;                 ///< As typed after --export; empty if the renderer takes no map.
+  std::vector<std::string> channels;  ///< All have the same values.
+  Values values = Values::Importance;
+  std::string usage;  ///< How to use the file; "{max}" stands for the largest number of samples.
+};
+
 /// The names and quirks of one renderer. Each has a file in this folder; the list of all is in renderers.cpp.
 struct Renderer {
   std::string name;
@@ -67,6 +79,7 @@ struct Renderer {
   double sky_depth = std::numeric_limits<double>::infinity();
   /// Factors that turn the channels of the motion pass into Frame::motion.
   std::array<Real, 4> motion_factors{1, 1, 1, 1};
+  SampleMapFormat sample_map;
   bool pass_files = false;  ///< It writes each pass to a file of its own, whose name ends in the pass.
 };
 

@@ -22,6 +22,10 @@ Renderer vray() {
       {"worldPositions", Role::Other, 1},
       {"velocity", Role::Other, 1},
   };
+  r.sample_map = {"vray",
+                  {"R", "G", "B"},
+                  SampleMapFormat::Values::Mask,
+                  "in V-Ray, use it as the render mask texture (V-Ray takes no sample counts)"};
   return r;
 }
 
