@@ -12,7 +12,19 @@ namespace polyrecon {
 
 /// What a layer is to the method. The order is that of features in a Frame and of every list that people read.
 /// Color: a further colour pass that can be reconstructed (--aov). Other: data that is only passed through.
-enum class Role { Beauty, Normal, Albedo, Depth, Visibility, Prior, SampleCount, Motion, Alpha, Color, Other };
+enum class Role {
+  Beauty,
+  Normal,
+  Albedo,
+  Depth,
+  Visibility,
+  Prior,
+  SampleCount,
+  Motion,
+  Alpha,
+  Color,
+  Other,
+};
 
 constexpr std::size_t role_count = static_cast<std::size_t>(Role::Other) + 1;
 
