@@ -2,7 +2,7 @@
 
 namespace polyrecon {
 
-/// The AOVs that Arnold's denoiser noice asks for.
+/// The AOVs that Arnold's denoiser noice needs.
 Renderer arnold() {
   Renderer r;
   r.name = "Arnold";
