@@ -28,12 +28,12 @@ Image widened_variance(const Image& variance) {
     for (int c = 0; c < out.channels(); ++c) {
       std::fill(columns.begin(), columns.end(), 0.0);
       for (int v = top; v < bottom; ++v) add_values(variance.row(c, v), columns.data() + 1, width);
-      const Real* own = variance.row(c, y);
+      const Real* noise = variance.row(c, y);
       Real* wide = out.row(c, y);
       for (int x = 0; x < width; ++x) {
         const double* around = columns.data() + x;
         const int count = (std::min(x + 2, width) - std::max(x - 1, 0)) * (bottom - top);
-        wide[x] = std::max(own[x], static_cast<Real>((around[0] + around[1] + around[2]) / count));
+        wide[x] = std::max(noise[x], static_cast<Real>((around[0] + around[1] + around[2]) / count));
       }
     }
   });

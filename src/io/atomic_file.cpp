@@ -59,7 +59,7 @@ std::atomic<const char*>* remember(const char* path) {
   return nullptr;
 }
 
-/// A new file beside the target that is locked as long as it is in use, and removed unless it took the target's name.
+/// A new file next to the target that is locked as long as it is in use, and removed unless it took the target's name.
 class Temporary {
  public:
   explicit Temporary(const std::string& target) : target_(target) {

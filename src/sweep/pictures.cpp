@@ -54,8 +54,8 @@ std::vector<PicturedResult> picture_results(const std::vector<Picture>& pictures
   const Rect part = worst_part({errors.begin() + (errors.size() > 1 ? 1 : 0), errors.end()}, reference.bounds());
   LogRange range;
   for (const Image& error : errors) {
-    const LogRange own = log_range(error);
-    if (own.high > range.high) range = own;
+    const LogRange found = log_range(error);
+    if (found.high > range.high) range = found;
   }
   std::vector<PicturedResult> results;
   for (std::size_t i = 0; i < pictures.size(); ++i) {

@@ -60,8 +60,8 @@ def seconds_of_oidn(frame, size, prefilter, folder):
         "--target",
         folder / "oidn.exr",
     ]
-    told = subprocess.run(command, check=True, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True).stdout
-    return float(told.splitlines()[-1])
+    printed = subprocess.run(command, check=True, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True).stdout
+    return float(printed.splitlines()[-1])
 
 
 def seconds_of_polyrecon(program, frame, quality, folder):

@@ -32,9 +32,9 @@ def rates(program):
         "--benchmark_filter=" + "|".join([*PARTS, *PEAKS, *LEVELS]),
         "--benchmark_repetitions=5",
     ]
-    told = json.loads(subprocess.run(command, check=True, stdout=subprocess.PIPE).stdout)["benchmarks"]
+    measured = json.loads(subprocess.run(command, check=True, stdout=subprocess.PIPE).stdout)["benchmarks"]
     best = {}
-    for row in told:  # the best of five: what disturbs only ever takes time
+    for row in measured:  # the best of five: what disturbs only ever takes time
         if row["run_type"] == "iteration":
             mine = best.setdefault(row["run_name"], {"flop": 0, "bytes": 0})
             mine.update({key: max(mine[key], row.get(key, 0)) for key in mine})

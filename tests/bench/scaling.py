@@ -137,7 +137,7 @@ def make_prior(args, frame):
 
 
 def least_memory(args, frame, quality):
-    """The limit that the program asks for where it gets too little."""
+    """The limit that the program says it needs where it gets too little."""
     command = [*denoise_command(args, frame, quality, frame.with_suffix(".clean.exr")), "--max-memory", "1M"]
     asked = re.search(r"needs --max-memory (\w+)", subprocess.run(command, capture_output=True, text=True).stderr)
     return asked.group(1) if asked else sys.exit(f"{frame}: runs with --max-memory 1M")

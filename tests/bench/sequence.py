@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """How much frames before and after help: denoises the animation of samples/make_sequence.py with several --frame-radius
-and prints relMSE of each frame and flicker, in thousandths, and the frame that fares worst beside the first radius.
+and prints relMSE of each frame and flicker, in thousandths, and the frame that loses most against the first radius.
 Needs numpy and OpenImageIO's Python module.
 
 relMSE: mean of ((x - r)^2 - Var r) / (r^2 + 0.01), r the reference, Var r the variance of its mean.

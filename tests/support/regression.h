@@ -141,9 +141,9 @@ inline Penalised penalised(const Eigen::MatrixXd& x, const Eigen::VectorXd& w, c
         out.q.col(k) -= part * out.q.col(b);  // also where S is zero
       }
     // The remainder includes the penalty rows of the columns before k: what those columns do not take, column k does.
-    const double own = a.col(k).squaredNorm(), rest = left.squaredNorm();
+    const double whole = a.col(k).squaredNorm(), rest = left.squaredNorm();
     const bool is_feature = k >= 1 && k <= features;
-    const double little = std::max(limits.remainder * limits.remainder * own,
+    const double little = std::max(limits.remainder * limits.remainder * whole,
                                    is_feature ? limits.variation * limits.variation * w.sum() : 0.0);
     const bool kept = rest > 3e-3 * little && rest > 0;
     const double penalty = kept ? little / std::sqrt(rest) : 0,

@@ -50,8 +50,8 @@ std::vector<std::string> layers_of(const std::vector<Comparison>& comparisons) {
 LogRange error_range(const std::vector<Comparison>& comparisons, const std::string& layer) {
   LogRange range;
   for (const Comparison& c : comparisons) {
-    const LogRange own = c.layer == layer ? log_range(c.error) : LogRange();
-    if (own.high > range.high) range = own;
+    const LogRange found = c.layer == layer ? log_range(c.error) : LogRange();
+    if (found.high > range.high) range = found;
   }
   return range;
 }

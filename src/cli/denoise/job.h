@@ -54,8 +54,8 @@ Job make_job(const DenoiseOptions& options, const OptionSet& set);
 /// an input too, an input that does not exist, a folder that cannot be written to. Reads no pixel.
 void check_files(const Job& job);
 
-/// What the result of a frame depends on besides its input, as options of the command line. The result and the report
-/// contain it; --skip-existing compares it.
+/// What the result of a frame depends on in addition to its input, as options of the command line. The result and the
+/// report contain it; --skip-existing compares it.
 std::string settings_of(const Job& job, const FrameFiles& files);
 
 }  // namespace polyrecon

@@ -28,7 +28,7 @@ struct NativeBand {
 
   explicit NativeBand(const Imf::Header& header);
   /// Makes room for other lines; memory is kept, since fresh pages for each band of a frame would take longer than
-  /// their samples do. What the samples are until they are filled is not told.
+  /// their samples do. The samples are unspecified until they are filled.
   void take_lines(int first, int last_excluded);
   NativeChannel* find(const std::string& name);
   Imf::FrameBuffer buffer();
