@@ -64,7 +64,7 @@ void draw_text(OIIO::ImageBuf& image, std::string text, int x, int y, int width,
 }
 
 /// The scale of a false-colour picture: the colours from low to high, below them these two numbers and the powers of
-/// ten between, where there is room.
+/// ten between, where there is room. A scale that is too narrow for the two numbers has none.
 void draw_legend(OIIO::ImageBuf& image, const LogRange& range, int x, int y, int width) {
   Image scale(width, 1, 1);
   for (int i = 0; i < width; ++i)
@@ -77,8 +77,9 @@ void draw_legend(OIIO::ImageBuf& image, const LogRange& range, int x, int y, int
   }
   const int below = y + legend_height;
   const std::string low = fmt::format("{:.3g}", range.low), high = fmt::format("{:.3g}", range.high);
-  draw_text(image, low, x, below, width / 2, Align::Left);
-  draw_text(image, high, x + width, below, width / 2, Align::Right);
+  if (text_width(low) + gap + text_width(high) > width) return;
+  draw_text(image, low, x, below, width, Align::Left);
+  draw_text(image, high, x + width, below, width, Align::Right);
   if (range.high <= range.low) return;
   int taken = x + text_width(low) + gap;
   const int end = x + width - text_width(high) - gap;

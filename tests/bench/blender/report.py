@@ -105,6 +105,7 @@ def plot(rows, path, clock):
     matplotlib.use("svg")
     matplotlib.rcParams.update({"svg.hashsalt": "bench", "svg.fonttype": "none", "font.size": 8})
     import matplotlib.pyplot as plt
+    from matplotlib.ticker import LogLocator, NullFormatter
 
     scenes = list(dict.fromkeys(row["scene"] for row in rows))
     budgets = {scene: {row["budget"] for row in rows if row["scene"] == scene} for scene in scenes}
@@ -117,6 +118,9 @@ def plot(rows, path, clock):
                 axis.loglog(*zip(*points), "o-", color=COLOUR[method], label=label, markersize=3, linewidth=1.2)
         axis.set_title(scene)
         axis.set_xlabel(f"{clock}, all included")
+        axis.xaxis.set_major_locator(LogLocator(subs=(1, 2, 3, 5)))  # labels of all digits run into each other
+        axis.xaxis.set_major_formatter("{x:g}")
+        axis.xaxis.set_minor_formatter(NullFormatter())
         axis.grid(True, which="both", linewidth=0.3)
     axes[0][0].set_ylabel("relMSE, trimmed")
     figure.legend(*axes[0][0].get_legend_handles_labels(), loc="upper center", bbox_to_anchor=(0.5, 0), ncol=len(LABEL))

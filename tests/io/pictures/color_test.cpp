@@ -195,12 +195,28 @@ TEST(Compose, TheLegendMarksThePowersOfTen) {
   EXPECT_EQ(ticks, (std::vector<int>{106, 212}));
 }
 
+/// Pixels of the strip of numbers below the legend of a panel `width` wide that are not ground.
+int pixels_of_numbers(int width, const LogRange& range) {
+  const Image out = compose({{Image(width, 4, 3, 1), "", range}});
+  const int below = 8 + 4 + 8 + 12;  // margin, picture, gap, bar
+  int pixels = 0;
+  for (int y = below; y < out.height(); ++y)
+    for (int x = 0; x < out.width(); ++x) pixels += out.at(x, y, 0) > Real{0.2f};
+  return pixels;
+}
+
+TEST(Compose, NumbersThatDoNotFitAreLeftOutAndNotCut) {
+  if (!has_font()) GTEST_SKIP() << "no font";
+  EXPECT_GT(pixels_of_numbers(200, {3.44e-6, 0.0344}), 0);
+  EXPECT_EQ(pixels_of_numbers(80, {3.44e-6, 0.0344}), 0);  // "3.44e-06" and "0.0344" need some 110 pixels
+}
+
 TEST(Stack, RowsStandBelowEachOtherFromTheLeft) {
   const Image out = stack({Image(3, 2, 3, 1), Image(5, 1, 3, Real{0.5})});
   EXPECT_EQ(out.width(), 5);
   EXPECT_EQ(out.height(), 3);
   EXPECT_EQ(out.at(2, 1, 0), 1);
-  EXPECT_LT(out.at(3, 1, 0), Real{0.2f});  // ground beside the narrower row
+  EXPECT_LT(out.at(3, 1, 0), Real{0.2f});  // ground next to the narrower row
   EXPECT_EQ(out.at(4, 2, 2), Real{0.5});
 }
 
