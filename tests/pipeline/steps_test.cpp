@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <ctime>
 
 #include "polyrecon/reconstruct.h"
 #include "support/scene.h"
@@ -31,19 +30,17 @@ test::Scene simple_scene(int width, int height) {
   return scene;
 }
 
-struct Timed {
-  double cpu_seconds = 0, relative_mse = 0;
+struct Outcome {
+  double relative_mse = 0;
   Report report;
 };
 
-Timed run(const test::Scene& scene, bool decide) {
+Outcome run(const test::Scene& scene, bool decide) {
   Params params = params_for(Quality::Standard);
   params.steps.decide = decide;
-  Frame frame = scene.frame;                // reconstruct takes its passes
-  const std::clock_t start = std::clock();  // CPU time, which hardly depends on other processes
+  Frame frame = scene.frame;  // reconstruct takes its passes
   const Result result = reconstruct(frame, params, silent_progress());
-  return {static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC, test::relative_mse(result.beauty, scene.truth),
-          result.report};
+  return {test::relative_mse(result.beauty, scene.truth), result.report};
 }
 
 const Decision& decision(const Report& report, const std::string& step) {
@@ -52,16 +49,20 @@ const Decision& decision(const Report& report, const std::string& step) {
   throw std::runtime_error("no decision on " + step);
 }
 
-TEST(Steps, ASimpleSceneTakesLessTimeThanAllSteps) {
+TEST(Steps, ASimpleSceneTakesLessWorkThanAllSteps) {
   const test::Scene scene = simple_scene(256, 192);
-  const Timed all = run(scene, false), decided = run(scene, true);
-  EXPECT_LE(decided.cpu_seconds, 0.85 * all.cpu_seconds);  // 0.72: windows on pixels without noise are cheap anyway
+  const Outcome all = run(scene, false), decided = run(scene, true);
+  // Windows are counted, not seconds: the count is the same on any machine and under any load.
   EXPECT_LE(2 * decided.report.windows, all.report.windows);
+  for (const char* step : {"feature albedo prefilter", "feature normal prefilter", "feature depth prefilter"}) {
+    EXPECT_TRUE(decision(all.report, step).run) << step;
+    EXPECT_FALSE(decision(decided.report, step).run) << step;
+  }
   EXPECT_NEAR(decided.relative_mse, all.relative_mse, 0.01 * all.relative_mse);
 }
 
 TEST(Steps, EachDecisionHasAReasonAndWhatItSaves) {
-  const Timed decided = run(simple_scene(96, 64), true);
+  const Outcome decided = run(simple_scene(96, 64), true);
   const Decision& sky = decision(decided.report, "noise-free pixels skipped");
   EXPECT_TRUE(sky.run);
   // 32 of 64 rows, less the two that get a variance from their neighbourhood (noise/variance_floor.h).
@@ -75,14 +76,13 @@ TEST(Steps, EachDecisionHasAReasonAndWhatItSaves) {
   EXPECT_FALSE(prefilter.run);
   EXPECT_EQ(prefilter.reason, "the pass has no noise");
   EXPECT_GT(prefilter.saved_seconds, 0);
-  EXPECT_LT(prefilter.saved_seconds, decided.cpu_seconds);
   EXPECT_EQ(decision(decided.report, "feature albedo").saved_seconds, 0);  // it runs
 }
 
 TEST(Steps, AConstantFeatureIsUsedOnlyWhereItIsRequested) {
   test::Scene scene = test::make_scene(48, 32, 0.1, 3);
   scene.frame.features[0].pass.mean = Image(48, 32, 3, Real(0));
-  const Timed decided = run(scene, true), all = run(scene, false);
+  const Outcome decided = run(scene, true), all = run(scene, false);
   EXPECT_FALSE(decision(decided.report, "feature albedo").run);
   EXPECT_GT(decision(decided.report, "feature albedo").saved_seconds, 0);
   EXPECT_TRUE(decision(all.report, "feature albedo").run);
