@@ -6,12 +6,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <fstream>
 #include <set>
-#include <sstream>
 
 #include "io/channel_names.h"
 #include "io/renderers/known_names.h"
+#include "support/recorded.h"
 
 namespace polyrecon {
 namespace {
@@ -97,34 +96,25 @@ std::string names_table() {
   return table;
 }
 
-std::string formats_page() {
-  std::ifstream in(POLYRECON_SOURCE_DIR "/docs/reference/formats.md");
-  std::stringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
+constexpr const char* formats_page = POLYRECON_SOURCE_DIR "/docs/reference/formats.md";
 
-std::string between(const std::string& text, const std::string& begin, const std::string& end) {
-  const std::size_t at = text.find(begin);
-  if (at == std::string::npos) return {};
-  const std::size_t first = at + begin.size();
-  return text.substr(first, text.find(end, first) - first);
-}
-
-/// The message shows the rows that belong on the page.
 TEST(Renderers, ThePageOfFormatsHasTheirNames) {
-  EXPECT_EQ(between(formats_page(), "<!-- renderers: begin -->\n", "<!-- renderers: end -->"), names_table());
+  test::expect_recorded(formats_page, "<!-- renderers: begin -->\n", "<!-- renderers: end -->", names_table());
 }
 
+/// The descriptions are written by hand and stay.
 TEST(Renderers, ThePageOfFormatsHasTheRoles) {
-  std::istringstream rows(between(formats_page(), "| role | channels | what it is |\n|---|---:|---|\n", "\n\n"));
+  const std::string head = "| role | channels | what it is |\n|---|---:|---|\n";
+  const std::string recorded = test::between(test::text_of(formats_page), head, "\n\n") + "\n";
+  std::string rows;
   for (const RoleInfo& info : role_table()) {
-    std::string line;
-    ASSERT_TRUE(std::getline(rows, line)) << info.name;
     const std::string channels = info.channels > 0 ? std::to_string(info.channels) : "any";
-    EXPECT_EQ(line.rfind(fmt::format("| {} | {} | ", code(info.name), channels), 0), 0U) << line;
+    const std::string begin = fmt::format("| {} | {} | ", code(info.name), channels);
+    const std::string description = test::between(recorded, begin, " |\n");
+    EXPECT_FALSE(description.empty()) << formats_page << ": write what the role " << info.name << " is";
+    rows += (rows.empty() ? "" : "\n") + begin + description + " |";
   }
-  EXPECT_EQ(rows.peek(), std::istringstream::traits_type::eof());
+  test::expect_recorded(formats_page, head, "\n\n", rows);
 }
 
 TEST(Renderers, HaveDistinctNamesAndBeauties) {
