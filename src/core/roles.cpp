@@ -28,8 +28,8 @@ constexpr RoleInfo alpha() {
   return info;
 }
 
-// To add a feature pass: its role in the enumeration (roles.h) and its row here, in the same place; its names in the
-// files of io/renderers/; a test. Everything else (reading, --map, --steps, inspect, sweep, memory) reads this table.
+// Reading, --map, --steps, inspect, sweep and the memory estimate read this table. To add a feature pass, see
+// docs/dev/add_a_feature_pass.md.
 constexpr std::array<RoleInfo, role_count> table{
     color(Role::Beauty, "beauty", true, true),
     feature(Role::Normal, "normal", 3, {3}, Noise::Estimated),

@@ -1,7 +1,6 @@
 #include "io/renderers/renderers.h"
 
-// To add a renderer: a file in this folder with a function that returns its Renderer, the function's name in this list,
-// a test, and the row that tests/io/renderers_test.cpp prints for docs/reference/formats.md.
+// Each function has a file in this folder. To add a renderer, see docs/dev/add_a_renderer.md.
 #define POLYRECON_RENDERERS(renderer)                                                                          \
   renderer(polyrecon_itself) renderer(any_renderer) renderer(blender) renderer(arnold) renderer(renderman)     \
       renderer(vray) renderer(pbrt) renderer(mitsuba) renderer(tungsten) renderer(appleseed) renderer(luxcore) \
