@@ -18,8 +18,10 @@ if not __package__:  # run as a script from a checkout
     sys.path[0] = str(pathlib.Path(__file__).resolve().parents[2])
     __package__ = "pipelines.blender"
 
+from ..common import process
 from ..common.command import each_frame
 from ..common.errors import DriverError, ExitCode, run_main
+from ..common.terminal import print_lines
 from .options import add_common, renderer_of
 
 
@@ -64,7 +66,7 @@ def one_frame(options, renderer, frame, output, passes, polyrecon, progress):
         if not any(passes.iterdir()):
             passes.rmdir()
     if not options.quiet:
-        print(summary, end="")
+        print_lines(*process.lines_of(summary))
 
 
 def main(words=None):

@@ -1,8 +1,13 @@
 """The error type of all drivers. Its code is the exit code (docs/reference/exit_codes.md)."""
 
 import enum
+import errno
+import os
 import signal
 import sys
+import traceback
+
+from .terminal import print_lines
 
 
 class ExitCode(enum.IntEnum):
@@ -31,6 +36,17 @@ class Terminated(BaseException):
     """The process received SIGTERM. Like KeyboardInterrupt, it unwinds the stack through every `finally`."""
 
 
+# Exit codes of errors of the system that no driver expects where they occur; of others OUTPUT.
+_CODES = {
+    errno.ENOENT: ExitCode.MISSING,
+    errno.ENOMEM: ExitCode.MEMORY,
+    errno.EAGAIN: ExitCode.MEMORY,  # no process or thread to be had
+    errno.EMFILE: ExitCode.MEMORY,
+    errno.ENFILE: ExitCode.MEMORY,
+}
+_ADVICE = {errno.EMFILE: ": raise `ulimit -n`", errno.EAGAIN: ": raise `ulimit -u`"}
+
+
 def _terminate(*_):
     raise Terminated
 
@@ -42,15 +58,28 @@ def run_main(program, main, words=None):
     try:
         main(words)
         return ExitCode.DONE
-    except DriverError as error:
-        print(f"{program}: {error}", file=sys.stderr)
-        return error.code
-    except KeyboardInterrupt:
-        print(f"{program}: interrupted", file=sys.stderr)
-        return ExitCode.INTERRUPTED
-    except Terminated:
-        print(f"{program}: terminated", file=sys.stderr)
-        return ExitCode.TERMINATED
-    except MemoryError:
-        print(f"{program}: not enough memory", file=sys.stderr)
-        return ExitCode.MEMORY
+    except (Exception, KeyboardInterrupt, Terminated) as error:
+        code, text = _explain(error)
+        if isinstance(error, BrokenPipeError):  # Nobody reads standard output; Python must not flush it at its end.
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        print_lines(f"{program}: {text}", file=sys.stderr)
+        return code
+
+
+def _explain(error):
+    """The exit code and the line for an error."""
+    if isinstance(error, DriverError):
+        return error.code, error
+    if isinstance(error, KeyboardInterrupt):
+        return ExitCode.INTERRUPTED, "interrupted"
+    if isinstance(error, Terminated):
+        return ExitCode.TERMINATED, "terminated"
+    if isinstance(error, MemoryError):
+        return ExitCode.MEMORY, "not enough memory"
+    if isinstance(error, OSError):
+        place = f"{os.fsdecode(error.filename)}: " if isinstance(error.filename, (str, bytes)) else ""
+        text = f"{place}{error.strerror or error}{_ADVICE.get(error.errno, '')}"
+        return _CODES.get(error.errno, ExitCode.OUTPUT), text
+    last = traceback.extract_tb(error.__traceback__)[-1]
+    place = f"{os.path.basename(last.filename)}:{last.lineno}"
+    return ExitCode.INTERNAL, f"internal error: {type(error).__name__}: {error} ({place})"

@@ -1,13 +1,15 @@
 """Reads and writes EXR files as numpy arrays, with OpenImageIO."""
 
+import contextlib
 import os
-import pathlib
-import tempfile
 
 import numpy as np
 import OpenImageIO as oiio
 
 from .errors import DriverError, ExitCode
+from .files import open_regular, replacing
+
+MAGIC = b"\x76\x2f\x31\x01"
 
 
 def read(path, wanted=None):
@@ -15,35 +17,58 @@ def read(path, wanted=None):
 
     If `wanted` is given, only the channels with wanted(name) are read. Of parts that have a name in common, the first
     one counts."""
-    file = oiio.ImageInput.open(os.fspath(path))
-    if not file:
-        raise DriverError(ExitCode.BAD_INPUT, f"{path}: {oiio.geterror()}")
     channels, part = {}, 0
-    try:
+    with _opened(path) as file:
         while file.seek_subimage(part, 0):
             spec = file.spec()
             names = [name for name in spec.channelnames if name not in channels and (not wanted or wanted(name))]
             if names:
                 pixels = file.read_image(part, 0, 0, spec.nchannels, "float")
                 if pixels is None:
-                    raise DriverError(ExitCode.BAD_INPUT, f"{path}: part {part}: {file.geterror()}")
+                    raise DriverError(ExitCode.BAD_INPUT, f"{path}: part {part}: {_error_of(file)}")
                 pixels = np.asarray(pixels, np.float32).reshape(spec.height, spec.width, spec.nchannels)
                 for name in names:
                     channels[name] = pixels[..., spec.channelnames.index(name)]
             part += 1
-    finally:
-        file.close()
     return channels
 
 
 def metadata(path):
     """The attributes of the first part: {name: value}."""
-    file = oiio.ImageInput.open(os.fspath(path))
+    with _opened(path) as file:
+        return {attribute.name: attribute.value for attribute in file.spec().extra_attribs}
+
+
+@contextlib.contextmanager
+def _opened(path):
+    """A context with the oiio.ImageInput of an EXR file. OpenImageIO would open a file with this name that another of
+    its formats recognises, too, so the file's first bytes are checked here."""
+    try:
+        with open_regular(path) as file:
+            magic = file.read(len(MAGIC))
+    except FileNotFoundError as error:
+        raise DriverError(ExitCode.MISSING, f"{path}: {error.strerror}") from error
+    except OSError as error:
+        raise DriverError(ExitCode.BAD_INPUT, f"{path}: {error.strerror}") from error
+    if magic != MAGIC:
+        raise DriverError(ExitCode.BAD_INPUT, f"{path}: is not an EXR file")
+    file = oiio.ImageInput.open(os.fsencode(path))  # As bytes: a path need not be UTF-8.
     if not file:
-        raise DriverError(ExitCode.BAD_INPUT, f"{path}: {oiio.geterror()}")
-    attributes = {attribute.name: attribute.value for attribute in file.spec().extra_attribs}
-    file.close()
-    return attributes
+        raise DriverError(ExitCode.BAD_INPUT, f"{path}: {_error_of(oiio)}")
+    try:
+        yield file
+    except UnicodeDecodeError as error:
+        raise DriverError(ExitCode.BAD_INPUT, f"{path}: a name in it is not UTF-8") from error
+    finally:
+        file.close()
+
+
+def _error_of(source):
+    """The last error of OpenImageIO or of one of its files."""
+    try:
+        return source.geterror() or "cannot be read"
+    except UnicodeDecodeError:  # It names a path that is not UTF-8.
+        return "cannot be read or written"
 
 
 def write(path, channels, attributes=None, compression="zip:2"):
@@ -57,19 +82,9 @@ def write(path, channels, attributes=None, compression="zip:2"):
     spec.attribute("oiio:ColorSpace", "scene_linear")
     for name, value in (attributes or {}).items():
         spec.attribute(name, value)
-    path = pathlib.Path(path)
-    try:
-        handle, temporary = tempfile.mkstemp(suffix=".exr", prefix=f".{path.name}.", dir=path.parent)
-    except OSError as error:
-        raise DriverError(ExitCode.OUTPUT, f"{path}: {error.strerror}") from error
-    os.close(handle)
-    try:
-        file = oiio.ImageOutput.create(temporary)
-        if not file or not file.open(temporary, spec) or not file.write_image(np.ascontiguousarray(pixels)):
-            raise DriverError(ExitCode.OUTPUT, f"{path}: {file.geterror() if file else oiio.geterror()}")
+    with replacing(path) as temporary:
+        file = oiio.ImageOutput.create("openexr")
+        if not file.open(os.fsencode(temporary), spec) or not file.write_image(np.ascontiguousarray(pixels)):
+            raise DriverError(ExitCode.OUTPUT, f"{path}: {_error_of(file)}")
         if not file.close():
-            raise DriverError(ExitCode.OUTPUT, f"{path}: {file.geterror()}")
-        os.replace(temporary, path)
-    except BaseException:
-        pathlib.Path(temporary).unlink(missing_ok=True)
-        raise
+            raise DriverError(ExitCode.OUTPUT, f"{path}: {_error_of(file)}")

@@ -44,7 +44,7 @@ class Polyrecon:
         results = process.run_side_by_side([[self.program, command, *words] for words in word_lists])
         for code, _, errors in results:
             if code != 0:
-                lines = [line for line in errors.splitlines() if line.strip()] or [f"ended with code {code}"]
+                lines = [line for line in process.lines_of(errors) if line.strip()] or [f"ended with code {code}"]
                 known = code in ExitCode.__members__.values()
                 raise DriverError(code if known else ExitCode.INTERNAL, f"polyrecon {command}: {lines[-1]}")
         return [output for _, output, _ in results]

@@ -37,6 +37,17 @@ def run(words, timeout=None, **options):
     return run_side_by_side([words], timeout, **options)[0]
 
 
+def decoded(output):
+    """The text of bytes that a child printed. Python's text mode would turn carriage returns into ends of lines, and a
+    name in a file could forge a line with one."""
+    return output.decode("utf-8", "replace")
+
+
+def lines_of(text):
+    """The lines of a text that a child printed, divided at "\\n" alone."""
+    return text.removesuffix("\n").split("\n") if text else []
+
+
 def run_side_by_side(commands, timeout=None, **options):
     """Runs several commands concurrently; returns what `run` returns for each, in their order.
 
@@ -44,11 +55,9 @@ def run_side_by_side(commands, timeout=None, **options):
     children = []
     try:
         for words in commands:
-            children.append(
-                start(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, errors="replace", **options)
-            )
+            children.append(start(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, **options))
         outputs = [child.communicate(timeout=timeout) for child in children]
-        return [(child.returncode, *texts) for child, texts in zip(children, outputs)]
+        return [(child.returncode, *map(decoded, output)) for child, output in zip(children, outputs)]
     except BaseException:
         for child in children:
             stop(child)

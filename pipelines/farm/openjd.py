@@ -15,6 +15,7 @@ if not __package__:  # run as a script from a checkout
 from ..common.errors import DriverError, ExitCode, run_main
 from ..common.frame_names import parse_ranges, ranges_text
 from ..common.polyrecon_cli import Polyrecon
+from ..common.terminal import print_lines
 from .requirements import MIB, Node, chunk_for, threads_for
 from .submission import add_job_options, first_frame, limit_of, parse_words, quality_of, request_of, seconds_of, size
 
@@ -98,7 +99,7 @@ def write_bundle(options):
         (folder / "parameter_values.yaml").write_text(yaml.safe_dump(parameters, sort_keys=False))
     except OSError as error:
         raise DriverError(ExitCode.OUTPUT, f"{folder}: {error.strerror}") from error
-    print(f"{folder}: {len(frames)} frames, {chunk} a task; a task: {threads} threads, {request / 1e9:.2f} GB")
+    print_lines(f"{folder}: {len(frames)} frames, {chunk} a task; a task: {threads} threads, {request / 1e9:.2f} GB")
 
 
 def arguments(words):

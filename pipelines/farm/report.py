@@ -18,6 +18,7 @@ from ..common import process
 from ..common.errors import DriverError, ExitCode, run_main
 from ..common.frame_names import parse_ranges, ranges_text
 from ..common.polyrecon_cli import find_polyrecon
+from ..common.terminal import print_lines
 from .job import FRAME_ERROR, RECORDS, REPORT_FILE, Job, chunks, write_json
 
 EXAMPLES = """\
@@ -34,8 +35,10 @@ def check(job, frames):
     code, output, errors = process.run(job.words(frames, "--dry-run"))
     if code not in (ExitCode.DONE, ExitCode.MISSING):
         raise DriverError(ExitCode.CHECK, f"frames {ranges_text(frames)}: {errors.strip() or f'ended with {code}'}")
-    finished = {int(match[1]) for line in output.splitlines() if (match := FINISHED.fullmatch(line))}
-    return finished, {int(match[1]): match[2] for line in errors.splitlines() if (match := FRAME_ERROR.match(line))}
+    finished = {int(match[1]) for line in process.lines_of(output) if (match := FINISHED.fullmatch(line))}
+    return finished, {
+        int(match[1]): match[2] for line in process.lines_of(errors) if (match := FRAME_ERROR.match(line))
+    }
 
 
 def check_all(job, processes, done):
@@ -105,14 +108,15 @@ def summary(job, finished, problems, records):
     }
 
 
-def text_of(found):
+def lines_of(found):
+    """The report for the terminal. No line begins with a text of a file, which might be an openjd_ command."""
     lines = [f"{found['finished']} of {found['frames']} frames are finished"]
     if found["unfinished"]:
         lines.append(f"not finished: {found['unfinished']}")
     lines += [f"frame {frame}: {why}" for frame, why in found["reasons"].items()]
     for name, node in sorted(found["nodes"].items()):
         lines.append(
-            f"{name}: {node['frames']} frames by {node['tasks']} tasks, {node['seconds']:.0f} s "
+            f"node {name}: {node['frames']} frames by {node['tasks']} tasks, {node['seconds']:.0f} s "
             f"({node['cpu_seconds']:.0f} s of processors), {node['frames_per_hour']:.0f} frames an hour and task"
         )
     lines += [f"no end, the node died or still works on it: {attempt}" for attempt in found["attempts_without_end"]]
@@ -124,24 +128,24 @@ def text_of(found):
             f"a frame read {found['bytes_read_per_frame'] / 1e6:.1f} MB and wrote "
             f"{found['bytes_written_per_frame'] / 1e6:.1f} MB"
         )
-    return "\n".join(lines)
+    return lines
 
 
 def make_report(job, folder, processes, openjd):
     def report_progress(checked):
         if openjd:
-            print(f"openjd_progress: {100 * checked / len(job.frames):.1f}", flush=True)
+            print_lines(f"openjd_progress: {100 * checked / len(job.frames):.1f}")
 
     finished, problems = check_all(job, processes, report_progress)
     found = summary(job, finished, problems, records_of(folder) if folder else [])
     if folder:
         write_json(pathlib.Path(folder) / REPORT_FILE, found)
-    print(text_of(found), flush=True)
+    print_lines(*lines_of(found))
     if openjd:
-        print(f"openjd_status: {found['finished']} of {found['frames']} frames are finished", flush=True)
+        print_lines(f"openjd_status: {found['finished']} of {found['frames']} frames are finished")
     if found["unfinished"]:
         if openjd:
-            print(f"openjd_fail: not finished: {found['unfinished']}", flush=True)
+            print_lines(f"openjd_fail: not finished: {found['unfinished']}")
         raise DriverError(ExitCode.MISSING, f"not finished: {found['unfinished']}")
 
 

@@ -22,6 +22,7 @@ from ..common import process
 from ..common.errors import DriverError, ExitCode, run_main
 from ..common.frame_names import parse_ranges
 from ..common.polyrecon_cli import Polyrecon
+from ..common.terminal import print_lines
 from .job import JOB_FILE, REPORT_FILE, Job
 from .requirements import MIB, Node, chunk_for, threads_for
 from .submission import add_job_options, first_frame, limit_of, parse_words, positive, request_of, seconds_of
@@ -177,15 +178,15 @@ def submit(options):
     name = options.name or re.sub(r"\W+", "_", pathlib.Path(options.input).name.split("#")[0].split("%")[0]).strip("_")
     name = name or "polyrecon"
     folder = job_folder(options, name, job)
-    print(describe(job, request), flush=True)
+    print_lines(describe(job, request))
     if options.dry_run:
-        print(shlex.join(array_words(options, job, request, name, folder)))
-        print(shlex.join(report_words(options, job, request, name, folder, "ARRAY")))
+        print_lines(shlex.join(array_words(options, job, request, name, folder)))
+        print_lines(shlex.join(report_words(options, job, request, name, folder, "ARRAY")))
         return
     make_folder(folder, job)
     array = slurm(*array_words(options, job, request, name, folder)).strip().split(";")[0]
     report = slurm(*report_words(options, job, request, name, folder, array)).strip().split(";")[0]
-    print(f"job {array} denoises, job {report} reports; their files are in {folder}", flush=True)
+    print_lines(f"job {array} denoises, job {report} reports; their files are in {folder}")
     if options.wait:
         wait_for(report, folder)
 
@@ -211,7 +212,7 @@ def wait_for(job, folder):
     log, found = folder / REPORT_LOG, folder / REPORT_FILE
     if not found.exists():
         raise DriverError(ExitCode.INTERNAL, f"job {job} ended without a report, see {log}")
-    print(log.read_text(), end="", flush=True)
+    print_lines(*log.read_text(errors="surrogateescape").splitlines())
     if unfinished := json.loads(found.read_text())["unfinished"]:
         raise DriverError(ExitCode.MISSING, f"not finished: {unfinished}")
 

@@ -16,6 +16,7 @@ if not __package__:  # run as a script from a checkout
 from ..common import process
 from ..common.errors import DriverError, ExitCode, run_main
 from ..common.frame_names import frame_path, ranges_text
+from ..common.terminal import print_lines
 from .job import FRAME_ERROR, RECORDS, Job, write_json
 
 
@@ -44,11 +45,12 @@ def traffic(pid):
 def run_counted(words):
     """Runs a command to its end. Returns its exit code, and a dict of what it took and its errors of single frames."""
     begun = time.time()
-    child = process.start(words, stderr=subprocess.PIPE, text=True, errors="replace")
+    child = process.start(words, stderr=subprocess.PIPE)
     try:
         frame_errors = {}
-        for line in child.stderr:
-            print(line, end="", file=sys.stderr, flush=True)
+        for line in map(process.decoded, child.stderr):
+            line = line.removesuffix("\n")
+            print_lines(line, file=sys.stderr)
             if match := FRAME_ERROR.match(line):
                 frame_errors[match[1]] = match[2]
         os.waitid(os.P_PID, child.pid, os.WEXITED | os.WNOWAIT)

@@ -4,6 +4,7 @@ import pathlib
 
 from ..common.arguments import positive
 from ..common.command import each_frame
+from ..common.terminal import print_lines
 from . import adaptive, report
 from .budget import Budget
 
@@ -61,6 +62,6 @@ def run_frames(options, renderer, identity):
         result = adaptive.run(renderer, polyrecon, settings, progress)
         page = report.write(result, settings, polyrecon)
         if not options.quiet:
-            print(report.text(result, settings, page))
+            print_lines(*report.lines(result, settings, page))
 
     each_frame(options, renderer, work)

@@ -9,35 +9,40 @@ import tempfile
 import jinja2
 
 from ..common.files import write_text
+from ..common.terminal import printable
 from .folder import PassFolder
 
 TEMPLATE = pathlib.Path(__file__).with_name("report.html.j2")
 CURVE = {"width": 640, "height": 240, "margin": 48}  # Pixels
 
 
-def text(result, settings, page):
+def lines(result, settings, page):
     """A few lines for the terminal."""
-    lines = [
+    found = [
         f"{settings.output}: {result.samples:.3g} samples per pixel, {result.seconds:.1f} s, "
         f"estimated relMSE {_error_text(result.error)}",
         f"  budget {settings.budget}: {result.why_ended}",
     ]
-    lines += [
+    found += [
         f"  round {entry.round}: {entry.samples:.3g} spp, {entry.seconds:.1f} s, relMSE {_error_text(entry.error)}"
         for entry in result.state.rounds
     ]
-    lines += [
+    found += [
         f"  {switch.effect} {switch.setting}: {switch.reason}" + (f" (saves {switch.saves})" if switch.saves else "")
         for switch in result.audit.switches
     ]
-    lines += [f"  extra samples: {result.audit.method}"] + [f"  {note}" for note in result.audit.notes]
-    return "\n".join([*lines, f"  report: {page}"])
+    found += [f"  extra samples: {result.audit.method}"] + [f"  {note}" for note in result.audit.notes]
+    return [*found, f"  report: {page}"]
 
 
 def write(result, settings, polyrecon):
     """Writes report.html into the folder of passes; returns its path. The page holds its pictures and loads nothing."""
     environment = jinja2.Environment(
-        autoescape=True, trim_blocks=True, lstrip_blocks=True, undefined=jinja2.StrictUndefined
+        autoescape=True,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        undefined=jinja2.StrictUndefined,
+        finalize=lambda value: printable(value) if isinstance(value, str) else value,
     )
     environment.filters["error_text"] = _error_text
     passes = PassFolder(settings.passes)

@@ -18,6 +18,7 @@ import numpy as np
 from ..common import exr
 from ..common.arguments import positive
 from ..common.errors import run_main
+from ..common.terminal import print_lines
 from ..loop.renderer import SAMPLE_COUNT
 from . import passes
 from .crops import cover
@@ -43,7 +44,7 @@ def split_words(words):
 def _main(words):
     words, povray_options = split_words(words)
     options = _parser().parse_args(words)
-    say = (lambda *_: None) if options.quiet else (lambda text: print(text, flush=True))
+    say = (lambda *_: None) if options.quiet else print_lines
     with Scene(options.scene, povray_options, options.povray, options.timeout) as scene:
         say(f"{options.scene}: {scene.width} x {scene.height}, parsed in {scene.parse_seconds:.1f} s")
         begun = time.monotonic()

@@ -1,11 +1,12 @@
 import os
 import tempfile
+import time
 import unittest
 import unittest.mock
 from pathlib import Path
 
 from pipelines.common.errors import DriverError, ExitCode
-from pipelines.common.files import write_text
+from pipelines.common.files import STALE_SECONDS, open_regular, remove_temporaries, replacing, write_text
 
 
 class Files(unittest.TestCase):
@@ -31,6 +32,55 @@ class Files(unittest.TestCase):
     def test_a_folder_that_is_missing_is_named(self):
         with self.assertRaisesRegex(DriverError, "gone.*: No such file or directory"):
             write_text(self.path.parent / "gone" / "a.json", "text")
+
+    def test_planted_links_are_replaced_and_not_followed(self):
+        victim = self.path.with_name("victim")
+        victim.write_text("precious")
+        self.path.symlink_to(victim)
+        for name in (f".{self.path.name}.new", f"{self.path.name}.new", f".{self.path.name}"):
+            self.path.with_name(name).symlink_to(victim)
+        write_text(self.path, "text")
+        self.assertEqual((victim.read_text(), self.path.read_text()), ("precious", "text"))
+        self.assertFalse(self.path.is_symlink())
+
+    def test_a_name_that_was_guessed_is_refused_and_not_followed(self):
+        victim = self.path.with_name("victim")
+        victim.write_text("precious")
+        with unittest.mock.patch("secrets.token_hex", return_value="0123456789abcdef"):
+            self.path.with_name(f".{self.path.name}.polyrecon-0123456789abcdef").symlink_to(victim)
+            with self.assertRaisesRegex(DriverError, "File exists"):
+                write_text(self.path, "text")
+        self.assertEqual(victim.read_text(), "precious")
+
+    def test_what_killed_drivers_left_is_removed_and_nothing_else(self):
+        old = time.time() - 2 * STALE_SECONDS
+        left, foreign, others = (
+            self.path.with_name(name)
+            for name in (
+                f".{self.path.name}.polyrecon-0123456789abcdef",
+                f".{self.path.name}.backup",
+                ".other.json.polyrecon-0123456789abcdef",
+            )
+        )
+        for path in (left, foreign, others):
+            path.touch()
+            os.utime(path, (old, old))
+        with replacing(self.path) as used:
+            os.utime(used, (old, old))
+            write_text(self.path, "text")  # The temporary that is in use is locked.
+        self.assertEqual({p.name for p in self.path.parent.iterdir()}, {self.path.name, foreign.name, others.name})
+        remove_temporaries(self.path.parent, lambda name: name == "other.json")
+        self.assertEqual({p.name for p in self.path.parent.iterdir()}, {self.path.name, foreign.name})
+
+    def test_the_longest_name_can_be_written(self):
+        path = self.path.with_name("ä" * 127)
+        write_text(path, "text")
+        self.assertEqual(path.read_text(), "text")
+
+    def test_a_pipe_is_refused_and_not_waited_for(self):
+        os.mkfifo(self.path)
+        with self.assertRaisesRegex(OSError, "is not a regular file"):
+            open_regular(self.path)
 
 
 if __name__ == "__main__":

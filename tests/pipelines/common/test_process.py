@@ -1,3 +1,5 @@
+import contextlib
+import io
 import os
 import signal
 import subprocess
@@ -40,6 +42,10 @@ class Processes(unittest.TestCase):
             time.sleep(0.1)
             self.assertFalse(alive(int(pid_file.read_text())))
 
+    def test_a_carriage_return_does_not_end_a_line(self):
+        _, output, _ = process.run(["printf", "one\\r two\\302\\205\\nthree\\n"])
+        self.assertEqual(process.lines_of(output), ["one\r two\x85", "three"])
+
 
 class Polyrecons(unittest.TestCase):
     def test_it_is_found_and_runs(self):
@@ -57,6 +63,12 @@ class Polyrecons(unittest.TestCase):
             find_polyrecon("/no/such")
         self.assertEqual(caught.exception.code, ExitCode.MISSING)
 
+    def test_a_reader_that_ends_is_no_traceback(self):
+        command = f"{sys.executable} pipelines/farm/cost.py | true; exit ${{PIPESTATUS[0]}}"
+        done = subprocess.run(["bash", "-c", command], capture_output=True, text=True)
+        self.assertIn(done.returncode, (ExitCode.DONE, ExitCode.OUTPUT))
+        self.assertIn(done.stderr, ("", "polyrecon-farm: Broken pipe\n"))
+
     def test_a_failure_keeps_code_and_line(self):
         with self.assertRaisesRegex(DriverError, "polyrecon inspect: .*missing.exr") as caught:
             Polyrecon().run("inspect", "/missing.exr")
@@ -72,8 +84,25 @@ class Mains(unittest.TestCase):
             os.kill(os.getpid(), signal.SIGTERM)
             time.sleep(1)
 
+        def internal(_):
+            return 1 // 0
+
+        def full(_):
+            raise OSError(28, "No space left on device", "a\x1b[31m\nb")
+
+        def no_descriptor(_):
+            raise OSError(24, "Too many open files")
+
         before = signal.getsignal(signal.SIGTERM)
         try:
+            for main, code, line in (
+                (internal, 1, r"test: internal error: ZeroDivisionError: .*\(test_process.py:\d+\)\n"),
+                (full, 5, r"test: a\\x1b\[31m\\nb: No space left on device\n"),
+                (no_descriptor, 33, "test: Too many open files: raise `ulimit -n`\n"),
+            ):
+                with contextlib.redirect_stderr(io.StringIO()) as stderr:
+                    self.assertEqual(run_main("test", main), code)
+                self.assertRegex(stderr.getvalue(), f"^{line}$")
             self.assertEqual(run_main("test", lambda _: None), 0)
             self.assertEqual(run_main("test", fail), 7)
             self.assertEqual(run_main("test", terminated), 143)
