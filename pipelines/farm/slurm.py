@@ -20,6 +20,7 @@ if not __package__:  # run as a script from a checkout
 
 from ..common import process
 from ..common.errors import DriverError, ExitCode, run_main
+from ..common.files import write_text
 from ..common.frame_names import parse_ranges
 from ..common.polyrecon_cli import Polyrecon
 from ..common.terminal import print_lines
@@ -132,10 +133,7 @@ def report_words(options, job, request, name, folder, array):
 def write_script(path, module, words):
     package = f"{__package__}.{module}"
     root = str(pathlib.Path(__file__).resolve().parents[__package__.count(".") + 1])
-    try:
-        path.write_text(SCRIPT.format(root=root, module=package, words=words))
-    except OSError as error:
-        raise DriverError(ExitCode.OUTPUT, f"{path}: {error.strerror}") from error
+    write_text(path, SCRIPT.format(root=root, module=package, words=words))
 
 
 def holds_another(folder, job):
@@ -143,9 +141,18 @@ def holds_another(folder, job):
 
 
 def job_folder(options, name, job):
-    """The folder of the job: --folder, else one in the folder of the results.
+    """The folder of the job. Slurm writes logs into it, and ends a job that has a backslash in the path of its log."""
+    folder = named_folder(options, name, job)
+    if "\\" in str(folder):
+        raise DriverError(
+            ExitCode.USAGE, f"{folder}: Slurm writes no log into a folder with a backslash: name another --folder"
+        )
+    return folder
 
-    If it holds another job, whose tasks may still run, a number is added to its name."""
+
+def named_folder(options, name, job):
+    """--folder, else one in the folder of the results. If that holds another job, whose tasks may still run, a number
+    is added to its name."""
     if options.folder:
         folder = pathlib.Path(options.folder).absolute()
         if holds_another(folder, job):
@@ -161,6 +168,9 @@ def make_folder(folder, job):
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise DriverError(ExitCode.OUTPUT, f"{folder}: {error.strerror}") from error
+    for entry in os.scandir(folder):  # Slurm follows links at the names of logs.
+        if entry.is_symlink():
+            raise DriverError(ExitCode.OUTPUT, f"{entry.path}: is a link: remove it, or name another --folder")
     for old in (REPORT_LOG, REPORT_FILE):
         (folder / old).unlink(missing_ok=True)
     job.save(folder)

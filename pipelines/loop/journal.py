@@ -5,15 +5,14 @@ import dataclasses
 import json
 import re
 import time
-import typing
 from typing import Any, Optional
 
+from ..common.decode import InvalidFileError, decode, read_json
 from ..common.errors import DriverError, ExitCode
 from ..common.files import write_text
 
 VERSION = 5
 HALVES = ("a", "b")
-NUMBER_LIMIT = 2**63  # Numbers from here on are refused: no sample number, count or duration is that large.
 
 
 @dataclasses.dataclass(frozen=True)
@@ -106,7 +105,7 @@ class Journal:
             )
         try:
             state = _decode_state(path)
-        except _InvalidJournalError as error:
+        except InvalidFileError as error:
             raise DriverError(
                 ExitCode.BAD_INPUT, f"{path}: not a valid journal: {error}: start again with another --passes-dir"
             ) from error
@@ -124,19 +123,10 @@ class Journal:
         write_text(self.path, json.dumps(content, indent=1, allow_nan=False))
 
 
-class _InvalidJournalError(Exception):
-    """The text says which value is wrong and how."""
-
-
 def _decode_state(path):
-    try:
-        content = json.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise _InvalidJournalError(error.strerror) from error
-    except (ValueError, RecursionError) as error:
-        raise _InvalidJournalError(error) from error
+    content = read_json(path)
     if not isinstance(content, dict) or "version" not in content:
-        raise _InvalidJournalError("it has no version")
+        raise InvalidFileError("it has no version")
     version = content.pop("version")
     if version != VERSION:
         raise DriverError(
@@ -144,83 +134,49 @@ def _decode_state(path):
             f"{path}: written by another version of polyrecon (journal {version!r}, this one reads {VERSION}): "
             "finish the frame with that version, or start again with another --passes-dir",
         )
-    state = _decode(State, content, "")
+    state = decode(State, content)
     _check_state(state)
     return state
-
-
-def _decode(kind, value, place):
-    """`value` of a JSON file as the type `kind`: a dataclass, list, dict, Optional or plain type. Numbers are >= 0."""
-    if dataclasses.is_dataclass(kind):
-        return _decode_record(kind, value, place)
-    origin, arguments = typing.get_origin(kind), typing.get_args(kind)
-    if origin is typing.Union:  # Optional
-        return None if value is None else _decode(arguments[0], value, place)
-    if origin is list and isinstance(value, list):
-        return [_decode(arguments[0], item, f"{place}[{index}]") for index, item in enumerate(value)]
-    if origin is dict and isinstance(value, dict):
-        return {key: _decode(arguments[1], item, f"{place}[{key!r}]") for key, item in value.items()}
-    if kind in (int, float):
-        accepted = (int,) if kind is int else (int, float)
-        if type(value) not in accepted or not 0 <= value < NUMBER_LIMIT:  # NaN fails the comparison.
-            raise _InvalidJournalError(f"{place} is not {'a whole' if kind is int else 'a finite'} number >= 0")
-        return kind(value)
-    if kind is Any or type(value) is kind:
-        return value
-    raise _InvalidJournalError(f"{place} is not of the type {(origin or kind).__name__}")
-
-
-def _decode_record(kind, value, place):
-    where = place or "the file"
-    if not isinstance(value, dict):
-        raise _InvalidJournalError(f"{where} is not an object")
-    kinds = typing.get_type_hints(kind)
-    for name in kinds.keys() - value.keys():
-        raise _InvalidJournalError(f"{where} has no {name}")
-    for name in value.keys() - kinds.keys():
-        raise _InvalidJournalError(f"{where} has an unknown key {name!r}")
-    prefix = f"{place}." if place else ""
-    return kind(**{name: _decode(kinds[name], value[name], prefix + name) for name in kinds})
 
 
 def _check_state(state):
     """What types alone cannot say. The loop divides by some of these numbers."""
     if state.first_pass_parts < len(HALVES) or state.first_pass_parts % len(HALVES):
-        raise _InvalidJournalError("first_pass_parts is not a positive multiple of 2")
+        raise InvalidFileError("first_pass_parts is not a positive multiple of 2")
     for index, part in enumerate(state.parts):
         _check_part(part, f"parts[{index}]")
         if part.first_sample > state.next_sample:
-            raise _InvalidJournalError(f"parts[{index}].first_sample is above next_sample")
+            raise InvalidFileError(f"parts[{index}].first_sample is above next_sample")
     drawn = [part for part in state.parts if part.samples > 0]  # A half may get no sample in a round.
     for name, parts in (("file", state.parts), ("first_sample", drawn)):
         if len({getattr(part, name) for part in parts}) < len(parts):
-            raise _InvalidJournalError(f"two parts have the same {name}")
+            raise InvalidFileError(f"two parts have the same {name}")
     if [entry.round for entry in state.rounds] != list(range(len(state.rounds))):
-        raise _InvalidJournalError("rounds are not numbered 0, 1, 2, ...")
+        raise InvalidFileError("rounds are not numbered 0, 1, 2, ...")
     if state.next_round:
         _check_plan(state.next_round, len(state.rounds))
 
 
 def _check_part(part, place):
     if part.half not in HALVES:
-        raise _InvalidJournalError(f"{place}.half is neither 'a' nor 'b'")
+        raise InvalidFileError(f"{place}.half is neither 'a' nor 'b'")
     if not re.fullmatch(rf"part_{part.round}{part.half}[0-9]+\.exr", part.file):
-        raise _InvalidJournalError(f"{place}.file does not match its round and half")
+        raise InvalidFileError(f"{place}.file does not match its round and half")
     if part.seconds <= 0:
-        raise _InvalidJournalError(f"{place}.seconds is not above 0")
+        raise InvalidFileError(f"{place}.seconds is not above 0")
     if part.masked and part.cost_weighted_samples <= 0:
-        raise _InvalidJournalError(f"{place}.cost_weighted_samples is not above 0")
+        raise InvalidFileError(f"{place}.cost_weighted_samples is not above 0")
     if part.round == 0 and (part.masked or min(part.samples, part.cost_weighted_samples) <= 0):
-        raise _InvalidJournalError(f"{place} is of the first pass and not uniform")
+        raise InvalidFileError(f"{place} is of the first pass and not uniform")
 
 
 def _check_plan(plan, rounds):
     if plan.round > rounds + 1:  # One more than the decisions: a uniform last round is rendered without one.
-        raise _InvalidJournalError("next_round.round does not follow the last round")
+        raise InvalidFileError("next_round.round does not follow the last round")
     if set(plan.first_samples) != set(HALVES):
-        raise _InvalidJournalError("next_round.first_samples does not name the halves 'a' and 'b'")
+        raise InvalidFileError("next_round.first_samples does not name the halves 'a' and 'b'")
     if plan.parts < 1 or plan.cost_weighted_samples <= 0:
-        raise _InvalidJournalError("next_round has no parts or no samples")
+        raise InvalidFileError("next_round has no parts or no samples")
 
 
 def _compare_identities(path, found, wanted):

@@ -150,6 +150,34 @@ class Slurm(unittest.TestCase):
         code, output = self.finish(self.submit("--partition", "nowhere"))
         self.assertEqual((code, len(output.splitlines())), (2, 1), output)
 
+    def test_slurm_backslash(self):
+        """Slurm ends a job whose log has a backslash in its path; renders and results may have one."""
+        folder = self.folder / "back\\slash"
+        (folder / "in").mkdir(parents=True)
+        (folder / "out").mkdir()
+        make_shot(folder / "in", [1, 2])
+        words = ["-i", folder / "in/shot.####.exr", "-o", folder / "out/shot.####.exr", "--frames", "1-2"]
+        code, output = self.finish(self.submit(words=words, folder=folder / "job"))
+        self.assertEqual((code, len(output.splitlines())), (2, 1), output)
+        self.assertRegex(output, "backslash: name another --folder\n$")
+        self.assertFalse((folder / "job").exists())
+        code, output = self.finish(self.submit("--wait", words=words))
+        self.assertEqual(code, 0, output)
+        self.assertEqual(sorted(path.name for path in (folder / "out").iterdir()), ["shot.0001.exr", "shot.0002.exr"])
+        self.assertTrue((self.out / "job/log.0.txt").is_file())
+
+    def test_slurm_planted_link(self):
+        victim = self.out / "victim"
+        for name in ("task", "report", "log.0.txt", "report.txt", "records"):
+            victim.write_text("precious")
+            job = self.out / f"job {name}"
+            job.mkdir()
+            (job / name).symlink_to(victim)
+            code, output = self.finish(self.submit(folder=job))
+            self.assertEqual((code, victim.read_text()), (5, "precious"), output)
+            self.assertIn(f"{name}: is a link", output)
+            self.assertEqual([path.name for path in job.iterdir()], [name])
+
     def test_case_35_a_node_dies_in_the_middle(self):
         running = self.submit("--chunk", "3", "--wait")
         self.addCleanup(self.cluster.boot, "node2")

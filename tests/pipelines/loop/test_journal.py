@@ -144,7 +144,7 @@ class Journals(unittest.TestCase):
             self.open()
         self.folder.journal.unlink()
         self.folder.journal.mkdir()
-        with self.assertRaisesRegex(DriverError, "not a valid journal: Is a directory"):
+        with self.assertRaisesRegex(DriverError, "not a valid journal: is not a regular file"):
             self.open()
 
     def test_every_value_is_checked(self):
