@@ -23,7 +23,8 @@ struct MergeOptions {
 struct MergeResult {
   int files = 0;                     ///< Renders merged.
   double samples = 0;                ///< Mean samples per pixel of the result; 0 if unknown.
-  std::vector<std::string> merged;   ///< Written with mean, variance and halves.
+  std::vector<std::string> merged;   ///< Written with mean, variance and halves; of joined regions as they are.
+  bool joined = false;               ///< Regions of one render each were put side by side, without new variance.
   std::vector<std::string> kept;     ///< Copied from the first file.
   std::vector<std::string> dropped;  ///< Left out, as they describe one input only: its companions and sample count.
   std::vector<std::string> notes;    ///< Messages of one line: what was assumed or unusual.
@@ -42,6 +43,11 @@ struct MergeResult {
 /// n_k comes from a sample-count pass, else from options or metadata, else all renders have the same weight. Samples
 /// that are not finite are left out and counted in a note. The sum of n_k is written as `<view layer>.Sample Count.X`.
 /// Layers without noise, and layers that only the first file has, are copied from the first file bit for bit.
+///
+/// Data windows may differ. Renders whose windows have at least half of the smaller one in common show the same region
+/// of the frame; a layer is 0 where its window does not reach in its region. Other renders are regions of the frame:
+/// each has samples in its own region only, and the result covers all of them, 0 in between. If some region has one
+/// render only, no variance or halves are made; those of the regions' own files are kept.
 ///
 /// The result has one part of scanlines, merged layers as float. It is read back before it takes its name. Memory is
 /// bounded by one band of lines. Throws Error{Usage} for fewer than two files or a file given twice, Error{Missing} for

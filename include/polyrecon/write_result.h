@@ -12,9 +12,11 @@ namespace polyrecon {
 
 /// New samples of a layer.
 struct Replacement {
-  std::string layer;  ///< Layer::name.
-  Image image;  ///< Size of Frame::data_window; a channel for each of the layer's, or 3 for a layer of 1: the mean.
-  bool alpha = false;  ///< Replace the layer's alpha instead of its colour (FrameSource::alpha_layer); 1 channel.
+  std::string layer;   ///< Layer::name.
+  Image image;         ///< A channel for each of the layer's, or 3 for a layer of 1: the mean.
+  bool alpha = false;  ///< Replace the layer's alpha instead of its colour; 1 channel.
+  Rect window = {};    ///< Place of the image (Frame::data_window); empty: the data window of the layer's part. Pixels
+                       ///< of the part that the image does not cover keep their samples.
 };
 
 /// How a file was made. Written as the attributes polyrecon/version, polyrecon/settings, polyrecon/input and

@@ -37,7 +37,8 @@ void run(const MergeCommandOptions& o) {
   if (o.quiet) return;
   std::string text = fmt::format("{}: {} renders", o.output, result.files);
   if (result.samples > 0) text += fmt::format(", {:g} samples per pixel", result.samples);
-  text += fmt::format("\n  mean, variance and halves: {}\n", fmt::join(result.merged, ", "));
+  text += fmt::format("\n  {:<26} {}\n",
+                      result.joined ? "joined:" : "mean, variance and halves:", fmt::join(result.merged, ", "));
   if (!result.kept.empty()) text += fmt::format("  from the first file:       {}\n", fmt::join(result.kept, ", "));
   if (!result.dropped.empty())
     text += fmt::format("  not merged:                {}\n", fmt::join(result.dropped, ", "));
@@ -49,8 +50,10 @@ void run(const MergeCommandOptions& o) {
 
 void setup_merge(CLI::App& app, Command& chosen) {
   const auto o = std::make_shared<MergeCommandOptions>();
-  CLI::App* sub = app.add_subcommand("merge", "Merges renders of one frame into mean, variance and half buffers");
-  sub->add_option("inputs", o->inputs, "Subsets of one sample sequence, or renders with different seeds")
+  CLI::App* sub = app.add_subcommand(
+      "merge", "Merges renders of one frame into mean, variance and half buffers, and joins regions of it");
+  sub->add_option("inputs", o->inputs,
+                  "Subsets of one sample sequence, renders with different seeds, or regions of the frame")
       ->required()
       ->type_name("FILE...");
   sub->add_option("-o,--output", o->output, "EXR to write")->required()->type_name("FILE");

@@ -22,6 +22,15 @@ const PartInfo& part_of(const FrameSource& source, const Layer& layer) {
 
 bool covers(const Rect& outer, const Rect& inner) { return intersect(outer, inner) == inner; }
 
+/// Why a part cannot be laid over another one; empty where it can. Parts of one picture may be cut to boxes of their
+/// own, as renderers do that leave black margins out; a part of another picture size is no pass of the same frame.
+std::string misfit(const PartInfo& part, const PartInfo& beauty) {
+  if (!(part.display_window == beauty.display_window) && !covers(part.data_window, beauty.data_window))
+    return "its display window is not the beauty's, nor does its data window contain the beauty's";
+  if (intersect(part.data_window, beauty.data_window).empty()) return "its data window lies outside the beauty's";
+  return {};
+}
+
 /// The layer of a file that is used where the file itself is named for a role: the one with that role, else the beauty,
 /// else the first.
 const Layer& layer_for(const std::vector<Layer>& layers, Role wanted) {
@@ -201,18 +210,16 @@ PassChoice with_companions(const FrameSource& source, Role role, int mean) {
                                              source.path, fmt::join(names, ", ")));
 }
 
-/// Drops the layers of a pass whose data window does not contain the beauty's. Alpha is written back, so it needs the
-/// same window.
+/// Drops the layers of a pass that cannot be laid over the beauty.
 void drop_misfits(LayerChoice& choice, PassChoice& pass) {
   const FrameSource& source = choice.source;
   const Layer& beauty = source.layers[static_cast<std::size_t>(choice.passes.front().mean)];
-  const Rect window = part_of(source, beauty).data_window;
   for (int* index : {&pass.variance, &pass.half_a, &pass.half_b, &pass.mean}) {
     if (*index < 0) continue;
     const Layer& layer = source.layers[static_cast<std::size_t>(*index)];
-    const Rect found = part_of(source, layer).data_window;
-    if (pass.role == Role::Alpha ? found == window : covers(found, window)) continue;
-    choice.notes.push_back(fmt::format("{} is not used: its data window does not contain the beauty's", layer.name));
+    const std::string why = misfit(part_of(source, layer), part_of(source, beauty));
+    if (why.empty()) continue;
+    choice.notes.push_back(fmt::format("{} is not used: {}", layer.name, why));
     *index = -1;
   }
   if (pass.half_a < 0 || pass.half_b < 0) pass.half_a = pass.half_b = -1;
@@ -222,7 +229,6 @@ void drop_misfits(LayerChoice& choice, PassChoice& pass) {
 void choose_aovs(LayerChoice& choice, const ReadOptions& options) {
   FrameSource& source = choice.source;
   const auto& beauty = source.layers[static_cast<std::size_t>(choice.passes.front().mean)];
-  const Rect window = part_of(source, beauty).data_window;
   for (const std::string& name : options.aovs) {
     const int index = find_layer(source, name, source.view_layer);
     if (index < 0) no_such_layer(source, name);
@@ -230,9 +236,9 @@ void choose_aovs(LayerChoice& choice, const ReadOptions& options) {
     const PartInfo& part = part_of(source, layer);
     if (!part.readable() || !info_of(Role::Color).layer_channels.allow(layer.channels.size()))
       throw Error(ExitCode::BadInput, fmt::format("{}: layer {} is no colour layer", source.path, layer.name));
-    if (!(part.data_window == window))
+    if (const std::string why = misfit(part, part_of(source, beauty)); !why.empty())
       throw Error(ExitCode::BadInput,
-                  fmt::format("{}: the data window of layer {} is not the beauty's", source.path, layer.name));
+                  fmt::format("{}: layer {} cannot be denoised with the beauty: {}", source.path, layer.name, why));
     choice.passes.push_back(with_companions(source, Role::Color, index));
   }
 }

@@ -21,6 +21,7 @@
 #include <system_error>
 
 #include "core/parallel.h"
+#include "core/rect.h"
 #include "io/channel_names.h"
 #include "io/channel_reader.h"
 #include "io/exr/bands.h"
@@ -43,6 +44,8 @@ struct Render {
   FileInfo file;
   std::vector<Layer> layers;
   std::vector<bool> absent;  ///< For each layer whether only the first render has it; empty for the first render.
+  Rect region;               ///< The pixels it has samples for, all that its group of renders covers; see find_regions.
+  std::size_t rank = 0;      ///< Place among the renders of its region.
 };
 
 const PartInfo& part_of(const Render& render, const Layer& layer) {
@@ -66,10 +69,8 @@ void check_fits(Render& render, const Render& first) {
     }
     if (same->channels.size() != layer.channels.size() || same->alpha.empty() != layer.alpha.empty())
       misfit(render, first, fmt::format("other channels in layer {}", layer.name));
-    if (!(part_of(render, *same).data_window == part_of(first, layer).data_window))
-      misfit(render, first, fmt::format("another data window in layer {}", layer.name));
     if (!(part_of(render, *same).display_window == part_of(first, layer).display_window))
-      misfit(render, first, "another display window");
+      misfit(render, first, "another display window, so that its place in the picture is unknown");
     ordered.push_back(*same);
   }
   for (const Layer& layer : render.layers)
@@ -136,6 +137,37 @@ void check_absent(const std::vector<Render>& renders) {
   }
 }
 
+/// Whether two renders show the same part of the picture. Boxes that a renderer cuts to what is not black differ by a
+/// few pixels from render to render; regions of a frame have at most margins in common.
+bool same_region(const Rect& a, const Rect& b) { return 2 * intersect(a, b).area() >= std::min(a.area(), b.area()); }
+
+/// Finds which renders show the same region. A render has samples in all of its region: outside their data windows its
+/// layers are 0 there. Beyond it has none.
+void find_regions(std::vector<Render>& renders) {
+  std::vector<Rect> windows;
+  for (const Render& render : renders) {
+    Rect window;
+    for (const PartInfo& part : render.file.parts)
+      if (part.readable()) window = bounding(window, part.data_window);
+    windows.push_back(window);
+  }
+  std::vector<std::size_t> region(renders.size());  // index of the first render that shows it
+  for (std::size_t k = 0; k < renders.size(); ++k) {
+    region[k] = k;
+    for (std::size_t i = 0; i < k; ++i)
+      if (region[i] != region[k] && same_region(windows[i], windows[k])) {
+        const std::size_t joined = std::min(region[i], region[k]), other = std::max(region[i], region[k]);
+        std::replace(region.begin(), region.begin() + static_cast<std::ptrdiff_t>(k) + 1, other, joined);
+      }
+  }
+  for (std::size_t k = 0; k < renders.size(); ++k)
+    for (std::size_t i = 0; i < renders.size(); ++i) {
+      if (region[i] != region[k]) continue;
+      renders[k].region = bounding(renders[k].region, windows[i]);
+      renders[k].rank += i < k;
+    }
+}
+
 std::vector<Render> open_renders(const std::vector<std::string>& paths, const ReadLimits& limits) {
   if (paths.size() < 2) throw Error(ExitCode::Usage, "merge needs at least two renders of the same frame");
   std::vector<Render> renders;
@@ -153,6 +185,7 @@ std::vector<Render> open_renders(const std::vector<std::string>& paths, const Re
     renders.push_back(std::move(render));
   }
   check_absent(renders);
+  find_regions(renders);
   return renders;
 }
 
@@ -186,6 +219,37 @@ struct Slot {
   std::size_t layer, channel;
 };
 
+/// Copies what two rectangles of rows have in common. Elements are of `size` bytes.
+void copy_common(const char* from, const Rect& source, char* to, const Rect& target, std::size_t size) {
+  const Rect common = intersect(source, target);
+  if (common.empty()) return;
+  const auto offset = [&](const Rect& r, int y) {
+    return (static_cast<std::size_t>(y - r.y0) * static_cast<std::size_t>(r.width()) +
+            static_cast<std::size_t>(common.x0 - r.x0)) *
+           size;
+  };
+  for (int y = common.y0; y < common.y1; ++y)
+    std::memcpy(to + offset(target, y), from + offset(source, y), static_cast<std::size_t>(common.width()) * size);
+}
+
+/// Reads channels of a part over an area: a plane for each, 0 outside the part's data window.
+std::vector<float> read_area(const FileInfo& file, int part, const std::vector<std::string>& channels,
+                             const Rect& area) {
+  const Rect& window = file.parts[static_cast<std::size_t>(part)].data_window;
+  ChannelReader reader(file, part, channels);
+  if (intersect(window, area) == area && window.width() == area.width()) return reader.read(area.y0, area.y1);
+  std::vector<float> samples(area.area() * channels.size(), 0.0F);
+  const Rect rows{window.x0, std::max(window.y0, area.y0), window.x1, std::min(window.y1, area.y1)};
+  if (rows.empty()) return samples;
+  const std::vector<float>& found = reader.read(rows.y0, rows.y1);
+  for (std::size_t c = 0; c < channels.size(); ++c)
+    copy_common(reinterpret_cast<const char*>(found.data() + c * rows.area()), rows,
+                reinterpret_cast<char*>(samples.data() + c * area.area()), area, sizeof(float));
+  return samples;
+}
+
+Rect area_of(const NativeBand& band) { return {band.x0, band.y0, band.x0 + band.width, band.y1}; }
+
 /// The samples of a band of one render.
 struct DecodedRender {
   std::vector<std::vector<float>> samples;  ///< By part.
@@ -198,7 +262,7 @@ class Merger {
   /// first_b: index of the first render of half B; those before it are half A. 0: renders with an odd index are half B.
   Merger(std::vector<Render> renders, const MergeOptions& options, std::size_t first_b)
       : renders_(std::move(renders)), samples_(options.samples), compress_(options.compress), first_b_(first_b) {
-    choose_window();
+    choose_window(options.limits.max_pixels);
     for (std::size_t l = 0; l < first().layers.size(); ++l) sort_layer(l);
     find_weights();
     report_.files = static_cast<int>(renders_.size());
@@ -224,7 +288,7 @@ class Merger {
   }
 
   void make(NativeBand& band) {
-    const auto weights = read_weights(band.y0, band.y1);
+    const auto weights = read_weights(area_of(band));
     merge_layers(weights, band);
     for (const std::size_t l : kept_) copy_layer(l, band);
     for (const std::string& view_layer : counted_) write_counts(view_layer, weights, band);
@@ -252,7 +316,7 @@ class Merger {
     if (left_out_ > 0)
       report_.notes.push_back(
           fmt::format("{} samples that are not finite were left out of the means", left_out_.load()));
-    if (!merged_.empty() && !any_spread_)
+    if (!merged_.empty() && !joins_ && !any_spread_)
       report_.notes.emplace_back("the renders are equal in every pixel: were they made with the same seed or offset?");
     const auto pixels = static_cast<double>(window_.area());
     report_.samples = counted_.empty() ? 0 : count_sum_ / pixels / static_cast<double>(counted_.size());
@@ -264,26 +328,54 @@ class Merger {
 
   const Render& first() const { return renders_.front(); }
 
-  void choose_window() {
-    for (const Layer& layer : first().layers)
-      if (layer.role == Role::Beauty && layer.companion == Companion::Mean && part_of(first(), layer).readable()) {
-        window_ = part_of(first(), layer).data_window;
-        return;
-      }
-    throw Error(ExitCode::Missing, fmt::format("{}: no beauty to merge", first().file.path));
+  void choose_window(std::size_t max_pixels) {
+    if (std::none_of(first().layers.begin(), first().layers.end(), [&](const Layer& layer) {
+          return layer.role == Role::Beauty && layer.companion == Companion::Mean && part_of(first(), layer).readable();
+        }))
+      throw Error(ExitCode::Missing, fmt::format("{}: no beauty to merge", first().file.path));
+    std::map<std::size_t, std::size_t> regions_of_rank;
+    for (const Render& render : renders_) {
+      window_ = bounding(window_, render.region);
+      ++regions_of_rank[render.rank];
+    }
+    const double width = static_cast<double>(window_.x1) - window_.x0,
+                 height = static_cast<double>(window_.y1) - window_.y0;
+    if (width * height > static_cast<double>(max_pixels))
+      throw Error(ExitCode::BadInput,
+                  fmt::format("{}: the renders together cover {:.0f} x {:.0f} pixels, more than the "
+                              "limit of {}; are they of one frame?",
+                              first().file.path, width, height, max_pixels));
+    has_regions_ = regions_of_rank[0] > 1;
+    joins_ = report_.joined = regions_of_rank[1] < regions_of_rank[0];
+    if (!has_regions_) return;
+    report_.notes.push_back(fmt::format("{} regions are joined to one picture", regions_of_rank[0]));
+    if (joins_ && regions_of_rank[1] > 0)
+      report_.notes.push_back(fmt::format("no variance or halves are written, as {} regions have one render only",
+                                          regions_of_rank[0] - regions_of_rank[1]));
+  }
+
+  /// Whether some render has samples of the pixel.
+  bool is_covered(int x, int y) const {
+    return std::any_of(renders_.begin(), renders_.end(), [&](const Render& r) { return r.region.contains(x, y); });
+  }
+
+  Fate fate(std::size_t l) const {
+    const Layer& layer = first().layers[l];
+    if (renders_[1].absent[l]) return Fate::Kept;
+    // Where each region has one render, its variance and halves describe the picture.
+    const bool joined = joins_ && layer.companion != Companion::Mean && info_of(layer.role).values != Values::Count;
+    return joined ? Fate::Merged : fate_of(first(), layer);
   }
 
   void sort_layer(std::size_t l) {
     const Layer& layer = first().layers[l];
     const PartInfo& part = part_of(first(), layer);
-    if (!part.readable() || !(part.data_window == window_)) {
+    if (!part.readable()) {
       report_.dropped.push_back(layer.name);
-      report_.notes.push_back(
-          fmt::format("{} is left out: {}", layer.name,
-                      part.readable() ? "its data window is not the beauty's" : "its part is no plain image"));
+      report_.notes.push_back(fmt::format("{} is left out: its part is no plain image", layer.name));
       return;
     }
-    switch (renders_[1].absent[l] ? Fate::Kept : fate_of(first(), layer)) {
+    switch (fate(l)) {
       case Fate::Merged:
         merged_.push_back(l);
         for (std::size_t c = 0; c < all_channels(layer).size(); ++c) slots_.push_back({l, c});
@@ -309,8 +401,7 @@ class Merger {
     for (std::size_t l = 0; l < first().layers.size(); ++l) {
       const Layer& layer = first().layers[l];
       if (renders_[1].absent[l]) continue;
-      if (layer.role != Role::SampleCount || layer.view_layer != view_layer || !part_of(first(), layer).readable() ||
-          !(part_of(first(), layer).data_window == window_))
+      if (layer.role != Role::SampleCount || layer.view_layer != view_layer || !part_of(first(), layer).readable())
         continue;
       if (best < 0 || layer.rank < first().layers[static_cast<std::size_t>(best)].rank) best = static_cast<int>(l);
     }
@@ -331,12 +422,12 @@ class Merger {
     for (const std::string& view_layer : view_layers) {
       const int layer = count_layer(view_layer);
       const bool fraction = layer >= 0 && is_sample_fraction(first().layers[static_cast<std::size_t>(layer)].pass);
-      double total = 0;
+      double total = 0;  // of the first render's region
       bool known = true;
       for (const Render& render : renders_) {
         const auto samples = samples_of(render, view_layer);
         known = known && samples.has_value();
-        total += samples.value_or(0);
+        if (render.region == first().region) total += samples.value_or(0);
       }
       if (known) metadata_samples_[view_layer] = total;
       if (known && samples_ <= 0 && metadata_count_sequence(view_layer))
@@ -345,33 +436,44 @@ class Merger {
                         view_layer, total));
       if (known || (layer >= 0 && !fraction))
         counted_.push_back(view_layer);
-      else
+      else if (!joins_)
         report_.notes.push_back(fmt::format("{}: sample counts are unknown, all renders count alike",
                                             view_layer.empty() ? "the image" : view_layer));
     }
   }
 
-  /// The sample counts n_k of every pixel of a band.
-  Weights read_weights(int y0, int y1) {
-    const std::size_t pixels = static_cast<std::size_t>(window_.width()) * static_cast<std::size_t>(y1 - y0);
+  /// The sample counts n_k of every pixel of a band; where they are unknown, the weights of regions.
+  Weights read_weights(const Rect& area) {
     Weights weights(renders_.size());
     in_parallel(renders_.size(), [&](std::size_t k) {
-      const Render& render = renders_[k];
-      for (const std::string& view_layer : counted_) {
-        const int l = count_layer(view_layer);
-        const double metadata = samples_of(render, view_layer).value_or(0);
-        std::vector<double>& n = weights[k][view_layer];
-        n.assign(pixels, metadata);
-        if (l < 0) continue;
-        const Layer& layer = render.layers[static_cast<std::size_t>(l)];
-        const double scale = is_sample_fraction(layer.pass) ? metadata : 1;
-        ChannelReader reader(render.file, layer.part, layer.channels);
-        const std::vector<float>& counts = reader.read(y0, y1);
-        for (std::size_t i = 0; i < pixels; ++i)
-          n[i] = std::isfinite(counts[i]) && counts[i] > 0 ? counts[i] * scale : 0;
-      }
+      for (const std::string& view_layer : counted_)
+        weights[k][view_layer] = read_counts(renders_[k], view_layer, area);
+      if (!has_regions_) return;
+      for (const std::size_t l : merged_)
+        weights[k].try_emplace(first().layers[l].view_layer, std::vector<double>(area.area(), 1.0));
+      for (auto& [view_layer, n] : weights[k]) leave_region(renders_[k], area, n);
     });
     return weights;
+  }
+
+  std::vector<double> read_counts(const Render& render, const std::string& view_layer, const Rect& area) const {
+    const int l = count_layer(view_layer);
+    const double metadata = samples_of(render, view_layer).value_or(0);
+    std::vector<double> n(area.area(), metadata);
+    if (l < 0) return n;
+    const Layer& layer = render.layers[static_cast<std::size_t>(l)];
+    const double scale = is_sample_fraction(layer.pass) ? metadata : 1;
+    const std::vector<float> counts = read_area(render.file, layer.part, layer.channels, area);
+    for (std::size_t i = 0; i < n.size(); ++i) n[i] = std::isfinite(counts[i]) && counts[i] > 0 ? counts[i] * scale : 0;
+    return n;
+  }
+
+  /// A render has no samples beyond its region.
+  static void leave_region(const Render& render, const Rect& area, std::vector<double>& n) {
+    std::size_t i = 0;
+    for (int y = area.y0; y < area.y1; ++y)
+      for (int x = area.x0; x < area.x1; ++x, ++i)
+        if (!render.region.contains(x, y)) n[i] = 0;
   }
 
   /// Decodes the merged channels of one render, each part once.
@@ -390,8 +492,7 @@ class Merger {
         slots.push_back(s);
       }
       if (channels.empty()) continue;
-      ChannelReader reader(render.file, part, channels);
-      decoded.samples.push_back(reader.read(band.y0, band.y1));
+      decoded.samples.push_back(read_area(render.file, part, channels, area_of(band)));
       for (std::size_t c = 0; c < slots.size(); ++c)
         decoded.planes[slots[c]] = decoded.samples.back().data() + c * pixels;
     }
@@ -429,7 +530,7 @@ class Merger {
       if (slots_[s].channel < layer.channels.size())
         write_channel(layer, layer.channels[slots_[s].channel], sums[s], band);
       else
-        write_mean(*band.find(output_name(first(), layer, layer.alpha)), sums[s]);
+        write_mean(*band.find(output_name(first(), layer, layer.alpha)), sums[s], band);
     });
   }
 
@@ -448,35 +549,41 @@ class Merger {
     std::memcpy(channel.samples.data() + i * sizeof narrow, &narrow, sizeof narrow);
   }
 
-  bool is_half_b(std::size_t k) const { return first_b_ > 0 ? k >= first_b_ : k % 2 == 1; }
+  bool is_half_b(std::size_t k) const { return first_b_ > 0 ? k >= first_b_ : renders_[k].rank % 2 == 1; }
 
   struct Moments {
     double mean;
     double variance;  ///< Variance of that mean.
   };
 
-  /// The weighted mean over all renders, or with options.half_b the plain mean of the halves.
-  Moments moments(const ChannelSums& sums, std::size_t i) const {
+  /// The weighted mean over all renders, or with options.half_b the plain mean of the halves. Between regions, where
+  /// nothing was rendered, it is 0.
+  Moments moments(const ChannelSums& sums, std::size_t i, const NativeBand& band) const {
     const Accumulator& all = sums.all[i];
     const MeanAccumulator &a = sums.half_a[i], &b = sums.half_b[i];
+    const auto width = static_cast<std::size_t>(band.width);
+    if (all.renders == 0 && has_regions_ &&
+        !is_covered(band.x0 + static_cast<int>(i % width), band.y0 + static_cast<int>(i / width)))
+      return {0, 0};
     if (all.renders == 0) return {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
     if (first_b_ == 0 || a.renders == 0 || b.renders == 0) return {all.mean, all.variance_of_mean()};
     const double of_a_sample = all.variance_of_mean() * all.weight;
     return {(a.mean + b.mean) / 2, of_a_sample * (1 / a.weight + 1 / b.weight) / 4};
   }
 
-  void write_mean(NativeChannel& channel, const ChannelSums& sums) const {
-    for (std::size_t i = 0; i < sums.all.size(); ++i) put(channel, i, moments(sums, i).mean);
+  void write_mean(NativeChannel& channel, const ChannelSums& sums, const NativeBand& band) const {
+    for (std::size_t i = 0; i < sums.all.size(); ++i) put(channel, i, moments(sums, i, band).mean);
   }
 
   void write_channel(const Layer& layer, const std::string& name, const ChannelSums& sums, NativeBand& band) {
     NativeChannel& mean = *band.find(output_name(first(), layer, name));
+    if (joins_) return write_mean(mean, sums, band);
     NativeChannel& variance = *band.find(output_name(first(), layer, name, variance_suffix));
     NativeChannel& half_a = *band.find(output_name(first(), layer, name, half_a_suffix));
     NativeChannel& half_b = *band.find(output_name(first(), layer, name, half_b_suffix));
     bool spread = false;
     for (std::size_t i = 0; i < sums.all.size(); ++i) {
-      const Moments whole = moments(sums, i);
+      const Moments whole = moments(sums, i, band);
       spread = spread || sums.all[i].spreads();
       put(mean, i, whole.mean);
       put(variance, i, whole.variance);
@@ -486,11 +593,25 @@ class Merger {
     if (spread) any_spread_ = true;
   }
 
-  /// Copies the channels of a layer with their bits, whatever their type.
+  /// Copies the channels of a layer with their bits, whatever their type, from the first render of each region.
   void copy_layer(std::size_t l, NativeBand& band) {
     const Layer& layer = first().layers[l];
-    const std::vector<std::string> channels = all_channels(layer);
-    Imf::MultiPartInputFile container(first().file.path.c_str(), 0, false);
+    for (const std::string& name : all_channels(layer)) {
+      NativeChannel& to = *band.find(output_name(first(), layer, name));
+      std::fill(to.samples.begin(), to.samples.end(), 0);
+    }
+    for (const Render& render : renders_)
+      if (render.rank == 0 && (render.absent.empty() || !render.absent[l])) copy_layer(render, l, band);
+  }
+
+  void copy_layer(const Render& render, std::size_t l, NativeBand& band) {
+    const Layer &layer = render.layers[l], &output = first().layers[l];
+    const Rect area = area_of(band);
+    const std::vector<std::string> channels = all_channels(layer), names = all_channels(output);
+    const Rect& window = part_of(render, layer).data_window;
+    const Rect rows{window.x0, std::max(window.y0, band.y0), window.x1, std::min(window.y1, band.y1)};
+    if (rows.empty()) return;
+    Imf::MultiPartInputFile container(render.file.path.c_str(), 0, false);
     Imf::InputPart input(container, layer.part);
     NativeBand old(input.header());
     old.channels.erase(std::remove_if(old.channels.begin(), old.channels.end(),
@@ -498,10 +619,14 @@ class Merger {
                                         return std::find(channels.begin(), channels.end(), c.name) == channels.end();
                                       }),
                        old.channels.end());
-    old.take_lines(band.y0, band.y1);
+    old.take_lines(rows.y0, rows.y1);
     read_band(input, old);
-    for (NativeChannel& channel : old.channels)
-      band.find(output_name(first(), layer, channel.name))->samples = std::move(channel.samples);
+    for (std::size_t c = 0; c < channels.size(); ++c) {
+      const NativeChannel& from = *old.find(channels[c]);
+      NativeChannel& to = *band.find(output_name(first(), output, names[c]));
+      if (from.type != to.type) misfit(render, first(), fmt::format("another type in layer {}", output.name));
+      copy_common(from.samples.data(), rows, to.samples.data(), area, size_of(to.type));
+    }
   }
 
   void write_counts(const std::string& view_layer, const Weights& weights, NativeBand& band) {
@@ -526,7 +651,8 @@ class Merger {
       const Layer& layer = first().layers[l];
       for (const std::string& name : layer.channels)
         for (const char* companion : companions)
-          list.insert(output_name(first(), layer, name, companion), Imf::Channel(Imf::FLOAT));
+          if (!joins_ || *companion == 0)
+            list.insert(output_name(first(), layer, name, companion), Imf::Channel(Imf::FLOAT));
       if (!layer.alpha.empty()) list.insert(output_name(first(), layer, layer.alpha), Imf::Channel(Imf::FLOAT));
     }
     for (const std::size_t l : kept_) {
@@ -555,8 +681,10 @@ class Merger {
   std::vector<Render> renders_;
   double samples_;  ///< Samples of each render; 0: as the files say.
   bool compress_;
-  std::size_t first_b_;  ///< As in the constructor.
-  Rect window_;
+  std::size_t first_b_;       ///< As in the constructor.
+  Rect window_;               ///< Of the result: all regions.
+  bool has_regions_ = false;  ///< The renders show more than one region of the frame.
+  bool joins_ = false;        ///< Some region has one render only: the regions are put side by side, nothing else.
   std::vector<std::size_t> merged_, kept_;  ///< Indices of layers.
   std::vector<Slot> slots_;                 ///< The channels of all merged layers.
   std::vector<std::string> counted_;        ///< View layers whose sample counts are known.

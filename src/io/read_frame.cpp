@@ -9,6 +9,7 @@
 #include <memory>
 #include <utility>
 
+#include "core/rect.h"
 #include "io/channel_names.h"
 #include "io/choose_layers.h"
 #include "io/exr/file.h"
@@ -19,15 +20,35 @@
 namespace polyrecon {
 namespace {
 
-/// Collects the images that are wanted, then decodes every part once.
+/// Copies what a band of a part has inside the frame's window to planes that cover this window.
+void place_band(const Band& band, const Rect& part, const Rect& frame, const std::vector<Real*>& planes) {
+  if (part == frame) return copy_band(band, planes);
+  const auto width = static_cast<std::size_t>(part.width());
+  const int y0 = part.y0 + static_cast<int>(band.first_pixel / width);
+  const Rect common = intersect({part.x0, y0, part.x1, y0 + static_cast<int>(band.pixels / width)}, frame);
+  if (common.empty()) return;
+  const auto index = [](const Rect& window, int y, int x) {
+    return static_cast<std::ptrdiff_t>(y - window.y0) * window.width() + (x - window.x0);
+  };
+  for (std::size_t c = 0; c < planes.size(); ++c)
+    for (int y = common.y0; y < common.y1; ++y)
+      std::copy_n(band.samples.begin() + static_cast<std::ptrdiff_t>(band.pixels * c) +
+                      index({part.x0, y0, part.x1, part.y1}, y, common.x0),
+                  common.width(), planes[c] + index(frame, y, common.x0));
+}
+
+/// Collects the images that are wanted, then decodes every part once. All images cover the frame's window; where a
+/// part's data window does not, its pixels are 0, as OpenEXR defines it.
 class PartReader {
  public:
   PartReader(const FrameSource& source, const ReadLimits& limits) : source_(source), limits_(limits) {}
 
+  /// Sets the frame's window, before any image is wanted.
+  void cover(const Rect& window) { window_ = window; }
+
   /// Wants channels of a layer's part. The pointer stays valid; read() fills the image.
   Image* want(const Layer& layer, const std::vector<std::string>& channels) {
-    const Rect window = window_of(layer);
-    samples_ += window.area() * channels.size();
+    samples_ += window_.area() * channels.size();
     if (samples_ > limits_.max_bytes / sizeof(Real))
       throw Error(ExitCode::OutOfMemory, fmt::format("{}: the passes in use need more than the limit of {} MB",
                                                      source_.path, limits_.max_bytes >> 20));
@@ -41,12 +62,12 @@ class PartReader {
   void read(const BandObserver& observer) {
     for (auto& [place, wanted] : parts_) {
       const FileInfo& file = source_.files[static_cast<std::size_t>(place.first)];
-      const Rect window = file.parts[static_cast<std::size_t>(place.second)].data_window;
+      const Rect part = file.parts[static_cast<std::size_t>(place.second)].data_window;
       std::vector<std::string> channels;
       std::vector<Real*> planes;
       std::vector<std::pair<Real*, Real*>> repeated;
       for (Wanted& w : wanted) {
-        *w.image = Image(window.width(), window.height(), static_cast<int>(w.channels.size()));
+        *w.image = Image(window_.width(), window_.height(), static_cast<int>(w.channels.size()));
         for (std::size_t c = 0; c < w.channels.size(); ++c) {
           Real* plane = w.image->plane(static_cast<int>(c));
           const auto known = std::find(channels.begin(), channels.end(), w.channels[c]);
@@ -60,10 +81,10 @@ class PartReader {
       }
       if (observer) add_other_channels(file, place.second, channels);
       read_bands(file, place.second, channels, [&, place = place](const Band& band) {
-        copy_band(band, planes);
+        place_band(band, part, window_, planes);
         if (observer) observer(source_, place.first, place.second, channels, band);
       });
-      for (const auto& [from, to] : repeated) std::copy_n(from, window.area(), to);
+      for (const auto& [from, to] : repeated) std::copy_n(from, window_.area(), to);
     }
   }
 
@@ -84,14 +105,10 @@ class PartReader {
   };
   const FrameSource& source_;
   const ReadLimits& limits_;
+  Rect window_;
   std::size_t samples_ = 0;
   std::map<std::pair<int, int>, std::vector<Wanted>> parts_;
 };
-
-Image cropped(Image image, const Rect& from, const Rect& to) {
-  if (from == to) return image;
-  return crop(image, {to.x0 - from.x0, to.y0 - from.y0, to.x1 - from.x0, to.y1 - from.y0});
-}
 
 Image repeated(const Image& gray, int channels) {
   Image out(gray.width(), gray.height(), channels);
@@ -183,7 +200,7 @@ class FrameBuilder {
   }
 
   ReadResult build(const BandObserver& observer) {
-    window_ = reader_.window_of(layer(passes_.front().mean));
+    choose_window();
     want_images();
     if (options_.accept) options_.accept(result_.source.path, shape());
     reader_.read(observer);
@@ -197,6 +214,14 @@ class FrameBuilder {
 
  private:
   const Layer& layer(int index) const { return result_.source.layers[static_cast<std::size_t>(index)]; }
+
+  /// The frame covers the layers that are reconstructed, whatever boxes their parts are cut to.
+  void choose_window() {
+    for (const PassChoice& pass : passes_)
+      if (pass.role == Role::Beauty || pass.role == Role::Color)
+        window_ = bounding(window_, reader_.window_of(layer(pass.mean)));
+    reader_.cover(window_);
+  }
 
   void want_images() {
     const auto image = [&](int index) {
@@ -223,15 +248,15 @@ class FrameBuilder {
   }
 
   /// The image on the frame's window; empty without one.
-  Image take(Image* image, int index, int channels, bool is_variance = false) {
+  static Image take(Image* image, int channels, bool is_variance = false) {
     if (!image) return {};
-    return with_channels(cropped(std::move(*image), reader_.window_of(layer(index)), window_), channels, is_variance);
+    return with_channels(std::move(*image), channels, is_variance);
   }
 
   /// The counts of a sample-count layer; empty, with a note, where it holds fractions of an unknown number.
   Image take_counts(WantedPass& wanted) {
     const Layer& from = layer(wanted.choice.mean);
-    Image counts = take(wanted.mean, wanted.choice.mean, 1);
+    Image counts = take(wanted.mean, 1);
     if (!is_sample_fraction(from.pass)) return counts;
     if (counts_.everywhere <= 0) {
       result_.notes.push_back(
@@ -257,7 +282,7 @@ class FrameBuilder {
     if (!wanted.variance) return {};
     const Layer& from = layer(wanted.choice.variance);
     const Companion kind = kind_of(from, options_.variance_kind);
-    Image variance = take(wanted.variance, wanted.choice.variance, mean.channels(), kind != Companion::SecondMoment);
+    Image variance = take(wanted.variance, mean.channels(), kind != Companion::SecondMoment);
     if (kind == Companion::VarianceOfMean) return variance;
     if (!counts_.known()) {
       result_.notes.push_back(fmt::format(
@@ -272,10 +297,10 @@ class FrameBuilder {
     const int channels = info_of(wanted.choice.role).channels;
     Pass pass;
     pass.name = layer(wanted.choice.mean).name;
-    pass.mean = take(wanted.mean, wanted.choice.mean, channels);
+    pass.mean = take(wanted.mean, channels);
     pass.variance = take_variance(wanted, pass.mean);
-    pass.half_a = take(wanted.half_a, wanted.choice.half_a, channels);
-    pass.half_b = take(wanted.half_b, wanted.choice.half_b, channels);
+    pass.half_a = take(wanted.half_a, channels);
+    pass.half_b = take(wanted.half_b, channels);
     return pass;
   }
 
@@ -297,11 +322,10 @@ class FrameBuilder {
         frame.aovs.push_back(take_pass(wanted));
         break;
       case Role::Alpha:
-        if (!alpha_) frame.alpha = take(wanted.mean, wanted.choice.mean, info.channels);
+        if (!alpha_) frame.alpha = take(wanted.mean, info.channels);
         break;
       case Role::Motion:
-        frame.motion =
-            times(take(wanted.mean, wanted.choice.mean, info.channels), motion_factors(layer(wanted.choice.mean).pass));
+        frame.motion = times(take(wanted.mean, info.channels), motion_factors(layer(wanted.choice.mean).pass));
         break;
       default:  // sample counts, which are taken first
         break;

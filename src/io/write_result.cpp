@@ -25,6 +25,7 @@
 #include <utility>
 
 #include "core/first_line.h"
+#include "core/rect.h"
 #include "io/atomic_file.h"
 #include "io/exr/bands.h"
 #include "io/exr/raw.h"
@@ -40,6 +41,7 @@ constexpr float half_maximum = 65504;
 /// The source of a channel's new samples: a plane of an image, or the mean of all its planes.
 struct NewChannel {
   const Image* image = nullptr;
+  Rect window;  ///< Place of the image.
   int plane = 0;
   bool mean = false;
   std::string noisy_name;  ///< Channel for the old samples; empty where they are not kept.
@@ -82,20 +84,25 @@ std::vector<std::string> channels_to_replace(const Layer& layer, const Replaceme
   return layer.channels;
 }
 
+Rect window_of(const Imf::Header& header) {
+  const auto& window = header.dataWindow();
+  return {window.min.x, window.min.y, window.max.x + 1, window.max.y + 1};
+}
+
 void add_replacement(const FrameSource& source, const Replacement& replacement, const WriteOptions& options,
                      std::vector<PartRewrite>& parts) {
   const Layer& layer = layer_named(source, replacement.layer);
   PartRewrite& part = parts[static_cast<std::size_t>(layer.part)];
-  const auto& window = part.header.dataWindow();
+  const Rect window = replacement.window.empty() ? window_of(part.header) : replacement.window;
   const auto channels = channels_to_replace(layer, replacement);
   const Image& image = replacement.image;
   const bool one_of_three = channels.size() == 1 && image.channels() == 3;
-  if (image.width() != window.max.x - window.min.x + 1 || image.height() != window.max.y - window.min.y + 1 ||
+  if (image.width() != window.width() || image.height() != window.height() ||
       (static_cast<std::size_t>(image.channels()) != channels.size() && !one_of_three))
     throw Error(ExitCode::Internal,
                 fmt::format("{}: the new image does not have the shape of layer {}", source.path, layer.name));
   for (std::size_t c = 0; c < channels.size(); ++c) {
-    NewChannel channel{&image, static_cast<int>(c), one_of_three, {}};
+    NewChannel channel{&image, window, static_cast<int>(c), one_of_three, {}};
     if (options.keep_noisy) {
       channel.noisy_name = noisy_name(layer, channels[c]);
       part.header.channels().insert(channel.noisy_name, *part.header.channels().findChannel(channels[c]));
@@ -154,15 +161,21 @@ void store(NativeChannel& channel, std::size_t i, float value, std::size_t& satu
 
 /// Makes a band of the output from one of the input: copies the samples, moves replaced ones to their noisy names and
 /// puts the new ones in their place.
-void apply(const NewChannels& replaced, NativeBand& old, NativeBand& band, int window_y0, std::size_t& saturated) {
+void apply(const NewChannels& replaced, NativeBand& old, NativeBand& band, std::size_t& saturated) {
   for (NativeChannel& channel : band.channels)
     if (NativeChannel* same = old.find(channel.name)) channel.samples.swap(same->samples);
-  const std::size_t begin = static_cast<std::size_t>(old.y0 - window_y0) * static_cast<std::size_t>(old.width);
-  const std::size_t pixels = static_cast<std::size_t>(old.y1 - old.y0) * static_cast<std::size_t>(old.width);
+  const Rect lines{old.x0, old.y0, old.x0 + old.width, old.y1};
   for (const auto& [name, source] : replaced) {
     NativeChannel* channel = band.find(name);
     if (!source.noisy_name.empty()) band.find(source.noisy_name)->samples = channel->samples;
-    for (std::size_t i = 0; i < pixels; ++i) store(*channel, i, source.at(begin + i), saturated);
+    const Rect covered = intersect(lines, source.window);
+    for (int y = covered.y0; y < covered.y1; ++y) {
+      const std::size_t to = static_cast<std::size_t>(y - lines.y0) * static_cast<std::size_t>(old.width) +
+                             static_cast<std::size_t>(covered.x0 - lines.x0);
+      const std::size_t from = source.image->index(covered.x0 - source.window.x0, y - source.window.y0);
+      for (std::size_t k = 0; k < static_cast<std::size_t>(covered.width()); ++k)
+        store(*channel, to + k, source.at(from + k), saturated);
+    }
   }
 }
 
@@ -264,7 +277,7 @@ class Rewrite {
                   fmt::format("{}: incomplete or damaged: {} cannot be read at scanlines {} to {} ({})", path_,
                               part_title(input_.header(p), p), old.y0, old.y1 - 1, first_line(problem.what())));
     }
-    apply(parts_[static_cast<std::size_t>(p)].replaced, old, band, input_.header(p).dataWindow().min.y, saturated);
+    apply(parts_[static_cast<std::size_t>(p)].replaced, old, band, saturated);
   }
 
   void write_changed(Imf::MultiPartOutputFile& output, int p) {
@@ -325,7 +338,7 @@ std::vector<std::string> write_as_exr(const FrameSource& source, const std::vect
     const auto names = channels_to_replace(layer, replacement);
     const bool mean = names.size() == 1 && replacement.image.channels() == 3;
     for (std::size_t c = 0; c < names.size(); ++c) {
-      const NewChannel from{&replacement.image, static_cast<int>(c), mean, {}};
+      const NewChannel from{&replacement.image, {}, static_cast<int>(c), mean, {}};
       Image to(replacement.image.width(), replacement.image.height(), 1);
       for (std::size_t i = 0; i < to.pixels(); ++i) to.plane(0)[i] = from.at(i);
       channels.push_back({names[c], std::move(to)});

@@ -22,6 +22,11 @@ std::size_t count(int channels) { return static_cast<std::size_t>(channels); }
 
 int model_features(const FrameShape& shape) { return std::min(shape.feature_channels, BasisLayout::max_features); }
 
+/// Colour channels of the pair: alpha is one where it is reconstructed.
+int reconstructed_channels(const FrameShape& shape, const Params& params) {
+  return shape.color_channels + (params.reconstruct_alpha ? 1 : 0);
+}
+
 std::size_t pair_channels(const FrameShape& shape) {
   return half_pair_channels(count(shape.color_channels), count(model_features(shape)));
 }
@@ -72,16 +77,18 @@ FrameShape shape_of(const Frame& frame) {
   return shape;
 }
 
-int neighbours_channels(const FrameShape& shape, int neighbours) {
-  return neighbours * static_cast<int>(neighbour_channels(count(shape.color_channels)));
+int neighbours_channels(const FrameShape& shape, int neighbours, const Params& params) {
+  return neighbours * static_cast<int>(neighbour_channels(count(reconstructed_channels(shape, params))));
 }
 
 int channels_ahead(const FrameShape& shape, const Params& params) {
-  return shape.channels + (params.temporal.radius > 0 ? neighbours_channels(shape, 2) : 0);
+  return shape.channels + (params.temporal.radius > 0 ? neighbours_channels(shape, 2, params) : 0);
 }
 
-MemoryNeeds memory_needs(const FrameShape& shape, const Params& params) {
+MemoryNeeds memory_needs(const FrameShape& passes, const Params& params) {
   constexpr std::size_t noise_variance = 3;
+  FrameShape shape = passes;
+  shape.color_channels = reconstructed_channels(passes, params);
   const auto with_gaps = [](std::size_t bytes) {
     return static_cast<std::size_t>(allocator * static_cast<double>(bytes));
   };

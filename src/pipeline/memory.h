@@ -15,7 +15,7 @@ constexpr std::size_t program_bytes = std::size_t{128} << 20;
 FrameShape shape_of(const Frame& frame);
 
 /// Channels held for so many neighbours in time.
-int neighbours_channels(const FrameShape& shape, int neighbours);
+int neighbours_channels(const FrameShape& shape, int neighbours, const Params& params);
 
 /// Channels held for the next frame of a sequence while the current one is reconstructed: its passes, and where
 /// neighbours in time are used also two frames prepared as neighbours.

@@ -1,5 +1,6 @@
 #include "polyrecon/reconstruct.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "blend/levels.h"
@@ -161,6 +162,12 @@ Image restore(const Frame& frame, const NoisyHalves& halves, const Candidate& so
   return out;
 }
 
+/// Alpha is a coverage; a polynomial may leave its range by a little.
+Image within_coverage(Image alpha) {
+  for (std::size_t i = 0; i < alpha.pixels(); ++i) alpha.plane(0)[i] = std::clamp(alpha.plane(0)[i], Real(0), Real(1));
+  return alpha;
+}
+
 /// Distributes the channels of the finished image to the layers of the result.
 void put_layers(const Image& image, const Image& input_alpha, Result& result) {
   const ColorLayout layout(image.channels());
@@ -169,7 +176,8 @@ void put_layers(const Image& image, const Image& input_alpha, Result& result) {
   };
   result.beauty = layer_of(0);
   for (int layer = 1; layer < layout.layers(); ++layer) result.aovs.push_back(layer_of(layer));
-  result.alpha = layout.has_alpha() ? crop(image, image.bounds(), layout.alpha_channel(), 1) : input_alpha;
+  result.alpha =
+      layout.has_alpha() ? within_coverage(crop(image, image.bounds(), layout.alpha_channel(), 1)) : input_alpha;
 }
 
 }  // namespace
@@ -200,7 +208,7 @@ Result reconstruct(Frame& frame, const std::vector<TimedNeighbour>& neighbours, 
                    Progress& progress) {
   const Params params = params_for_frame(frame, requested);
   FrameShape shape = shape_of(frame);
-  shape.other_channels += neighbours_channels(shape, static_cast<int>(neighbours.size()));
+  shape.other_channels += neighbours_channels(shape, static_cast<int>(neighbours.size()), params);
   require_memory("layer '" + frame.beauty.name + "'", shape, params);
   Result result;
   Report& report = result.report;

@@ -157,7 +157,7 @@ void write_blender_parts(const std::string& path, int width, int height) {
     }
     std::vector<float> pixels(static_cast<std::size_t>(width * height * 4), 1.0f);
     for (std::size_t i = 0; i < pixels.size(); ++i)
-      if (i % 4 != 3) pixels[i] = 0.5f + (part == 1 ? noise(random) : 0.0f);
+      pixels[i] = (i % 4 == 3 ? 0.9f : 0.5f) + (part == 1 ? noise(random) : 0.0f);
     ASSERT_TRUE(out->write_image(OIIO::TypeDesc::FLOAT, pixels.data()));
   }
   ASSERT_TRUE(out->close());
@@ -189,6 +189,31 @@ TEST_F(Denoise, ReplacesThePictureAndKeepsTheNoisyImageBesideIt) {
   EXPECT_EQ(samples_of(path("out.exr"), "ViewLayer.Combined.A"), samples_of(path("in.exr"), "ViewLayer.Combined.A"));
   // The metadata's 16 samples per pixel are known to the map.
   EXPECT_EQ(samples_of(path("error.exr"), "samples.Y"), std::vector<float>(32 * 20, 16.0f));
+}
+
+TEST_F(Denoise, AlphaGoesIntoTheLayerThatGetsThePictureAndStaysWithinItsRange) {
+  write_blender_parts(path("in.exr"), 32, 20);
+  const Outcome o = denoise({"--alpha", "--quality", "draft"});
+  ASSERT_EQ(o.code, 0) << o.err;
+  EXPECT_EQ(samples_of(path("out.exr"), "ViewLayer.Noisy Image.A"),
+            samples_of(path("in.exr"), "ViewLayer.Noisy Image.A"));
+  const std::vector<float> alpha = samples_of(path("out.exr"), "ViewLayer.Combined.A"),
+                           noisy = samples_of(path("in.exr"), "ViewLayer.Noisy Image.A");
+  EXPECT_GT(*std::max_element(noisy.begin(), noisy.end()), 1);
+  EXPECT_LE(*std::max_element(alpha.begin(), alpha.end()), 1);
+  double error = 0, noise = 0;
+  for (std::size_t i = 0; i < alpha.size(); ++i) {
+    error += std::pow(alpha[i] - 0.9f, 2);
+    noise += std::pow(noisy[i] - 0.9f, 2);
+  }
+  EXPECT_LT(error, 0.5 * noise);
+}
+
+TEST_F(Denoise, SaysWhenAlphaCannotBeDenoised) {
+  write_render(path("in.exr"));
+  const Outcome o = denoise({"--alpha", "--quality", "draft"});
+  ASSERT_EQ(o.code, 0) << o.err;
+  EXPECT_THAT(o.out, ::testing::HasSubstr("note: --alpha has no effect"));
 }
 
 TEST_F(Denoise, KeepsTheNoisyLayerOnRequest) {

@@ -28,7 +28,8 @@ ReadOptions read_options_of(const DenoiseOptions& o, const FrameList& list, cons
   read.motion = list.radius > 0;
   read.accept = [params, is_sequence = list.is_sequence](const std::string& path, FrameShape shape) {
     if (is_sequence)
-      shape.other_channels = channels_ahead(shape, params) + neighbours_channels(shape, 2 * params.temporal.radius);
+      shape.other_channels =
+          channels_ahead(shape, params) + neighbours_channels(shape, 2 * params.temporal.radius, params);
     require_memory(path, shape, params);
   };
   return read;

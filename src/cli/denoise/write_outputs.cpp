@@ -1,5 +1,7 @@
 #include "cli/denoise/write_outputs.h"
 
+#include <fmt/format.h>
+
 #include "cli/common/map_files.h"
 #include "cli/denoise/finished.h"
 #include "io/channel_names.h"
@@ -34,12 +36,32 @@ MapWindows windows_of(const ReadResult& in, const std::string& layer_name) {
   return {in.frame.data_window, in.frame.data_window};
 }
 
+/// The layer that takes the alpha: the picture's, where the beauty's came with it, so that picture and alpha stay
+/// together; else the one that it was read from.
+std::string alpha_layer(const ReadResult& in, const std::string& picture) {
+  if (in.source.alpha_layer != in.frame.beauty.name) return in.source.alpha_layer;
+  for (const Layer& layer : in.source.layers)
+    if (layer.name == picture && layer.file == 0 && !layer.alpha.empty()) return picture;
+  return in.source.alpha_layer;
+}
+
+/// Why alpha is not written though it was requested; empty where it is.
+std::string alpha_note(const ReadResult& in, const Result& result) {
+  if (result.alpha.empty()) return "--alpha has no effect: the input has no alpha; name one with --map alpha=LAYER";
+  for (const Layer& layer : in.source.layers)
+    if (layer.name == in.source.alpha_layer && layer.file != 0)
+      return fmt::format("--alpha has no effect: {} is in another file", layer.name);
+  return {};
+}
+
 std::vector<Replacement> replacements(const ReadResult& in, const Result& result, const std::string& picture,
                                       bool with_alpha) {
-  std::vector<Replacement> list{{picture, result.beauty, false}};
-  for (std::size_t i = 0; i < result.aovs.size(); ++i) list.push_back({in.frame.aovs[i].name, result.aovs[i], false});
-  if (with_alpha && !result.alpha.empty() && !in.source.alpha_layer.empty())
-    list.push_back({in.source.alpha_layer, result.alpha, true});
+  const Rect& window = in.frame.data_window;
+  std::vector<Replacement> list{{picture, result.beauty, false, window}};
+  for (std::size_t i = 0; i < result.aovs.size(); ++i)
+    list.push_back({in.frame.aovs[i].name, result.aovs[i], false, window});
+  if (with_alpha && alpha_note(in, result).empty())
+    list.push_back({alpha_layer(in, picture), result.alpha, true, window});
   return list;
 }
 
@@ -69,6 +91,8 @@ std::vector<std::string> write_outputs(const Job& job, const FrameFiles& files, 
                         result.report.estimated_relative_mse};
   std::vector<std::string> notes = write_result(
       in.source, replacements(in, result, picture, job.params.reconstruct_alpha), files.outputs.picture, options);
+  if (job.params.reconstruct_alpha)
+    if (const std::string note = alpha_note(in, result); !note.empty()) notes.push_back(note);
   const MapWindows windows = windows_of(in, picture);
   const Image samples = sample_counts(job.read, in);
   const OutputPaths& outputs = files.outputs;
