@@ -213,7 +213,7 @@ TEST_F(Denoise, SaysWhenAlphaCannotBeDenoised) {
   write_render(path("in.exr"));
   const Outcome o = denoise({"--alpha", "--quality", "draft"});
   ASSERT_EQ(o.code, 0) << o.err;
-  EXPECT_THAT(o.out, ::testing::HasSubstr("note: --alpha has no effect"));
+  EXPECT_THAT(o.out, ::testing::HasSubstr("--alpha has no effect"));
 }
 
 TEST_F(Denoise, KeepsTheNoisyLayerOnRequest) {
