@@ -11,16 +11,19 @@ The mean of the subsets is the ordinary render of all samples. The scene file is
 run."""
 
 import argparse
+import os
 import pathlib
+import re
 import sys
 
 if not __package__:  # run as a script from a checkout
     sys.path[0] = str(pathlib.Path(__file__).resolve().parents[2])
     __package__ = "pipelines.blender"
 
-from ..common import process
+from ..common import own_folder, process
 from ..common.command import each_frame
-from ..common.errors import DriverError, ExitCode, run_main
+from ..common.errors import run_main
+from ..common.files import remove_temporaries
 from ..common.terminal import print_lines
 from .options import add_common, renderer_of
 
@@ -48,10 +51,15 @@ def work(words):
 
 
 def one_frame(options, renderer, frame, output, passes, polyrecon, progress):
-    try:
-        passes.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise DriverError(ExitCode.OUTPUT, f"{passes}: {error.strerror}") from error
+    with own_folder.claimed(passes):
+        remove_temporaries(passes, re.compile(r"part_[0-9]+\.exr").fullmatch)
+        render_parts(options, renderer, frame, output, passes, polyrecon, progress)
+    if not options.keep_parts and os.listdir(passes) == [own_folder.LOCK]:
+        (passes / own_folder.LOCK).unlink()
+        passes.rmdir()
+
+
+def render_parts(options, renderer, frame, output, passes, polyrecon, progress):
     renderer.begin(frame)
     each = options.spp // options.parts
     parts = [passes / f"part_{k}.exr" for k in range(options.parts)]
@@ -63,8 +71,6 @@ def one_frame(options, renderer, frame, output, passes, polyrecon, progress):
     if not options.keep_parts:
         for part in parts:
             part.unlink()
-        if not any(passes.iterdir()):
-            passes.rmdir()
     if not options.quiet:
         print_lines(*process.lines_of(summary))
 

@@ -62,28 +62,28 @@ class Result:
 
 def run(renderer, polyrecon, settings, progress):
     """Runs the loop for one frame; returns a Result. Raises DriverError; the frame can then be resumed."""
-    return _Loop(renderer, polyrecon, settings, progress).run()
+    folder = PassFolder(settings.passes)
+    with folder.claimed():
+        return _Loop(renderer, polyrecon, settings, folder, progress).run()
 
 
 class _Loop:
-    def __init__(self, renderer, polyrecon, settings, progress):
+    def __init__(self, renderer, polyrecon, settings, folder, progress):
         self.renderer, self.polyrecon, self.settings, self.progress = renderer, polyrecon, settings, progress
-        self.budget = settings.budget
-        self.folder = PassFolder(settings.passes)
-        self.folder.create()
+        self.budget, self.folder = settings.budget, folder
         identity = {**settings.identity, "frame": settings.frame, "first_pass": settings.first_pass}
         new_state = State(identity, first_pass_parts=first_pass_parts(settings.first_pass, self.budget))
         self.journal = Journal.open(self.folder, new_state, settings.resume)
         self.state = self.journal.state
         if self.state.rounds and not self.state.rounds[-1].next_samples:
             self.state.rounds.pop()  # The loop ended there. Today's budget may be larger, so it is decided again.
-        self.folder.remove_unfinished_files()
         self.rendering = PartRendering(renderer, self.folder, self.journal, self.announce)
         self.why_ended = ""
         self.decision_seconds = None  # Of the last decision, or as estimated; None: unknown
 
     def run(self):
         audit = self.renderer.begin(self.settings.frame)
+        self.journal.compare_inputs(audit.inputs)
         self.reconstruction = Reconstruction(self.polyrecon, self.renderer, self.folder, self.state, audit.beauty)
         self.rendering.render_first_pass(self.settings.first_pass)
         if self.budget.seconds:
@@ -156,7 +156,7 @@ class _Loop:
             return None
         plan = plan_round(self.state, number, counts, len(HALVES) * most)
         self.rendering.start_round(plan, counts)
-        return plan
+        return self.state.next_round
 
     def finish(self, audit):
         self.announce("result", done=1.0)

@@ -112,4 +112,5 @@ def plan_round(state, number, counts, cost_weighted_samples):
         parts=min(_uniform_parts(state.parts, int(values.max())) for values in counts.values()) if uniform else 1,
         parts_before=state.part_count(number, "a"),
         cost_weighted_samples=cost_weighted_samples,
+        counts_sha256={},
     )

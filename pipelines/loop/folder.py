@@ -1,9 +1,16 @@
 """Names of the files in a frame's folder of passes."""
 
+import contextlib
 import dataclasses
 import pathlib
+import re
 
+from ..common import own_folder
 from ..common.errors import DriverError, ExitCode
+from ..common.files import remove_temporaries
+
+_FILE = re.compile(r"part_[0-9]+[ab][0-9]+\.exr|merged\.exr|error\.exr|journal\.json|report\.html")
+_ROUND = re.compile(r"round_[0-9]+")
 
 
 @dataclasses.dataclass(frozen=True)
@@ -35,11 +42,15 @@ class PassFolder:
         """A file that belongs to one round. Writers call create_round before."""
         return self.path / f"round_{number}" / f"{name}.exr"
 
-    def create(self):
-        try:
-            self.path.mkdir(parents=True, exist_ok=True)
-        except OSError as error:
-            raise DriverError(ExitCode.OUTPUT, f"{self.path}: {error.strerror}") from error
+    @contextlib.contextmanager
+    def claimed(self):
+        """A context in which this process alone works in the folder. What a killed run was writing is removed first."""
+        with own_folder.claimed(self.path, sign=self.journal.name):
+            remove_temporaries(self.path, _FILE.fullmatch)
+            for entry in self.path.iterdir():
+                if _ROUND.fullmatch(entry.name) and entry.is_dir():
+                    remove_temporaries(entry, lambda name: name.endswith(".exr"))
+            yield
 
     def create_round(self, number):
         folder = self.path / f"round_{number}"
@@ -47,9 +58,3 @@ class PassFolder:
             folder.mkdir(exist_ok=True)
         except OSError as error:
             raise DriverError(ExitCode.OUTPUT, f"{folder}: {error.strerror}") from error
-
-    def remove_unfinished_files(self):
-        """Removes what a killed run was writing: a file is hidden until it is whole."""
-        for pattern in (".*.exr", ".*.new"):
-            for unfinished in self.path.rglob(pattern):
-                unfinished.unlink()

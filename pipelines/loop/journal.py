@@ -7,11 +7,12 @@ import re
 import time
 from typing import Any, Optional
 
+from ..common import digests
 from ..common.decode import InvalidFileError, decode, read_json
 from ..common.errors import DriverError, ExitCode
 from ..common.files import write_text
 
-VERSION = 5
+VERSION = 6
 HALVES = ("a", "b")
 
 
@@ -27,6 +28,7 @@ class Part:
     cost_weighted_samples: float  # The same, counted in samples of average cost
     seconds: float
     masked: bool  # The requested counts differ between pixels.
+    sha256: str  # Of the file
 
 
 @dataclasses.dataclass(frozen=True)
@@ -50,6 +52,7 @@ class RoundPlan:
     parts: int  # Number of parts that each half's counts are divided into
     parts_before: int  # Parts of each half that the round has already
     cost_weighted_samples: float  # Per pixel, both halves together
+    counts_sha256: dict[str, str]  # Of the file with each half's counts
 
 
 @dataclasses.dataclass
@@ -63,6 +66,7 @@ class State:
     parts: list[Part] = dataclasses.field(default_factory=list)  # Finished parts in the order of rendering
     rounds: list[Round] = dataclasses.field(default_factory=list)
     next_round: Optional[RoundPlan] = None
+    inputs: dict[str, str] = dataclasses.field(default_factory=dict)  # SHA-256 of each file that the passes show
 
     @property
     def samples(self):
@@ -110,8 +114,20 @@ class Journal:
                 ExitCode.BAD_INPUT, f"{path}: not a valid journal: {error}: start again with another --passes-dir"
             ) from error
         _compare_identities(path, state.identity, new_state.identity)
-        _find_files(folder, state)
+        _check_files(folder, state)
         return cls(path, state)
+
+    def compare_inputs(self, inputs):
+        """Refuses inputs ({path: SHA-256}) other than those of the finished parts."""
+        if not self.state.parts:
+            self.state.inputs = inputs
+        for path in sorted(inputs.keys() | self.state.inputs.keys()):
+            if inputs.get(path) != self.state.inputs.get(path):
+                raise DriverError(
+                    ExitCode.USAGE,
+                    f"{self.path}: cannot continue: {path} is not what it was when the passes were rendered: "
+                    "choose another --passes-dir",
+                )
 
     def seconds(self):
         """Seconds since the loop began, without the time between a kill and the next run."""
@@ -173,8 +189,9 @@ def _check_part(part, place):
 def _check_plan(plan, rounds):
     if plan.round > rounds + 1:  # One more than the decisions: a uniform last round is rendered without one.
         raise InvalidFileError("next_round.round does not follow the last round")
-    if set(plan.first_samples) != set(HALVES):
-        raise InvalidFileError("next_round.first_samples does not name the halves 'a' and 'b'")
+    for name in ("first_samples", "counts_sha256"):
+        if set(getattr(plan, name)) != set(HALVES):
+            raise InvalidFileError(f"next_round.{name} does not name the halves 'a' and 'b'")
     if plan.parts < 1 or plan.cost_weighted_samples <= 0:
         raise InvalidFileError("next_round has no parts or no samples")
 
@@ -189,12 +206,10 @@ def _compare_identities(path, found, wanted):
             )
 
 
-def _find_files(folder, state):
-    needed = [folder.path / part.file for part in state.parts]
+def _check_files(folder, state):
+    """The passes are those that the journal was written for."""
+    for part in state.parts:
+        digests.check(folder.path / part.file, part.sha256)
     if state.next_round:
-        needed += [folder.in_round(state.next_round.round, f"counts_{half}") for half in HALVES]
-    for path in needed:
-        if not path.is_file():
-            raise DriverError(
-                ExitCode.MISSING, f"{path}: the journal names it, but it is gone: start again with another --passes-dir"
-            )
+        for half, expected in state.next_round.counts_sha256.items():
+            digests.check(folder.in_round(state.next_round.round, f"counts_{half}"), expected)

@@ -7,6 +7,7 @@ import time
 import numpy as np
 
 from ..common import exr
+from ..common.digests import digest
 from ..common.errors import DriverError, ExitCode
 from .counts import Taken
 from .journal import HALVES, Part
@@ -22,7 +23,9 @@ class PartRendering:
         self.state = journal.state
         self.taken = {}
         for part in self.state.parts:
-            self._add(part.half, read_taken(folder.path / part.file))
+            taken = read_taken(folder.path / part.file)
+            self._check(part, taken)
+            self._add(part.half, taken)
 
     def render_first_pass(self, samples):
         """The first half of the parts is half A, the second half B. Each half is then a block of the sequence, and
@@ -39,10 +42,13 @@ class PartRendering:
     def start_round(self, plan, counts):
         """Makes the plan the state's next round; its counts go into files."""
         self.folder.create_round(plan.round)
+        counts_sha256 = {}
         for half in HALVES:
-            exr.write(self.folder.in_round(plan.round, f"counts_{half}"), {"samples.Y": counts[half]})
+            file = self.folder.in_round(plan.round, f"counts_{half}")
+            exr.write(file, {"samples.Y": counts[half]})
+            counts_sha256[half] = digest(file)
         exr.write(self.folder.in_round(plan.round, "samples"), {"samples.Y": counts["a"] + counts["b"]})
-        self.state.next_round = plan
+        self.state.next_round = dataclasses.replace(plan, counts_sha256=counts_sha256)
 
     def render_round(self, plan):
         """Renders the parts of a round that are not in the journal yet."""
@@ -50,8 +56,7 @@ class PartRendering:
             index_in_round = plan.parts_before + index
             if self.state.part_count(plan.round, half) <= index_in_round:
                 self.announce(f"round {plan.round}, half {half.upper()}", round=plan.round)
-                counts = exr.read(self.folder.in_round(plan.round, f"counts_{half}"))["samples.Y"]
-                counts = counts.astype(int) // plan.parts
+                counts = self._counts(plan, half)
                 first_sample = plan.first_samples[half] + index * int(counts.max())
                 weighted = plan.cost_weighted_samples / len(HALVES)
                 self._render_part(
@@ -84,10 +89,31 @@ class PartRendering:
                 cost_weighted_samples=cost_weighted_samples if masked else mean,
                 seconds=seconds,
                 masked=masked,
+                sha256=digest(target),
             )
         )
         self.state.next_sample = max(self.state.next_sample, first_sample + int(samples))
         self.journal.save()
+
+    def _counts(self, plan, half):
+        """Counts of each part of a half, from their file."""
+        file = self.folder.in_round(plan.round, f"counts_{half}")
+        counts = exr.read(file)["samples.Y"].astype(int)
+        if counts.shape != self.taken[half].counts.shape or (counts < 0).any() or (counts % plan.parts).any():
+            raise DriverError(
+                ExitCode.BAD_INPUT, f"{file}: holds no counts of this frame: start again with another --passes-dir"
+            )
+        return counts // plan.parts
+
+    def _check(self, part, taken):
+        """What the journal says about a part must be what its file says."""
+        if not np.isclose(part.samples, taken.counts.mean()) or part.first_sample + taken.counts.max() > (
+            self.state.next_sample
+        ):
+            raise DriverError(
+                ExitCode.BAD_INPUT,
+                f"{self.journal.path}: contradicts the samples of {part.file}: start again with another --passes-dir",
+            )
 
     def _add(self, half, taken):
         taken = dataclasses.replace(taken, counts=taken.counts.astype(float))

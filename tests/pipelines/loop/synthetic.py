@@ -7,6 +7,7 @@ import sys
 import numpy as np
 
 from pipelines.common import exr
+from pipelines.common.digests import digest
 from pipelines.common.errors import run_main
 from pipelines.common.polyrecon_cli import Polyrecon
 from pipelines.common.progress import Progress
@@ -32,7 +33,7 @@ class SyntheticRenderer(Renderer):
 
     def begin(self, frame):
         height, width = self.mean.shape
-        return Audit(width, height, "L.Combined", method="single pixels")
+        return Audit(width, height, "L.Combined", method="single pixels", inputs={__file__: digest(__file__)})
 
     def sample(self, number):
         random = np.random.Generator(np.random.Philox(key=[self.seed, number]))

@@ -1,9 +1,11 @@
 import contextlib
 import copy
 import dataclasses
+import hashlib
 import io
 import json
 import math
+import os
 import tempfile
 import unittest
 from pathlib import Path
@@ -17,13 +19,15 @@ from pipelines.loop.journal import VERSION, Journal, Part, Round, RoundPlan, Sta
 from tests.pipelines.loop import synthetic
 
 IDENTITY = {"scene": "/a ä.blend", "frame": None, "first_pass": 8, "options": ["+W64"]}
+EMPTY = hashlib.sha256().hexdigest()
 PARTS = [
-    Part("part_0a0.exr", "a", 0, 0, 4.0, 4.0, 1.5, False),
-    Part("part_0b0.exr", "b", 0, 4, 4.0, 4.0, 0.25, False),
-    Part("part_1a0.exr", "a", 1, 16, 3.7, 4.0, 2.0, True),
+    Part("part_0a0.exr", "a", 0, 0, 4.0, 4.0, 1.5, False, EMPTY),
+    Part("part_0b0.exr", "b", 0, 4, 4.0, 4.0, 0.25, False, EMPTY),
+    Part("part_1a0.exr", "a", 1, 16, 3.7, 4.0, 2.0, True, EMPTY),
 ]
 ROUNDS = [Round(0, 8.0, 3.0, 0.5, None, 8.0)]
-PLAN = RoundPlan(1, {"a": 16, "b": 32}, 1, 0, 8.0)
+PLAN = RoundPlan(1, {"a": 16, "b": 32}, 1, 0, 8.0, {"a": EMPTY, "b": EMPTY})
+INPUTS = {"/a ä.blend": "1" * 64, "/lib.blend": "2" * 64}
 
 MISSING = object()
 WRONG_VALUES = (MISSING, None, True, "x", "", -1, -0.5, math.nan, math.inf, 10**400, [], {}, [1], {"a": 1})
@@ -34,6 +38,7 @@ ALLOWED = {
     "parts": ([],),
     "rounds": ([],),
     "next_round": (None,),
+    "inputs": ({},),  # Others are compared with the scene's.
     "error": (None,),
     "masked": (True,),
 }
@@ -64,15 +69,19 @@ class Journals(unittest.TestCase):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.folder = PassFolder(Path(folder.name) / "passes ä")
-        self.folder.create()
+        self.enter(self.folder.claimed())
         self.folder.create_round(1)
         for part in PARTS:
             (self.folder.path / part.file).touch()
         for half in "ab":
             self.folder.in_round(1, f"counts_{half}").touch()
-        state = State(dict(IDENTITY), 7.5, 2, 17, list(PARTS), list(ROUNDS), PLAN)
+        state = State(dict(IDENTITY), 7.5, 2, 17, list(PARTS), list(ROUNDS), PLAN, dict(INPUTS))
         Journal(self.folder.journal, state).save()
         self.document = json.loads(self.folder.journal.read_text(encoding="utf-8"))
+
+    def enter(self, context):
+        self.addCleanup(context.__exit__, None, None, None)
+        return context.__enter__()
 
     def open(self, resume=True, **identity):
         return Journal.open(self.folder, State({**IDENTITY, **identity}), resume)
@@ -151,14 +160,18 @@ class Journals(unittest.TestCase):
         """Each value of a journal in turn is missing, of a wrong type, negative, NaN, infinite or huge."""
         tried = 0
         for place in leaves(self.document):
-            if not place or place[0] == "version" or (place[0] == "identity" and len(place) > 1):
+            if not place or place[0] == "version" or (place[0] in ("identity", "inputs") and len(place) > 1):
                 continue
             for value in WRONG_VALUES:
                 in_list = isinstance(place[-1], int)
                 if (in_list and value is MISSING) or any(value is v or value == v for v in ALLOWED.get(place[-1], ())):
                     continue
                 with self.subTest(place=place, value="missing" if value is MISSING else value):
-                    self.refused(with_value(self.document, place, value), "not a valid journal: ")
+                    line = "is not the file" if "sha256" in f"{place[1:-1]}" or place[-1] == "sha256" else ""
+                    self.refused(
+                        with_value(self.document, place, value),
+                        line if line and isinstance(value, str) else "not a valid journal: ",
+                    )
                     tried += 1
         self.assertGreater(tried, 300)
 
@@ -187,6 +200,7 @@ class Journals(unittest.TestCase):
             (("next_round", "first_samples"), {"a": 1, "c": 2}, "does not name the halves"),
             (("next_round", "first_samples"), {"a": 1}, "does not name the halves"),
             (("next_round", "parts"), 0, "no parts"),
+            (("next_round", "counts_sha256"), {"a": EMPTY}, "does not name the halves"),
             (("next_round",), {**plan, "cost_weighted_samples": 0}, "no samples"),
         ):
             with self.subTest(place=place, value=value):
@@ -205,6 +219,30 @@ class Journals(unittest.TestCase):
             path.touch()
         self.assertEqual(self.open().state.parts, PARTS)
 
+    def test_swapped_files_are_named(self):
+        """A part or counts of another frame, of the same size or not, a part under the name of another one, a link."""
+        for path in (self.folder.path / PARTS[1].file, self.folder.in_round(1, "counts_b")):
+            for content in (b"another", b"\0"):
+                path.write_bytes(content)
+                self.refused(self.document, f"{path.name}: is not the file that the journal names")
+            path.unlink()
+            os.mkfifo(path)
+            self.refused(self.document, f"{path.name}: is not the file that the journal names")
+            path.unlink()
+            path.touch()
+        self.assertEqual(self.open().state.parts, PARTS)
+
+    def test_swapped_inputs_are_named(self):
+        """A linked library that changed, is gone, or is new, cannot be averaged with the passes of the one before."""
+        self.open().compare_inputs(dict(INPUTS))
+        for inputs in ({**INPUTS, "/lib.blend": "3" * 64}, {"/a ä.blend": "1" * 64}, {**INPUTS, "/lib.blend2": ""}):
+            with self.assertRaisesRegex(DriverError, "cannot continue: /lib.blend2? is not what it was") as caught:
+                self.open().compare_inputs(inputs)
+            self.assertEqual(caught.exception.code, ExitCode.USAGE)
+        new = Journal(self.folder.journal, State({}))
+        new.compare_inputs(dict(INPUTS))
+        self.assertEqual(new.state.inputs, INPUTS)
+
     def test_an_error_without_finite_pixels_is_unknown(self):
         self.assertIsNone(self.open().state.error)
         state = dataclasses.replace(self.open().state, rounds=[dataclasses.replace(ROUNDS[0], error=0.5)])
@@ -221,7 +259,7 @@ class CommandLine(unittest.TestCase):
             other_size = Path(folder, "passes", "part_0a1.exr")
             content = other_size.read_bytes()
             exr.write(other_size, {name: np.zeros((4, 4)) for name in exr.read(other_size)})
-            self.assert_refused(folder, "differ in size", ExitCode.RENDERER)
+            self.assert_refused(folder, "part_0a1.exr: is not the file that the journal names", ExitCode.BAD_INPUT)
             other_size.write_bytes(content)
             for place, value in ((("parts", 0, "seconds"), -1), (("version",), 4), (("parts", 0, "half"), MISSING)):
                 journal.write_text(json.dumps(with_value(good, place, value)))
