@@ -44,8 +44,8 @@ class Audit:
     switches: list[Switch] = dataclasses.field(default_factory=list)  # Printed, and a table of the report
     passes: dict[str, str] = dataclasses.field(default_factory=dict)  # Name of each pass, and why it is rendered
     notes: list[str] = dataclasses.field(default_factory=list)  # Lines for the user
-    inputs: dict[str, str] = dataclasses.field(default_factory=dict)  # SHA-256 of each file that the picture shows
     method: str = ""  # How extra samples are rendered, in a few words
+    inputs: dict[str, str] = dataclasses.field(default_factory=dict)  # SHA-256 of each file that the picture shows
 
 
 class Renderer(abc.ABC):
