@@ -45,7 +45,9 @@ struct PartInfo {
   std::vector<AttributeInfo> attributes;
 
   /// Whether read_frame can read the pixels: a flat image of one level with one sample per pixel in each channel.
-  bool readable() const;
+  bool readable() const { return obstacle().empty(); }
+  /// Why read_frame cannot read the pixels, and what to do; empty where it can.
+  std::string obstacle() const;
 };
 
 /// The headers of an image file.

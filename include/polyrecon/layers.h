@@ -10,7 +10,8 @@
 namespace polyrecon {
 
 /// Whether a layer holds the mean of a pass or accompanies the layer that does.
-enum class Companion { Mean, VarianceOfMean, VarianceOfSample, SecondMoment, HalfA, HalfB };
+/// SecondMomentOfXyz: that of a colour's CIE XYZ values.
+enum class Companion { Mean, VarianceOfMean, VarianceOfSample, SecondMoment, SecondMomentOfXyz, HalfA, HalfB };
 
 /// Channels that belong together.
 struct Layer {

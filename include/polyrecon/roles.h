@@ -18,6 +18,8 @@ enum class Role {
   Albedo,
   Depth,
   Visibility,
+  SpecularAlbedo,
+  Roughness,
   Prior,
   SampleCount,
   Motion,

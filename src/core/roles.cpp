@@ -16,6 +16,13 @@ constexpr RoleInfo feature(Role role, const char* name, int channels, ChannelCou
   return info;
 }
 
+/// A pass that describes the scene and takes no part in the fit.
+constexpr RoleInfo description(Role role, const char* name, int channels, ChannelCounts layer_channels) {
+  RoleInfo info{role, name, channels, layer_channels, Values::Average};
+  info.chosen = false;
+  return info;
+}
+
 constexpr RoleInfo color(Role role, const char* name, bool chosen, bool expected) {
   RoleInfo info{role, name, 3, {1, 3}, Values::Radiance, chosen, expected};
   info.in_fit = true;
@@ -23,7 +30,7 @@ constexpr RoleInfo color(Role role, const char* name, bool chosen, bool expected
 }
 
 constexpr RoleInfo alpha() {
-  RoleInfo info{Role::Alpha, "alpha", 1, {1}, Values::Average};
+  RoleInfo info{Role::Alpha, "alpha", 1, {1, 3}, Values::Average};
   info.in_fit = true;
   return info;
 }
@@ -37,8 +44,10 @@ constexpr std::array<RoleInfo, role_count> table{
     // An estimate of the depth's noise gains nothing.
     feature(Role::Depth, "depth", 1, {1, 2, 3}, Noise::IfKnown, FeatureTransform::BoundedDepth),
     feature(Role::Visibility, "visibility", 1, {1, 2, 3}, Noise::Estimated),
+    description(Role::SpecularAlbedo, "specular-albedo", 3, {3}),
+    description(Role::Roughness, "roughness", 1, {1}),
     color(Role::Prior, "prior", true, false),
-    RoleInfo{Role::SampleCount, "sample-count", 1, {1}, Values::Count, true, true},
+    RoleInfo{Role::SampleCount, "sample-count", 1, {1, 3}, Values::Count, true, true},
     RoleInfo{Role::Motion, "motion", 4, {4}, Values::Exact, true, false, true},
     alpha(),
     color(Role::Color, "color", false, false),

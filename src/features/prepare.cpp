@@ -209,11 +209,19 @@ std::array<Image, 2> halves_of(Pass& pass, const Image& half_variance, std::uint
   return split_halves(mean, variance, stream);
 }
 
+/// Sky has no noise, whatever the distances that a mean over sky and objects mixes.
+void remove_noise_of_sky(const Image& depth, double sky, Image& variance) {
+  for (std::size_t i = 0; i < variance.pixels(); ++i)
+    if (static_cast<double>(depth.plane(0)[i]) >= sky) variance.plane(0)[i] = 0;
+}
+
 /// Noise variance of one half of a feature; empty where it is unknown. An estimated variance is that of the mean, which
 /// then serves as both halves: splitting it adds as much noise as the independence of the halves removes.
-Image feature_half_variance(Pass& pass, std::size_t& repaired) {
+Image feature_half_variance(Feature& feature, double sky, std::size_t& repaired) {
+  Pass& pass = feature.pass;
   if (!pass.variance.empty()) {
     Image variance = std::move(pass.variance);
+    if (is_depth(feature)) remove_noise_of_sky(pass.mean, sky, variance);
     repaired += repair_nonfinite(variance, repair_radius);
     make_non_negative(variance);
     if (!pass.variance_is_estimated) scale(variance, 2);
@@ -226,6 +234,7 @@ Image feature_half_variance(Pass& pass, std::size_t& repaired) {
     Real* values = variance.row(c, y);
     for (int x = 0; x < variance.width(); ++x) values[x] = 2 * variance_of_mean(values[x], b[x]);
   });
+  if (is_depth(feature)) remove_noise_of_sky(pass.mean, sky, variance);
   repaired += repair_nonfinite(variance, repair_radius);
   return variance;
 }
@@ -272,10 +281,10 @@ void append(const std::array<Image, 2>& halves, std::array<Image, 2>& to, int& c
   channel += halves[0].channels();
 }
 
-std::array<Image, 2> prepared_feature(Feature feature, const FeatureUse& use, std::size_t stream,
+std::array<Image, 2> prepared_feature(Feature feature, const FeatureUse& use, double sky, std::size_t stream,
                                       const PrefilterParams& prefilter_params, std::size_t& repaired,
                                       Progress& progress) {
-  Image variance = feature_half_variance(feature.pass, repaired);
+  Image variance = feature_half_variance(feature, sky, repaired);
   auto halves = halves_of(feature.pass, feature.pass.variance_is_estimated ? Image() : variance, stream, repaired);
   if (use.prefilter && !variance.empty()) {
     repair_nonfinite(feature.pass.mean, repair_radius);
@@ -328,8 +337,8 @@ void prepare_features(Frame& frame, const Preparation& preparation, const Prefil
   for (Image& features : out.pair.features) features = Image(frame.width(), frame.height(), channels);
   int channel = 0;
   for (const FeatureUse& use : preparation.features)
-    append(prepared_feature(std::move(frame.features[use.index]), use, preparation.stream + use.index + 1,
-                            prefilter_params, out.repaired_pixels, progress),
+    append(prepared_feature(std::move(frame.features[use.index]), use, frame.sky_depth,
+                            preparation.stream + use.index + 1, prefilter_params, out.repaired_pixels, progress),
            out.pair.features, channel);
   frame.features.clear();
 }

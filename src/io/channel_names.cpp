@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cstdlib>
 #include <map>
@@ -127,8 +128,15 @@ bool is_color(const Layer& layer) {
   return layer.channels.size() == 3 && channel_order(channel_suffix(layer.channels[0])) == 0;
 }
 
+/// The class of a layer by its name, else by the letter of its only channel.
+std::optional<PassClass> classify(const Layer& layer) {
+  if (auto known = classify_pass(layer.pass)) return known;
+  if (layer.channels.size() != 1 || layer.channels.front() == layer.name) return std::nullopt;
+  return classify_letter(std::string(channel_suffix(layer.channels.front())));
+}
+
 void assign_role(const std::vector<FileInfo>& files, Layer& layer) {
-  const auto known = classify_pass(layer.pass);
+  const auto known = classify(layer);
   if (known && fits(known->role, layer)) {
     layer.role = known->role;
     layer.rank = known->rank;
@@ -271,21 +279,34 @@ void find_denoised(std::vector<Layer>& layers) {
   }
 }
 
-/// The beauty's second moment where it accompanies a nested layer: the companion of a layer that has alpha.
+bool is_xyz(const Layer& layer) {
+  static constexpr std::array letters{"X", "Y", "Z"};
+  return std::equal(layer.channels.begin(), layer.channels.end(), letters.begin(), letters.end(),
+                    [](const std::string& channel, const char* letter) { return channel_suffix(channel) == letter; });
+}
+
+/// What a second moment of `nested` holds of the beauty: nested has alpha like a picture, or it is the nested
+/// integrator itself, whose picture is kept in CIE XYZ. Nothing for other layers.
+std::optional<Companion> moment_of_beauty(const Layer& nested, const Layer& moment) {
+  if (nested.role == Role::Color && !nested.alpha.empty() && !moment.alpha.empty()) return Companion::SecondMoment;
+  if (nested.role == Role::Other && nested.view_layer.empty() && is_xyz(nested)) return Companion::SecondMomentOfXyz;
+  return std::nullopt;
+}
+
+/// The beauty's second moment where it accompanies a nested layer. One of its RGB is preferred.
 void find_nested_moment(const Renderer& renderer, std::vector<Layer>& layers) {
   if (!renderer.beauty_moment_is_nested) return;
   const auto beauty = std::find_if(layers.begin(), layers.end(),
                                    [](const Layer& l) { return is_beauty_mean(l) && l.pass == bare_pass; });
   if (beauty == layers.end()) return;
-  for (Layer& moment : layers) {
-    if (moment.companion != Companion::SecondMoment) continue;
-    const Layer* nested = find_whole_name(layers, moment, moment.of);
-    if (nested && nested->role == Role::Color && !nested->alpha.empty() && !moment.alpha.empty()) {
-      make_companion(moment, *beauty, Companion::SecondMoment,
-                     fmt::format("{}'s nested integrator {}", renderer.name, nested->name));
+  for (const Companion wanted : {Companion::SecondMoment, Companion::SecondMomentOfXyz})
+    for (Layer& moment : layers) {
+      if (moment.companion != Companion::SecondMoment) continue;
+      const Layer* nested = find_whole_name(layers, moment, moment.of);
+      if (!nested || moment_of_beauty(*nested, moment) != wanted) continue;
+      make_companion(moment, *beauty, wanted, fmt::format("{}'s nested integrator {}", renderer.name, nested->name));
       return;
     }
-  }
 }
 
 std::optional<double> number_in(const FileInfo& file, const std::string& attribute) {
@@ -310,6 +331,8 @@ const char* name_of(Companion companion) {
       return "variance of one sample";
     case Companion::SecondMoment:
       return "second moment";
+    case Companion::SecondMomentOfXyz:
+      return "second moment of CIE XYZ";
     case Companion::HalfA:
       return "half A";
     case Companion::HalfB:

@@ -16,7 +16,8 @@ inline bool is_half(Companion c) { return c == Companion::HalfA || c == Companio
 
 /// Whether the variance of the mean can be made of what such a companion holds.
 inline bool is_variance(Companion c) {
-  return c == Companion::VarianceOfMean || c == Companion::VarianceOfSample || c == Companion::SecondMoment;
+  return c == Companion::VarianceOfMean || c == Companion::VarianceOfSample || c == Companion::SecondMoment ||
+         c == Companion::SecondMomentOfXyz;
 }
 
 /// Groups the channels of all parts into layers, in file order, and classifies them.

@@ -40,8 +40,8 @@ struct ChannelReader::Source {
 
 ChannelReader::ChannelReader(const FileInfo& file, int part, std::vector<std::string> channels)
     : source_(std::make_unique<Source>()), file_(file), part_(part), channels_(std::move(channels)) {
-  if (!file.parts[static_cast<std::size_t>(part)].readable())
-    fail(file, part, "is unsupported (deep, mip-mapped or subsampled (luminance-chroma))");
+  if (const std::string obstacle = file.parts[static_cast<std::size_t>(part)].obstacle(); !obstacle.empty())
+    fail(file, part, "is " + obstacle);
   if (file.format != "openexr") {
     source_->pixels = read_plain_image(file, channels_);
     return;

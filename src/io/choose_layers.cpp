@@ -59,25 +59,6 @@ bool is_one_bare_image(const FrameSource& source) {
          (source.layers.front().pass == bare_pass || source.layers.front().channels.size() == 1);
 }
 
-/// Finds the layers of the file, and those of the files with the other passes of a render that has a file for each.
-void open_files(LayerChoice& choice, const std::string& path, const ReadOptions& options) {
-  FrameSource& source = choice.source;
-  source.path = path;
-  source.files.push_back(describe_file(path, options.limits));
-  source.layers = find_layers(source.files.front());
-  if (!is_one_bare_image(source)) return;
-  const auto siblings = find_siblings(path);
-  if (siblings.empty()) return;
-  source.layers.front().name = source.layers.front().pass = pass_in_file_name(path);
-  std::vector<std::string> names;
-  for (const SiblingFile& sibling : siblings) {
-    add_file(source, sibling.path, sibling.pass, Role::Other, options.limits);
-    names.push_back(std::filesystem::path(sibling.path).filename().string());
-  }
-  classify_layers(source.files, source.layers);
-  choice.notes.push_back(fmt::format("passes from files next to the input: {}", fmt::join(names, ", ")));
-}
-
 /// The index of a layer by its whole name or its name within the view layer. A channel's name adds a layer with this
 /// channel alone. -1 where there is none.
 int find_layer(FrameSource& source, const std::string& name, const std::string& view_layer) {
@@ -200,10 +181,13 @@ PassChoice with_companions(const FrameSource& source, Role role, int mean) {
 }
 
 [[noreturn]] void no_beauty(const FrameSource& source) {
-  if (find_mean(source, Role::Beauty, false) >= 0)
+  if (const int beauty = find_mean(source, Role::Beauty, false); beauty >= 0)
     throw Error(ExitCode::BadInput,
-                fmt::format("{}: the beauty is deep, mip-mapped or subsampled (luminance-chroma), which is unsupported",
-                            source.path));
+                fmt::format("{}: the beauty is {}", source.path,
+                            part_of(source, source.layers[static_cast<std::size_t>(beauty)]).obstacle()));
+  const std::vector<PartInfo>& parts = source.files.front().parts;
+  if (std::none_of(parts.begin(), parts.end(), [](const PartInfo& part) { return part.readable(); }))
+    throw Error(ExitCode::BadInput, fmt::format("{}: the image is {}", source.path, parts.front().obstacle()));
   std::vector<std::string> names;
   for (const Layer& layer : source.layers) names.push_back(layer.name);
   throw Error(ExitCode::Missing, fmt::format("{}: no beauty among the layers {}; name it with --map beauty=LAYER",
@@ -266,10 +250,29 @@ void choose_alpha(LayerChoice& choice, const Layer& beauty) {
 
 }  // namespace
 
+FrameSource open_source(const std::string& path, const ReadLimits& limits, std::vector<std::string>& notes) {
+  FrameSource source;
+  source.path = path;
+  source.files.push_back(describe_file(path, limits));
+  source.layers = find_layers(source.files.front());
+  if (!is_one_bare_image(source)) return source;
+  const auto siblings = find_siblings(path);
+  if (siblings.empty()) return source;
+  source.layers.front().name = source.layers.front().pass = pass_in_file_name(path);
+  std::vector<std::string> names;
+  for (const SiblingFile& sibling : siblings) {
+    add_file(source, sibling.path, sibling.pass, Role::Other, limits);
+    names.push_back(std::filesystem::path(sibling.path).filename().string());
+  }
+  classify_layers(source.files, source.layers);
+  notes.push_back(fmt::format("passes from files next to the input: {}", fmt::join(names, ", ")));
+  return source;
+}
+
 LayerChoice choose_layers(const std::string& path, const ReadOptions& options) {
   LayerChoice choice;
   FrameSource& source = choice.source;
-  open_files(choice, path, options);
+  source = open_source(path, options.limits, choice.notes);
   choose_view_layer(source, options);
   apply_map(source, options);
   const int beauty = find_mean(source, Role::Beauty);

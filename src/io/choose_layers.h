@@ -21,6 +21,10 @@ struct LayerChoice {
   std::vector<std::string> notes;
 };
 
+/// The file at path with its layers. A file that holds one pass without a name is joined by the files next to it that
+/// hold the other passes of the render; notes then name them.
+FrameSource open_source(const std::string& path, const ReadLimits& limits, std::vector<std::string>& notes);
+
 /// Opens the headers of a file and of the files next to it that hold its other passes, and chooses the layer for each
 /// role. Throws as read_frame does.
 LayerChoice choose_layers(const std::string& path, const ReadOptions& options);

@@ -10,8 +10,10 @@
 #include <utility>
 
 #include "core/rect.h"
+#include "io/beyond_range.h"
 #include "io/channel_names.h"
 #include "io/choose_layers.h"
+#include "io/cie_xyz.h"
 #include "io/exr/file.h"
 #include "io/observed_read.h"
 #include "io/renderers/known_names.h"
@@ -88,9 +90,11 @@ class PartReader {
     }
   }
 
-  Rect window_of(const Layer& layer) const {
-    return source_.files[static_cast<std::size_t>(layer.file)].parts[static_cast<std::size_t>(layer.part)].data_window;
+  const PartInfo& part_of(const Layer& layer) const {
+    return source_.files[static_cast<std::size_t>(layer.file)].parts[static_cast<std::size_t>(layer.part)];
   }
+
+  Rect window_of(const Layer& layer) const { return part_of(layer).data_window; }
 
  private:
   static void add_other_channels(const FileInfo& file, int part, std::vector<std::string>& channels) {
@@ -154,15 +158,20 @@ Companion kind_of(const Layer& layer, VarianceKind by_user) {
     case VarianceKind::Sample:
       return Companion::VarianceOfSample;
     case VarianceKind::SecondMoment:
-      return Companion::SecondMoment;
+      return layer.companion == Companion::SecondMomentOfXyz ? layer.companion : Companion::SecondMoment;
     case VarianceKind::Auto:
       break;
   }
   return layer.companion;
 }
 
-/// Turns the variance v of one sample, or the mean square m2 of n samples, into the variance of the mean: v / n, or the
-/// unbiased (m2 - mean^2) / (n - 1), at least 0.
+/// The unbiased variance of the mean of n samples, (m2 - mean^2) / (n - 1), at least 0; m2 is their mean square.
+double variance_from_moment(double m2, double mean, double n) {
+  const double spread = m2 - mean * mean;
+  return spread < 0 ? 0 : spread / std::max(n - 1, 1.0);
+}
+
+/// Turns the variance v of one sample, or the mean square of n samples, into the variance of the mean. v becomes v / n.
 void to_variance_of_mean(Image& variance, const Image& mean, Companion kind, const SampleCounts& counts) {
   for (int c = 0; c < variance.channels(); ++c)
     for (std::size_t i = 0; i < variance.pixels(); ++i) {
@@ -171,11 +180,22 @@ void to_variance_of_mean(Image& variance, const Image& mean, Companion kind, con
       if (kind == Companion::VarianceOfSample) {
         v = static_cast<Real>(v / std::max(n, 1.0));
       } else {
-        const double m = mean.plane(std::min(c, mean.channels() - 1))[i];
-        const double spread = v - m * m;
-        v = static_cast<Real>(spread < 0 ? 0 : spread / std::max(n - 1, 1.0));
+        v = static_cast<Real>(variance_from_moment(v, mean.plane(std::min(c, mean.channels() - 1))[i], n));
       }
     }
+}
+
+/// Turns the mean squares of a colour's XYZ values into the variances of its mean RGB. The noise of the channels is
+/// taken to be fully correlated, as it is where the light's colour does not change.
+void xyz_to_variance_of_mean(Image& moments, const Image& mean, const SampleCounts& counts) {
+  for (std::size_t i = 0; i < moments.pixels(); ++i) {
+    const Triple xyz = product(rgb_to_xyz, {mean.plane(0)[i], mean.plane(1)[i], mean.plane(2)[i]});
+    Triple deviation{};
+    for (std::size_t c = 0; c < 3; ++c)
+      deviation[c] = std::sqrt(variance_from_moment(moments.plane(static_cast<int>(c))[i], xyz[c], counts.at(i)));
+    const Triple rgb = product(xyz_to_rgb, deviation);
+    for (std::size_t c = 0; c < 3; ++c) moments.plane(static_cast<int>(c))[i] = static_cast<Real>(rgb[c] * rgb[c]);
+  }
 }
 
 Image times(Image image, const std::array<Real, 4>& factors) {
@@ -248,15 +268,25 @@ class FrameBuilder {
   }
 
   /// The image on the frame's window; empty without one.
-  static Image take(Image* image, int channels, bool is_variance = false) {
+  Image take(Image* image, Role role, int index, int channels, bool is_variance = false) {
     if (!image) return {};
+    bring_channels_into_range(*image, role, layer(index));
     return with_channels(std::move(*image), channels, is_variance);
+  }
+
+  void bring_channels_into_range(Image& image, Role role, const Layer& from) {
+    std::size_t overflows = 0;
+    for (int c = 0; c < image.channels(); ++c)
+      overflows +=
+          bring_into_range(beyond_range(reader_.part_of(from), from, role, from.channels[static_cast<std::size_t>(c)]),
+                           image.plane(c), image.pixels());
+    if (overflows > 0) result_.notes.push_back(overflow_note(from.name, overflows));
   }
 
   /// The counts of a sample-count layer; empty, with a note, where it holds fractions of an unknown number.
   Image take_counts(WantedPass& wanted) {
     const Layer& from = layer(wanted.choice.mean);
-    Image counts = take(wanted.mean, 1);
+    Image counts = take(wanted.mean, Role::SampleCount, wanted.choice.mean, 1);
     if (!is_sample_fraction(from.pass)) return counts;
     if (counts_.everywhere <= 0) {
       result_.notes.push_back(
@@ -282,25 +312,30 @@ class FrameBuilder {
     if (!wanted.variance) return {};
     const Layer& from = layer(wanted.choice.variance);
     const Companion kind = kind_of(from, options_.variance_kind);
-    Image variance = take(wanted.variance, mean.channels(), kind != Companion::SecondMoment);
+    Image variance = take(wanted.variance, wanted.choice.role, wanted.choice.variance, mean.channels(),
+                          kind != Companion::SecondMoment);
     if (kind == Companion::VarianceOfMean) return variance;
     if (!counts_.known()) {
       result_.notes.push_back(fmt::format(
           "{} is not used: it is the {} and the sample count is unknown; give --samples", from.name, name_of(kind)));
       return {};
     }
-    to_variance_of_mean(variance, mean, kind, counts_);
+    if (kind == Companion::SecondMomentOfXyz)
+      xyz_to_variance_of_mean(variance, mean, counts_);
+    else
+      to_variance_of_mean(variance, mean, kind, counts_);
     return variance;
   }
 
   Pass take_pass(WantedPass& wanted) {
-    const int channels = info_of(wanted.choice.role).channels;
+    const Role role = wanted.choice.role;
+    const int channels = info_of(role).channels;
     Pass pass;
     pass.name = layer(wanted.choice.mean).name;
-    pass.mean = take(wanted.mean, channels);
+    pass.mean = take(wanted.mean, role, wanted.choice.mean, channels);
     pass.variance = take_variance(wanted, pass.mean);
-    pass.half_a = take(wanted.half_a, channels);
-    pass.half_b = take(wanted.half_b, channels);
+    pass.half_a = take(wanted.half_a, role, wanted.choice.half_a, channels);
+    pass.half_b = take(wanted.half_b, role, wanted.choice.half_b, channels);
     return pass;
   }
 
@@ -322,10 +357,11 @@ class FrameBuilder {
         frame.aovs.push_back(take_pass(wanted));
         break;
       case Role::Alpha:
-        if (!alpha_) frame.alpha = take(wanted.mean, info.channels);
+        if (!alpha_) frame.alpha = take(wanted.mean, info.role, wanted.choice.mean, info.channels);
         break;
       case Role::Motion:
-        frame.motion = times(take(wanted.mean, info.channels), motion_factors(layer(wanted.choice.mean).pass));
+        frame.motion = times(take(wanted.mean, info.role, wanted.choice.mean, info.channels),
+                             motion_factors(layer(wanted.choice.mean).pass));
         break;
       default:  // sample counts, which are taken first
         break;

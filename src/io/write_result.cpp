@@ -27,6 +27,7 @@
 #include "core/first_line.h"
 #include "core/rect.h"
 #include "io/atomic_file.h"
+#include "io/beyond_range.h"
 #include "io/exr/bands.h"
 #include "io/exr/raw.h"
 #include "io/exr/single_part.h"
@@ -35,8 +36,6 @@
 
 namespace polyrecon {
 namespace {
-
-constexpr float half_maximum = 65504;
 
 /// The source of a channel's new samples: a plane of an image, or the mean of all its planes.
 struct NewChannel {
@@ -97,12 +96,13 @@ void add_replacement(const FrameSource& source, const Replacement& replacement, 
   const auto channels = channels_to_replace(layer, replacement);
   const Image& image = replacement.image;
   const bool one_of_three = channels.size() == 1 && image.channels() == 3;
-  if (image.width() != window.width() || image.height() != window.height() ||
-      (static_cast<std::size_t>(image.channels()) != channels.size() && !one_of_three))
+  const bool fits = static_cast<std::size_t>(image.channels()) == channels.size() || one_of_three;
+  const bool repeated = image.channels() == 1;
+  if (image.width() != window.width() || image.height() != window.height() || (!fits && !repeated))
     throw Error(ExitCode::Internal,
                 fmt::format("{}: the new image does not have the shape of layer {}", source.path, layer.name));
   for (std::size_t c = 0; c < channels.size(); ++c) {
-    NewChannel channel{&image, window, static_cast<int>(c), one_of_three, {}};
+    NewChannel channel{&image, window, repeated ? 0 : static_cast<int>(c), one_of_three, {}};
     if (options.keep_noisy) {
       channel.noisy_name = noisy_name(layer, channels[c]);
       part.header.channels().insert(channel.noisy_name, *part.header.channels().findChannel(channels[c]));
@@ -144,8 +144,8 @@ void add_provenance(Imf::Header& header, const Provenance& provenance) {
 /// Stores a value as the channel's type. Counts half values that were out of range and are saturated.
 void store(NativeChannel& channel, std::size_t i, float value, std::size_t& saturated) {
   if (channel.type == Imf::HALF) {
-    if (std::abs(value) > half_maximum) {
-      value = std::copysign(half_maximum, value);
+    if (std::abs(value) > largest_half) {
+      value = std::copysign(largest_half, value);
       ++saturated;
     }
     const half h(value);
@@ -232,7 +232,7 @@ class Rewrite {
     for (int p = 0; p < static_cast<int>(parts_.size()); ++p)
       parts_[static_cast<std::size_t>(p)].copied_raw() ? copy_raw(output, p) : write_changed(output, p);
     if (saturated_ > 0)
-      notes_.push_back(fmt::format("{} half samples were beyond {} and are written as that", saturated_, half_maximum));
+      notes_.push_back(fmt::format("{} half samples were beyond {} and are written as that", saturated_, largest_half));
   }
 
   void verify(const std::string& path) {

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "cli/program.h"
@@ -53,6 +54,35 @@ TEST_F(SettingsChosen, AnErrorThatIsEasyToReachTakesTheFastest) {
 
 TEST_F(SettingsChosen, WithASampleMapATargetIsTheMapsAlone) {
   EXPECT_TRUE(report_of({"--sample-map", "s.exr", "--target", "0.1"})["settings_choice"].is_null());
+}
+
+/// A crash of the renderer left three of the frame's four blocks without a finite pixel.
+TEST_F(SettingsChosen, ARequestAndInspectTakeWhatDenoiseTakes) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  write_exr(path("in.exr"), 128, 128, {"R", "G", "B"},
+            [&](int x, int y, int c) { return x >= 64 || y >= 64 ? nan : 1 + 0.01 * ((x * 7 + y * 13 + c) % 11); });
+  for (const std::vector<std::string>& more :
+       {std::vector<std::string>{}, {"--time-budget", "100"}, {"--target", "0.1"}}) {
+    std::vector<std::string> arguments{"denoise", "-i", "in.exr", "-o", "out.exr", "--quality", "draft"};
+    if (!more.empty()) arguments.resize(5);
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Outcome done = run(arguments);
+    EXPECT_EQ(done.code, 0) << done.err;
+    EXPECT_NE(done.out.find("12288 repaired"), std::string::npos) << done.out;
+  }
+  const Outcome inspected = run({"inspect", "in.exr"});
+  EXPECT_EQ(inspected.code, 0) << inspected.err;
+  EXPECT_NE(inspected.out.find("12288 NaN"), std::string::npos) << inspected.out;
+}
+
+TEST_F(SettingsChosen, InspectSaysThatNoPixelIsFinite) {
+  write_exr(path("in.exr"), 8, 8, {"R", "G", "B"},
+            [](int, int, int) { return std::numeric_limits<double>::quiet_NaN(); });
+  const Outcome inspected = run({"inspect", "in.exr"});
+  EXPECT_EQ(inspected.code, 0) << inspected.err;
+  EXPECT_NE(inspected.out.find("note: layer 'RGBA': no finite pixel; render the frame again"), std::string::npos)
+      << inspected.out;
+  EXPECT_EQ(run({"denoise", "-i", "in.exr", "-o", "out.exr"}).code, 6);
 }
 
 TEST_F(SettingsChosen, StepsRunAsRequested) {

@@ -42,6 +42,8 @@ Cells names_of(const Renderer& renderer, Role role) {
   Cells names;
   for (const PassName& pass : passes)
     names.push_back(code(pass.name) + (pass.name == renderer.sample_fraction ? " x the metadata's number" : ""));
+  for (const PassName& letter : renderer.letters)
+    if (letter.role == role) names.push_back(code("<layer>." + letter.name));
   return names;
 }
 
@@ -152,7 +154,10 @@ TEST(Renderers, QuirksOfBlender) {
   EXPECT_FALSE(is_sample_fraction("Sample Count") || is_sample_fraction(""));
   EXPECT_TRUE(is_render_time("Render Time"));
   EXPECT_FALSE(is_render_time("") || is_render_time("Combined"));
-  EXPECT_EQ(sky_depth(), 1e9);  // a tenth of Blender's 1e10
+  EXPECT_EQ(sky_value(), 1e10);
+  EXPECT_EQ(sky_depth(), 1e9);  // a tenth of it
+  EXPECT_TRUE(is_compositing_depth("Depth") && is_compositing_depth("depth"));
+  EXPECT_FALSE(is_compositing_depth("Denoising Depth") || is_compositing_depth(""));
 }
 
 TEST(Renderers, MotionIsTakenAsBlendersWhereNoRendererHasTheName) {

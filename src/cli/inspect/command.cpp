@@ -9,6 +9,7 @@
 #include "cli/inspect/report.h"
 #include "pipeline/savings.h"
 #include "pipeline/survey.h"
+#include "polyrecon/error.h"
 #include "polyrecon/progress.h"
 #include "sweep/settings_choice.h"
 
@@ -34,7 +35,12 @@ std::vector<Decision> decide_steps(Frame& frame) {
 void run(const InspectOptions& o) {
   require_readable(o.input);
   InspectReport report{inspect(o.input, o.read), {}};
-  if (report.file.frame) report.steps = decide_steps(*report.file.frame);
+  if (report.file.frame) try {
+      report.steps = decide_steps(*report.file.frame);
+    } catch (const Error& problem) {
+      if (problem.code() != ExitCode::CheckFailed) throw;
+      report.file.notes.emplace_back(problem.what());
+    }
   const std::string text = o.json ? inspect_json(report).dump(2) + "\n" : inspect_text(report);
   std::fputs(text.c_str(), stdout);
 }

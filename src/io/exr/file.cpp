@@ -20,6 +20,7 @@
 #include "io/channel_reader.h"
 #include "io/exr/attributes.h"
 #include "io/exr/chunks.h"
+#include "io/exr/compression.h"
 #include "io/exr/guard.h"
 #include "io/plain_image_file.h"
 #include "polyrecon/error.h"
@@ -29,12 +30,6 @@ namespace {
 
 [[noreturn]] void fail(const std::string& path, const std::string& what) {
   throw Error(ExitCode::BadInput, fmt::format("{}: {}", path, what));
-}
-
-std::string compression_name(Imf::Compression compression) {
-  static constexpr std::array names{"none", "rle", "zips", "zip", "piz", "pxr24", "b44", "b44a", "dwaa", "dwab"};
-  const auto index = static_cast<std::size_t>(compression);
-  return index < names.size() ? names[index] : "unknown";
 }
 
 Rect to_rect(const Imath::Box2i& box) { return {box.min.x, box.min.y, box.max.x + 1, box.max.y + 1}; }
@@ -105,10 +100,17 @@ bool is_plain_image(const std::string& path) {
 
 }  // namespace
 
-bool PartInfo::readable() const {
-  return !deep && !mipmapped && std::all_of(channels.begin(), channels.end(), [](const ChannelInfo& c) {
-    return c.x_sampling == 1 && c.y_sampling == 1;
-  });
+std::string PartInfo::obstacle() const {
+  if (deep) return "deep (any number of samples in a pixel), which is unsupported; save a flat image";
+  if (mipmapped) return "mip-mapped or ripmapped, which is unsupported; save one level";
+  const auto subsampled = std::find_if(channels.begin(), channels.end(),
+                                       [](const ChannelInfo& c) { return c.x_sampling != 1 || c.y_sampling != 1; });
+  if (subsampled == channels.end()) return {};
+  return fmt::format(
+      "subsampled (channel {} has a sample for {} x {} pixels, as in luminance-chroma images), which is unsupported; "
+      "save "
+      "R, G and B of every pixel",
+      subsampled->name, subsampled->x_sampling, subsampled->y_sampling);
 }
 
 const char* name_of(SampleType type) {

@@ -13,6 +13,7 @@
 #include <string_view>
 
 #include "io/exr/chunks.h"
+#include "io/exr/compression.h"
 #include "polyrecon/error.h"
 
 namespace polyrecon {
@@ -44,6 +45,13 @@ class HeaderWalk {
     return little_endian(raw);
   }
 
+  int byte() {
+    char raw = 0;
+    if (!stream_.get(raw)) cut();
+    ++position_;
+    return static_cast<unsigned char>(raw);
+  }
+
   /// A name of at most 255 bytes and its closing zero.
   std::string name() {
     std::string text;
@@ -63,6 +71,8 @@ class HeaderWalk {
   }
 
   std::uint64_t position() const { return position_; }
+
+  [[noreturn]] void unsupported(const std::string& what) { fail(path_, what); }
 
   [[noreturn]] void damaged(const std::string& attribute) {
     fail(path_, fmt::format("incomplete or damaged header (attribute {})", attribute));
@@ -107,7 +117,8 @@ std::uint32_t fixed_size(std::string_view type) {
   return found == sizes.end() ? 0 : found->second;
 }
 
-/// Walks over an attribute's value; the counts inside must agree with its size too.
+/// Walks over an attribute's value; the counts inside must agree with its size too. OpenEXR calls a header damaged if
+/// it does not know its compression, so that is looked at here.
 void walk_value(HeaderWalk& walk, const std::string& attribute, const std::string& type, std::uint32_t size) {
   constexpr std::uint32_t channel_bytes = 16;  // after its name: type, linearity, samplings
   const std::uint64_t end = walk.position() + size;
@@ -118,6 +129,8 @@ void walk_value(HeaderWalk& walk, const std::string& attribute, const std::strin
     if (!last_name.empty()) walk.damaged(attribute);
   } else if (type == "stringvector") {
     while (walk.position() < end) walk.skip(walk.number(), attribute);
+  } else if (type == "compression") {
+    if (const std::string obstacle = compression_obstacle(walk.byte()); !obstacle.empty()) walk.unsupported(obstacle);
   } else if (type == "preview") {
     const std::uint64_t width = walk.number(), height = walk.number();
     if (width > size || height > size || width * height * 4 + 8 != size) walk.damaged(attribute);

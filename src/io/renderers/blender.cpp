@@ -20,6 +20,8 @@ Renderer blender() {
       {"Shadow", Role::Visibility, 2},             // Blender 2.8 to 4
       {"Ambient Occlusion", Role::Visibility, 3},  // Blender 5
       {"AO", Role::Visibility, 3},
+      {"Denoising Specular Albedo", Role::SpecularAlbedo, 1},  // Blender 5.2
+      {"Denoising Roughness", Role::Roughness, 1},             // Blender 5.2
       {"Debug Sample Count", Role::SampleCount, 2},
       {"Vector", Role::Motion, 1},
   };
@@ -28,7 +30,9 @@ Renderer blender() {
   r.samples_attributes = {{"cycles.{}.samples", true}};
   r.sample_fraction = "Debug Sample Count";
   r.render_time = "Render Time";
-  r.sky_depth = 1e10;
+  r.compositing_depth = "Depth";
+  r.first_sample_is_central = true;
+  r.sky_depth = 1e10;  // from 5.2 on the largest float
   // Vector holds (X, Y) from here to the place in the frame before and (Z, W) from the place in the frame after to
   // here, with rows counted upwards.
   r.motion_factors = {1, -1, -1, 1};

@@ -47,6 +47,13 @@ std::optional<PassClass> classify_pass(const std::string& pass) {
   return known->second;
 }
 
+std::optional<PassClass> classify_letter(const std::string& letter) {
+  for (const Renderer& renderer : renderers())
+    for (const PassName& known : renderer.letters)
+      if (known.name == letter) return PassClass{known.role, known.rank, renderer.name};
+  return std::nullopt;
+}
+
 bool same_name(std::string_view a, std::string_view b) { return normalised(a) == normalised(b); }
 
 bool has_data_prefix(const std::string& pass) {
@@ -84,10 +91,26 @@ std::vector<SamplesAttribute> samples_attributes(const std::string& view_layer) 
   return attributes;
 }
 
-double sky_depth() {
+double sky_value() {
   double least = std::numeric_limits<double>::infinity();
   for (const Renderer& renderer : renderers()) least = std::min(least, renderer.sky_depth);
-  return least / 10;
+  return least;
+}
+
+double sky_depth() { return sky_value() / 10; }
+
+bool is_compositing_depth(const std::string& pass) {
+  return any_renderer_with(
+      [&](const Renderer& r) { return !r.compositing_depth.empty() && same_name(pass, r.compositing_depth); });
+}
+
+std::vector<std::string> attributes_of_central_samples(const std::string& view_layer) {
+  std::vector<std::string> names;
+  for (const Renderer& renderer : renderers())
+    if (renderer.first_sample_is_central)
+      for (const SamplesAttribute& attribute : renderer.samples_attributes)
+        names.push_back(with_view_layer(attribute.name, view_layer));
+  return names;
 }
 
 std::array<Real, 4> motion_factors(const std::string& pass) {

@@ -21,6 +21,9 @@ struct PassClass {
 /// pass: a name without its view layer. Nothing where no renderer is known to use it.
 std::optional<PassClass> classify_pass(const std::string& pass);
 
+/// The same for the only channel of a layer, by its letter.
+std::optional<PassClass> classify_letter(const std::string& letter);
+
 /// Whether a and b are one name: they are compared without case, blanks, '_' and '-'.
 bool same_name(std::string_view a, std::string_view b);
 
@@ -42,9 +45,18 @@ std::string with_view_layer(std::string attribute, const std::string& view_layer
 /// The attributes that can hold the samples per pixel of a view layer, in the order in which they are looked for.
 std::vector<SamplesAttribute> samples_attributes(const std::string& view_layer);
 
-/// Depths from here on are sky: a tenth of the least value that a renderer writes where a ray hits nothing, as a pixel
-/// at the edge of the sky averages it with smaller depths.
+/// The least depth that a renderer writes where a ray hits nothing. Larger depths say no more.
+double sky_value();
+
+/// Depths from here on are sky: a tenth of sky_value, as a pixel at the edge of the sky averages it with smaller
+/// depths.
 double sky_depth();
+
+/// Whether the pass holds the depth of each pixel's first sample, for compositing. Averages of it are wrong at edges.
+bool is_compositing_depth(const std::string& pass);
+
+/// The attributes with the samples per pixel by which a file tells that the first one lies at the pixel's centre.
+std::vector<std::string> attributes_of_central_samples(const std::string& view_layer);
 
 /// Factors that turn the channels of a motion pass into Frame::motion. A pass that no renderer is known to use is taken
 /// for one of the first renderer that has motion.

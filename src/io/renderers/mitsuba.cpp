@@ -12,8 +12,9 @@ Renderer mitsuba() {
       {"sh_normal", Role::Normal, 2}, {"nn", Role::Normal, 2},  {"geo_normal", Role::Normal, 4},
       {"depth", Role::Depth, 2},
   };
+  r.letters = {{"T", Role::Depth, 3}};
   r.affixes = {{"m2_", Companion::SecondMoment, CompanionAffix::Place::BeforeWholeName}};
-  r.beauty_moment_is_nested = true;  // the moment integrator keeps it with the integrator that makes the image
+  r.beauty_moment_is_nested = true;  // the moment integrator keeps it with the nested one
   return r;
 }
 

@@ -62,6 +62,7 @@ struct Renderer {
   std::string versions;  ///< Which versions or outputs the names belong to, for the documentation; may be empty.
 
   std::vector<PassName> passes;
+  std::vector<PassName> letters;           ///< Of layers of one channel with a name that the user gives. Case matters.
   std::vector<std::string> data_prefixes;  ///< Passes whose names begin so hold data even if they look like colours.
   std::vector<CompanionAffix> affixes;
   std::vector<BeautyCompanion> beauty_companions;
@@ -75,7 +76,12 @@ struct Renderer {
   std::string sample_fraction;  ///< Sample-count pass that holds a fraction of the metadata's number.
   std::string render_time;      ///< Pass with the cost of each pixel.
 
-  /// Depth where a ray hits nothing.
+  /// Pass with the depth of a pixel's first sample; averages of it are wrong at edges.
+  std::string compositing_depth;
+  /// The first sample of a pixel lies at its centre in every render, whatever the seed.
+  bool first_sample_is_central = false;
+
+  /// Least depth where a ray hits nothing.
   double sky_depth = std::numeric_limits<double>::infinity();
   /// Factors that turn the channels of the motion pass into Frame::motion.
   std::array<Real, 4> motion_factors{1, 1, 1, 1};

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include "polyrecon/image.h"
+#include "polyrecon/layers.h"
+
+namespace polyrecon {
+
+constexpr float largest_half = 65504;
+
+/// What samples beyond the range of a channel are taken for.
+enum class BeyondRange {
+  AsStored,
+  LargestHalf,  ///< Half floats hold radiance above largest_half as +Inf.
+  Sky           ///< Where rays hit nothing, renderers write depths of 1e10, of the largest float, or +Inf.
+};
+
+/// layer: a layer of the part, which is used in this role. channel: one of the layer's, whole name.
+BeyondRange beyond_range(const PartInfo& part, const Layer& layer, Role role, const std::string& channel);
+
+/// Replaces +Inf by largest_half, or depths beyond the sky's by the sky's. Returns the number of half samples that were
+/// replaced.
+template <typename Sample>
+std::size_t bring_into_range(BeyondRange beyond, Sample* samples, std::size_t count);
+
+/// The note on a layer in which so many half samples are +Inf.
+std::string overflow_note(const std::string& layer, std::size_t samples);
+
+}  // namespace polyrecon

@@ -1,0 +1,131 @@
+// Lamps brighter than half floats reach: renderers store +Inf.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "io/exr_fixture.h"
+#include "polyrecon/merge.h"
+#include "polyrecon/read_frame.h"
+#include "polyrecon/reconstruct.h"
+#include "support/images.h"
+
+namespace polyrecon {
+namespace {
+
+using testing::constant;
+using ::testing::Each;
+using ::testing::ElementsAre;
+using testing::error_of;
+using testing::flat_layer;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using testing::join;
+using testing::layer;
+using testing::stored_floats;
+using testing::TemporaryFolder;
+using testing::TestChannel;
+using testing::TestPart;
+using testing::write_exr;
+
+constexpr double inf = std::numeric_limits<double>::infinity();
+constexpr int width = 48, height = 40;
+
+bool in_lamp(int x, int y) { return std::hypot(x - 24, y - 20) < 11.5; }  // wider than what a repair fills
+
+/// A lamp of +Inf before a noisy wall of about 0.3.
+TestPart lamp(Imf::PixelType type, int seed, double brightness = inf) {
+  TestPart part;
+  part.window = part.display = {0, 0, width, height};
+  for (TestChannel& channel : part.channels = layer("", "RGB", 0, type)) {
+    const int letter = channel.name[0];
+    channel.samples = [=](int x, int y) {
+      const unsigned mixed = static_cast<unsigned>(x * 7919 + y * 104729 + letter * 31 + seed * 1299709) * 2654435761U;
+      return in_lamp(x, y) ? brightness : 0.25 + 0.1 * (mixed >> 16 & 1023U) / 1023;
+    };
+  }
+  return part;
+}
+
+TEST(HalfOverflow, RadianceThatAHalfCannotHoldIsTheLargestHalf) {
+  const TemporaryFolder folder;
+  const ReadResult read = read_frame(write_exr(folder / "lamp.exr", {lamp(Imf::HALF, 1)}));
+  for (int c = 0; c < 3; ++c)
+    for (int y = 0; y < height; ++y)
+      for (int x = 0; x < width; ++x) {
+        if (in_lamp(x, y))
+          EXPECT_EQ(read.frame.beauty.mean.at(x, y, c), 65504);
+        else
+          EXPECT_LT(read.frame.beauty.mean.at(x, y, c), 1);
+      }
+  EXPECT_THAT(read.notes, ElementsAre(HasSubstr("RGBA: 1263 half-float samples of +Inf count as 65504")));
+}
+
+TEST(HalfOverflow, OneChannelAlone) {
+  const TemporaryFolder folder;
+  TestPart part = lamp(Imf::HALF, 1, 60000);
+  part.channels[1].samples = constant(inf);
+  const Image mean = read_frame(write_exr(folder / "lamp.exr", {part})).frame.beauty.mean;
+  EXPECT_EQ(mean.at(24, 20, 0), 60000);  // the nearest half of 60000
+  EXPECT_EQ(mean.at(24, 20, 1), 65504);
+}
+
+TEST(HalfOverflow, OtherInfinitiesStayAsTheyAre) {
+  const TemporaryFolder folder;
+  const auto flat = [](const char* name, const char* letters, Imf::PixelType type, double value) {
+    auto channels = layer(name, letters, 0, type);
+    for (TestChannel& channel : channels) channel.samples = constant(value);
+    return channels;
+  };
+  TestPart part;
+  part.channels = join({flat("V.Combined", "RGB", Imf::FLOAT, inf), flat("V.Denoising Albedo", "RGB", Imf::HALF, inf),
+                        flat("V.Emit", "RGB", Imf::HALF, -inf)});
+  ReadOptions options;
+  options.aovs = {"Emit"};
+  const ReadResult read = read_frame(write_exr(folder / "a.exr", {part}), options);
+  EXPECT_EQ(read.frame.beauty.mean.at(0, 0, 0), inf);
+  EXPECT_EQ(read.frame.features.front().pass.mean.at(0, 0, 0), inf);
+  EXPECT_EQ(read.frame.aovs.front().mean.at(0, 0, 0), -inf);
+  EXPECT_THAT(read.notes, IsEmpty());
+}
+
+Image denoised(ReadResult read) {
+  const Result result = reconstruct(read.frame, params_for(Quality::Draft), silent_progress());
+  EXPECT_EQ(result.report.repaired_pixels, 0U);
+  return result.beauty;
+}
+
+/// The same picture in a float file, with the largest half in place of +Inf.
+TEST(HalfOverflow, ALampIsDenoisedAsIfItWereTheLargestHalf) {
+  const TemporaryFolder folder;
+  TestPart floats = lamp(Imf::FLOAT, 1, 65504);
+  for (TestChannel& channel : floats.channels)
+    channel.samples = [stored = channel.samples](int x, int y) {
+      return static_cast<float>(half(static_cast<float>(stored(x, y))));
+    };
+  const Image image = denoised(read_frame(write_exr(folder / "half.exr", {lamp(Imf::HALF, 1)})));
+  EXPECT_TRUE(test::same_bits(image, denoised(read_frame(write_exr(folder / "float.exr", {floats})))));
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x)
+      if (std::hypot(x - 24, y - 20) < 9) EXPECT_NEAR(image.at(x, y, 0), 65504, 0.01 * 65504) << x << " " << y;
+}
+
+TEST(HalfOverflow, MergedRendersHoldTheLargestHalf) {
+  const TemporaryFolder folder;
+  const std::string out = folder / "merged.exr";
+  const MergeResult merged = merge(
+      {write_exr(folder / "a.exr", {lamp(Imf::HALF, 1)}), write_exr(folder / "b.exr", {lamp(Imf::HALF, 2)})}, out);
+  const auto mean = stored_floats(out, 0, "R"), variance = stored_floats(out, 0, "RGBA Variance.R");
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      const auto i = static_cast<std::size_t>(y * width + x);
+      if (!in_lamp(x, y)) continue;
+      EXPECT_EQ(mean[i], 65504);
+      EXPECT_EQ(variance[i], 0);
+    }
+  EXPECT_THAT(merged.notes, ::testing::Contains(HasSubstr("RGBA: 2526 half-float samples of +Inf count as 65504")));
+}
+
+}  // namespace
+}  // namespace polyrecon
