@@ -15,6 +15,8 @@ from .session import BlenderSession
 PART_LAYERS = {
     "Combined",
     "Denoising Albedo",
+    "Denoising Specular Albedo",  # this and the next since 5.2
+    "Denoising Roughness",
     "Denoising Normal",
     "Denoising Depth",
     "Shadow",

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Makes the Python of the drivers' tests in build/venv: Debian's Python with its packages (numpy, OpenImageIO, jinja2, rich,
-# yaml), and in addition Blender 5 as a module, the command openjd, and ruff. What is installed already is kept.
+# yaml), and in addition Blender 5.0, Mitsuba and LuxCore as modules, the command openjd, and ruff. Blender 5.2 needs Python
+# 3.13: where there is one, build/venv_blender_5_2 has it. What is installed already is kept.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 python=build/venv/bin/python3
@@ -12,6 +13,18 @@ fi
 # bpy without its dependencies: it would install a newer numpy, which Debian's OpenImageIO module cannot load.
 "$python" -c 'import importlib.util as u, sys; sys.exit(not u.find_spec("bpy"))' ||
   "$python" -m pip install --quiet --disable-pip-version-check --no-deps bpy==5.0.1
+# Mitsuba and LuxCore write the files of a test. Without dependencies: LuxCore's is the compiler of a graphics card.
+"$python" -c 'import importlib.util as u, sys; sys.exit(not (u.find_spec("mitsuba") and u.find_spec("pyluxcore")))' ||
+  "$python" -m pip install --quiet --disable-pip-version-check --no-deps mitsuba==3.9.1 drjit==1.5.0 pyluxcore==2.11.2
+blender_5_2=build/venv_blender_5_2
+python_3_13=$(command -v python3.13 || ls -d "${PYENV_ROOT:-$HOME/.pyenv}"/versions/3.13.*/bin/python3 2>/dev/null | tail -1 || true)
+if [ -n "$python_3_13" ]; then
+  [ -x "$blender_5_2/bin/python3" ] || "$python_3_13" -m venv "$blender_5_2"
+  "$blender_5_2/bin/python3" -c 'import importlib.util as u, sys; sys.exit(not u.find_spec("bpy"))' ||
+    "$blender_5_2/bin/python3" -m pip install --quiet --disable-pip-version-check bpy==5.2.3
+else
+  echo "no Python 3.13: the tests with Blender 5.2 are skipped"
+fi
 # openjd: the farm's tests run job templates with it.
 "$python" -c 'import importlib.util as u, sys; sys.exit(not u.find_spec("openjd.cli"))' 2>/dev/null ||
   "$python" -m pip install --quiet --disable-pip-version-check openjd-cli==0.8.0

@@ -11,6 +11,8 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[3]
 MAKE_SCENE = Path(__file__).with_name("make_scene.py")
 BLENDER_3 = shutil.which("blender")
+PYTHON_OF_BLENDER_5_2 = shutil.which(ROOT / "build" / "venv_blender_5_2" / "bin" / "python3")
+NO_BLENDER_5_2 = "Blender 5.2 needs Python 3.13, with which tests/pipelines/make_venv.sh installs it"
 
 
 class SceneTest(unittest.TestCase):
@@ -27,6 +29,13 @@ class SceneTest(unittest.TestCase):
         if blender != "bpy":
             script = [blender, "-b", "--factory-startup", "--python-exit-code", "7", "-P", MAKE_SCENE, "--"]
         subprocess.run([*script, path, kind], check=True, stdout=subprocess.DEVNULL)
+        return path
+
+    def blender_5_2(self):
+        """A program that takes Blender's options and runs the module of Blender 5.2."""
+        path = self.folder / "blender-5.2"
+        path.write_text(f'#!/bin/sh\nfor script; do :; done\nexec "{PYTHON_OF_BLENDER_5_2}" -B "$script"\n')
+        path.chmod(0o755)
         return path
 
     def driver(self, script, *words, **environment):

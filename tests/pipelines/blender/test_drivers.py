@@ -13,7 +13,7 @@ import unittest
 import numpy as np
 
 from pipelines.common import exr
-from tests.pipelines.blender.support import BLENDER_3, ROOT, SceneTest
+from tests.pipelines.blender.support import BLENDER_3, NO_BLENDER_5_2, PYTHON_OF_BLENDER_5_2, ROOT, SceneTest
 
 
 def executable(path, text):
@@ -34,7 +34,7 @@ def running(pid):
 
 
 class Adaptive(SceneTest):
-    def check(self, scene, blender, method):
+    def check(self, scene, blender, method, others=()):
         before = hashlib.sha256(scene.read_bytes()).digest()
         out = self.folder / "out.exr"
         done = self.driver(
@@ -51,7 +51,9 @@ class Adaptive(SceneTest):
         counts = exr.read(out.with_suffix(".passes") / "merged.exr")["ViewLayer.Sample Count.X"]
         self.assertLessEqual(counts.mean(), 16 * 1.15)
         self.assertGreaterEqual(counts.min(), 4)
-        self.assertEqual(sorted(p.name for p in self.folder.iterdir()), sorted([scene.name, "out.exr", "out.passes"]))
+        self.assertEqual(
+            sorted(p.name for p in self.folder.iterdir()), sorted([scene.name, "out.exr", "out.passes", *others])
+        )
         return out
 
     def test_blender_5_with_masks(self):
@@ -61,6 +63,11 @@ class Adaptive(SceneTest):
         page = (out.with_suffix(".passes") / "report.html").read_text()
         self.assertEqual(page.count("data:image/png;base64,"), 1 + page.count("</b>: "))
         self.assertNotIn("http", page)
+
+    @unittest.skipUnless(PYTHON_OF_BLENDER_5_2, NO_BLENDER_5_2)
+    def test_blender_5_2_with_masks(self):
+        blender = self.blender_5_2()
+        self.check(self.scene("lens"), ["--blender", blender], "masks by a camera shader", others=[blender.name])
 
     def test_blender_3_with_rectangles(self):
         self.check(self.scene(blender=BLENDER_3), ["--blender", BLENDER_3], "rectangles, because Blender before 5.0")
@@ -167,6 +174,22 @@ class RenderPasses(SceneTest):
         np.testing.assert_allclose(many["ViewLayer.Combined.R"], few["ViewLayer.Combined.R"], rtol=1e-4, atol=1e-5)
         self.assertEqual(set(many["ViewLayer.Sample Count.X"].flat), {8})
         self.assertGreater(many["ViewLayer.Combined Variance.R"].mean(), 0)
+
+    @unittest.skipUnless(PYTHON_OF_BLENDER_5_2, NO_BLENDER_5_2)
+    def test_blender_5_2(self):
+        scene, out, report = self.scene(), self.folder / "merged.exr", self.folder / "report.json"
+        done = self.driver(
+            "render_passes.py", scene, "-o", out, "--spp", 8, "--parts", 4, "--blender", self.blender_5_2()
+        )
+        self.assertEqual(done.returncode, 0, done.stderr)
+        merged = exr.read(out)
+        self.assertTrue(all(np.isfinite(plane).all() for plane in merged.values()))
+        self.assertEqual(merged["ViewLayer.Denoising Depth.Z"].max(), 1e10)  # the sky above the horizon
+        clean = self.folder / "clean.exr"
+        subprocess.run(
+            [os.environ["POLYRECON"], "denoise", "-i", out, "-o", clean, "--report", report, "-q"], check=True
+        )
+        self.assertEqual(json.loads(report.read_text())["repaired_pixels"], 0)
 
     def test_uneven_parts_are_refused(self):
         self.assertEqual(self.driver("render_passes.py", "s.blend", "-o", "o.exr", "--spp", 9).returncode, 2)
