@@ -15,7 +15,7 @@ NAMED = re.compile(r"(?<![\w/.$}>-])(?:docs|include|pipelines|samples|src|tests)
 FILE = re.compile(r"(?<![\w/.$}<>#-])(?:[\w-]+/)+[\w-]+\.(?:h|cpp|py|md|cmake)\b")
 FROZEN = (pathlib.Path("docs/lab"), pathlib.Path("CHANGELOG.md"))  # they speak of the tree of their day
 RECIPE = "docs/dev/add_a_"  # such pages name files that the reader makes:
-MADE = re.compile(r"NAME|stub|roughness_test|denoisers/|denoiser_test", re.IGNORECASE)
+MADE = re.compile(r"NAME|stub|curvature_test|denoisers/|denoiser_test", re.IGNORECASE)
 
 
 def links(text):
