@@ -2,6 +2,7 @@
 
 import concurrent.futures
 import pathlib
+import time
 
 import numpy as np
 
@@ -9,6 +10,7 @@ from ..common import exr
 from ..common.errors import DriverError, ExitCode
 from ..loop.renderer import RENDER_SECONDS, SAMPLE_COUNT, Audit, Renderer, Switch
 from . import masks, prior
+from .inputs import SceneInputs
 from .pass_list import masked_passes, rectangular_passes
 from .session import BlenderSession
 
@@ -42,12 +44,14 @@ class BlenderRenderer(Renderer):
         self.with_prior = with_prior
         self.complete_last_over_decision = prior.SECONDS_OVER_DECISION if with_prior else 0.0
         self.session = BlenderSession(blender, timeout)
+        self.inputs = SceneInputs()
         self.overhead_seconds = OVERHEAD_SECONDS
         self.seconds_per_sample = 0.0
 
     def begin(self, frame):
         self.frame = frame
         self._open()
+        self.input_digests = self.inputs.begin_frame(self.opened["files"]["used"])
         self.name = f"Blender {self.opened['version']}"
         if self.method == "osl" and not self.masked:
             raise DriverError(ExitCode.USAGE, f"--method osl: {self.opened['no_mask_camera']}")
@@ -64,13 +68,17 @@ class BlenderRenderer(Renderer):
         return self.opened["height"], self.opened["width"]
 
     def _open(self):
+        is_new, begin = not self.session.running, time.time_ns()
         self.opened = self.session.request(
             "open",
             path=str(self.scene),
             frame=self.frame,
             visibility=self.visibility,
             mask_camera=self.method != "regions",
+            cache_folder=None if self.session.not_confined else str(self.session.new_folder()),
         )
+        if is_new:
+            self.inputs.opened(self.opened["files"]["opened"], begin)
 
     def _audit(self):
         found = self.opened
@@ -87,10 +95,19 @@ class BlenderRenderer(Renderer):
             notes.append(
                 "Python drivers of the file are not run; the properties that they drive keep their saved values"
             )
+        if self.session.not_confined:
+            notes.append(f"Blender can write where the file says: {self.session.not_confined}")
         method = "masks by a camera shader" if self.masked else f"rectangles, because {found['no_mask_camera']}"
         switches = [Switch(**switch) for switch in found["switches"]]
         return Audit(
-            found["width"], found["height"], f"{found['view_layer']}.Combined", switches, passes, notes, method
+            width=found["width"],
+            height=found["height"],
+            beauty=f"{found['view_layer']}.Combined",
+            switches=switches,
+            passes=passes,
+            notes=notes,
+            method=method,
+            inputs=self.input_digests,
         )
 
     def uniform(self, first, samples, target):
@@ -201,6 +218,7 @@ class BlenderRenderer(Renderer):
         part[f"{layer}.{SAMPLE_COUNT}"] = counts
         if time is not None:
             part[f"{layer}.{RENDER_SECONDS}"] = 1e-3 * time
+        self.inputs.check()
         exr.write(target, part, compression="none")  # It is read again soon, by every merge.
 
 

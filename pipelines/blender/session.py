@@ -1,5 +1,6 @@
 """The Blender process of a renderer. It starts once and does one job after another."""
 
+import collections
 import contextlib
 import json
 import os
@@ -11,11 +12,13 @@ import sys
 import tempfile
 import threading
 
-from ..common import process
+from ..common import confine, process
 from ..common.errors import DriverError, ExitCode
+from ..common.work_folder import WorkFolder
 
 SCRIPT = pathlib.Path(__file__).resolve().parent / "inside" / "session.py"
-MARK = "@polyrecon "
+MARK = b"@polyrecon "
+LONGEST_LOG_LINE = 1 << 16
 LOG_LINES_KEPT = 40
 
 
@@ -40,10 +43,12 @@ class BlenderSession:
     def __init__(self, blender=None, timeout=3600.0):
         self.command = find_blender(blender)
         self.timeout = timeout
-        self.child, self.listener = None, None
+        self.child, self.listeners = None, []
         self.lock, self.halted = threading.Lock(), False
         # Blender replaces '#' and '{' in an output path; this folder's name has neither.
-        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="polyrecon-blender-"))
+        self._work = WorkFolder()
+        self.folder = self._work.path
+        self.not_confined = confine.why_not(self.command[0])
 
     def __enter__(self):
         return self
@@ -53,7 +58,7 @@ class BlenderSession:
 
     def close(self):
         self.stop()
-        shutil.rmtree(self.folder, ignore_errors=True)
+        self._work.close()
 
     @property
     def running(self):
@@ -63,7 +68,7 @@ class BlenderSession:
         """Sends one job (a method of inside/session.py) and waits for its answer."""
         child, answers = self._process()
         try:
-            child.stdin.write(json.dumps({"do": job, **arguments}) + "\n")
+            child.stdin.write(json.dumps({"do": job, **arguments}).encode() + b"\n")
             child.stdin.flush()
             answer = answers.get(timeout=self.timeout)
         except queue.Empty:
@@ -75,13 +80,19 @@ class BlenderSession:
             self.stop()
             raise
         if answer is None:
-            code = child.wait()
+            with contextlib.suppress(subprocess.TimeoutExpired):  # It may live on with a broken pipe.
+                child.wait(process.GRACE_SECONDS)
             self.stop()
+            code = child.returncode
             last = next((line for line in reversed(self.log) if line.strip()), "no message")
             raise DriverError(ExitCode.RENDERER, f"Blender ended with code {code} ({job}): {last}")
         if "error" in answer:
             raise DriverError(ExitCode.RENDERER, f"Blender: {answer['error']}")
         return answer
+
+    def new_folder(self):
+        """An empty folder that Blender can write into, until the session is closed."""
+        return tempfile.mkdtemp(dir=self.folder)
 
     def render(self, **arguments):
         """Renders a pass; returns (path of the raw EXR, seconds inside Blender)."""
@@ -102,26 +113,41 @@ class BlenderSession:
             return self.child, self.answers
 
     def _start(self):
-        self.log = []
+        self.log = collections.deque(maxlen=LOG_LINES_KEPT)
         self.answers = queue.Queue()
+        words = self.command if self.not_confined else confine.confined(self.command, [self.folder])
         self.child = process.start(
-            self.command,
+            words,
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            text=True,
-            errors="replace",
+            stderr=subprocess.PIPE,
+            env={**os.environ, **dict.fromkeys(("TMPDIR", "TEMP", "TMP"), os.fspath(self.folder))},
         )
-        self.listener = threading.Thread(target=self._listen, args=(self.child, self.answers), daemon=True)
-        self.listener.start()
+        self.listeners = [
+            threading.Thread(target=listen, args=(self.child, *more), daemon=True)
+            for listen, more in ((self._listen, (self.answers,)), (self._keep_log, ()))
+        ]
+        for listener in self.listeners:
+            listener.start()
 
     def _listen(self, child, answers):
-        for line in child.stdout:
-            if line.startswith(MARK):
-                answers.put(json.loads(line[len(MARK) :]))
-            else:
-                self.log = [*self.log[-LOG_LINES_KEPT:], line.rstrip()]
-        answers.put(None)
+        """Puts the session's answers into the queue, and None at their end. Standard output carries nothing else: what
+        Blender prints while it has a file open goes to standard error."""
+        try:
+            for line in child.stdout:
+                if line.startswith(MARK):
+                    answer = json.loads(line[len(MARK) :])
+                    if not isinstance(answer, dict):
+                        raise ValueError("is not an object")
+                    answers.put(answer)
+        except (ValueError, RecursionError) as error:
+            self.log.append(f"an answer that cannot be read: {error}")
+        finally:
+            answers.put(None)
+
+    def _keep_log(self, child):
+        while line := child.stderr.readline(LONGEST_LOG_LINE):
+            self.log.append(process.decoded(line).rstrip())
 
     @contextlib.contextmanager
     def halt(self):
@@ -137,10 +163,12 @@ class BlenderSession:
         with self.lock:
             child, self.child = self.child, None
             self.halted = self.halted or halted
-            listener = self.listener
+            listeners = self.listeners
         if child:
             process.stop(child)
-            listener.join()
+            for listener in listeners:
+                listener.join()
             with contextlib.suppress(BrokenPipeError):  # A job may not be sent yet.
                 child.stdin.close()
             child.stdout.close()
+            child.stderr.close()

@@ -38,14 +38,9 @@ def check_budget(parser, options):
 def run_frames(options, renderer, identity):
     """Runs the loop for every frame of the options.
 
-    `identity` and the scene file say what the passes are of. --resume continues only passes of the same identity."""
-    status = pathlib.Path(options.scene).stat()
-    identity = {
-        "scene": str(pathlib.Path(options.scene).resolve()),
-        "bytes": status.st_size,
-        "changed": status.st_mtime_ns,
-        **identity,
-    }
+    `identity` and the scene's path say what the passes are of. --resume continues only passes of the same identity and
+    the same inputs (Audit.inputs)."""
+    identity = {"scene": str(pathlib.Path(options.scene).resolve()), **identity}
 
     def work(frame, output, passes, polyrecon, progress):
         settings = adaptive.Settings(

@@ -4,7 +4,8 @@
     python3 session.py                                                      with the module bpy
 
 It reads jobs from standard input, one JSON object a line, and answers each with a line on standard output that begins
-with MARK, since Blender prints other lines too. No script of the file runs, because of -Y and use_scripts=False."""
+with MARK. What Blender prints goes to standard error, since names in a file can hold such lines too. No script of the
+file runs, because of -Y and use_scripts=False."""
 
 import json
 import os
@@ -19,7 +20,9 @@ import _cycles  # isort: skip (bpy makes it importable)
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
 import audit
+import caches
 import camera
+import inputs
 
 MARK = "@polyrecon "
 # Samples of one sequence; further ones have other seeds. Cycles lays out a table for a whole sequence, and where that
@@ -33,10 +36,12 @@ class Session:
     def __init__(self):
         self.scene = self.view_layer = self.mask_camera = None
 
-    def open(self, path, frame, visibility, mask_camera):
-        """Opens the file, if it is not open, at a frame, sets it up, and returns what it is. Nothing is ever saved."""
+    def open(self, path, frame, visibility, mask_camera, cache_folder):
+        """Opens the file, if it is not open, at a frame, sets it up, and returns what it is. Nothing is ever saved.
+
+        cache_folder: where simulations write; None if they cannot be kept from writing elsewhere."""
         if self.scene is None:
-            self.load(path, visibility)
+            self.load(path, visibility, cache_folder)
         scene = self.scene
         self.go_to(self.file_frame if frame is None else frame)
         if scene.camera is None:
@@ -61,10 +66,14 @@ class Session:
             "has_denoiser": bool(_cycles.with_openimagedenoise),
             "sequence": self.sequence,
             "filter_overhang": camera.filter_overhang(scene),
+            "files": self.files,
         }
 
-    def load(self, path, visibility):
+    def load(self, path, visibility, cache_folder):
         bpy.ops.wm.open_mainfile(filepath=path, load_ui=False, use_scripts=False)
+        self.files = {"opened": inputs.opened(bpy.data.filepath), "used": inputs.used()}
+        if cache_folder:
+            caches.redirect(cache_folder)
         scene = self.scene = bpy.context.scene
         if scene.render.engine != "CYCLES":
             raise RuntimeError(f"the scene's renderer is {scene.render.engine}, not Cycles")
@@ -184,8 +193,16 @@ class Session:
             render.border_min_y, render.border_max_y = (height - y1 + 0.1) / height, (height - y0 + 0.1) / height
 
 
+def take_standard_output():
+    """The stream of answers: standard output as it was. For everyone else it is standard error from now on."""
+    sys.stdout.flush()
+    answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
+    os.dup2(2, 1)
+    return answers
+
+
 def main():
-    session = Session()
+    session, answers = Session(), take_standard_output()
     for line in sys.stdin:
         job = json.loads(line)
         try:
@@ -193,7 +210,7 @@ def main():
         except Exception as error:  # The driver decides what to do.
             traceback.print_exc()
             answer = {"error": f"{error}".strip().replace("\n", " ") or type(error).__name__}
-        print(f"\n{MARK}{json.dumps(answer)}", flush=True)
+        print(f"\n{MARK}{json.dumps(answer)}", file=answers, flush=True)
 
 
 main()

@@ -1,0 +1,42 @@
+"""The files that a picture depends on (runs inside Blender)."""
+
+import glob
+import os
+import re
+
+import bpy
+
+
+def opened(path):
+    """The .blend files that were read when the scene was opened."""
+    return sorted({path, *(_absolute(library, library.filepath) for library in bpy.data.libraries)})
+
+
+def used():
+    """{name: files and folders} that are read while frames are evaluated and rendered. A sequence has one name."""
+    sequences = dict(_sequences())
+    found = {path: [path] for path in bpy.utils.blend_paths(absolute=True, packed=False, local=False) if path}
+    for blend in opened(bpy.data.filepath):
+        found.pop(blend, None)
+        stem = os.path.splitext(os.path.basename(blend))[0]
+        folder = os.path.join(os.path.dirname(blend), f"blendcache_{stem}")  # of point caches
+        if os.path.isdir(folder):
+            found[folder] = [folder]
+    return {**found, **sequences}
+
+
+def _sequences():
+    for owner in (*bpy.data.images, *bpy.data.movieclips, *bpy.data.cache_files, *bpy.data.volumes):
+        path = _absolute(owner, owner.filepath)
+        folder, name = os.path.split(path)
+        if getattr(owner, "source", "") == "SEQUENCE" or getattr(owner, "is_sequence", False):
+            pattern = re.sub(r"\d+(?=\D*$)", "\0", name)
+        elif getattr(owner, "source", "") == "TILED":
+            pattern = re.sub("<UDIM>|<UVTILE>", "\0", name)
+        else:
+            continue
+        yield path, sorted(glob.glob(os.path.join(glob.escape(folder), glob.escape(pattern).replace("\0", "*"))))
+
+
+def _absolute(owner, path):
+    return os.path.realpath(bpy.path.abspath(path, library=owner.library))
