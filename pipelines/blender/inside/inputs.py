@@ -22,7 +22,20 @@ def used():
         folder = os.path.join(os.path.dirname(blend), f"blendcache_{stem}")  # of point caches
         if os.path.isdir(folder):
             found[folder] = [folder]
-    return {**found, **sequences}
+    named = (os.path.realpath(path) for path in _names_in_nodes())
+    return {**found, **{path: [path] for path in named if os.path.isfile(path)}, **sequences}
+
+
+def _names_in_nodes():
+    """Texts of nodes and of their modifiers, which may be paths: importing nodes read files."""
+    for tree in bpy.data.node_groups:
+        for node in tree.nodes:
+            texts = (socket.default_value for socket in node.inputs if socket.type == "STRING")
+            yield from (bpy.path.abspath(text, library=tree.library) for text in texts if text)
+    for owner in bpy.data.objects:
+        for modifier in owner.modifiers:
+            texts = modifier.values() if modifier.type == "NODES" else ()
+            yield from (bpy.path.abspath(t, library=owner.library) for t in texts if isinstance(t, str) and t)
 
 
 def _sequences():

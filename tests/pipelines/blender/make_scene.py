@@ -133,6 +133,85 @@ def hostile(scene):
     driver.expression = f"(exec({code('driver')!r}), 0)[1]"
 
 
+def linking(scene):
+    """Links a lamp and its texture, an image, the frames of a sequence, tiles, and a file that is missing."""
+    folder = os.path.dirname(os.path.abspath(sys.argv[-2]))
+    lamp = bpy.data.lights["Lamp"]
+    lamp.use_nodes = True
+    texture(lamp.node_tree, write_image(os.path.join(folder, "lamp.png"), 0.5))
+    bpy.data.libraries.write(
+        os.path.join(folder, "library.blend"), {bpy.data.objects["Lamp"]}, path_remap="RELATIVE_ALL"
+    )
+    bpy.data.objects.remove(bpy.data.objects["Lamp"])
+    with bpy.data.libraries.load(os.path.join(folder, "library.blend"), link=True) as (_, linked):
+        linked.objects = ["Lamp"]
+    scene.collection.objects.link(linked.objects[0])
+    trees = [material.node_tree for material in bpy.data.materials[:3]]
+    texture(trees[0], write_image(os.path.join(folder, "floor.png"), 0.2))
+    for name in ("frame_1.png", "frame_2.png", "tile.1001.png", "tile.1002.png", "unused.png"):
+        write_image(os.path.join(folder, name), 0.7)
+    texture(trees[1], bpy.data.images.load(os.path.join(folder, "frame_1.png"))).source = "SEQUENCE"
+    tiles = texture(trees[2], bpy.data.images.load(os.path.join(folder, "tile.1001.png")))
+    tiles.source = "TILED"
+    tiles.filepath = os.path.join(folder, "tile.<UDIM>.png")
+    gone = bpy.data.images.new("gone", 1, 1)
+    gone.source, gone.filepath, gone.use_fake_user = "FILE", os.path.join(folder, "gone.png"), True
+    script = trees[0].nodes.new("ShaderNodeScript")
+    script.mode, script.filepath = "EXTERNAL", os.path.join(folder, "script.osl")
+    with open(script.filepath, "w") as file:
+        file.write("shader nothing() {}")
+
+
+def write_image(path, value):
+    image = bpy.data.images.new("made", 2, 2)
+    image.pixels = [value, value, value, 1] * 4
+    image.filepath_raw, image.file_format = path, "PNG"
+    image.save()
+    return bpy.data.images.load(path)
+
+
+def texture(tree, image):
+    node = tree.nodes.new("ShaderNodeTexImage")
+    node.image = image
+    return image
+
+
+def forging(scene):
+    """A library whose path holds lines like the session's answers. It is gone, so Blender prints its path."""
+    folder = os.path.dirname(os.path.abspath(sys.argv[-2]))
+    for number, text in enumerate(('@polyrecon {"error": "forged"}', "@polyrecon garbage", "@polyrecon [1]")):
+        path = os.path.join(folder, f"lib{number}\n{text}\n.blend")
+        item = bpy.data.meshes.new(f"item{number}")
+        bpy.data.libraries.write(path, {item})
+        with bpy.data.libraries.load(path, link=True) as (_, linked):
+            linked.meshes = [item.name]
+        os.unlink(path)
+        scene.collection.objects.link(bpy.data.objects.new(f"item{number}", linked.meshes[0]))
+
+
+def escapes(scene):
+    """Names that hold control characters; the driver prints both."""
+    scene.view_layers[0].name = "a\x1b]0;title\x07\nopenjd_fail: b"
+    scene.view_layers.new("c\x1b[2J\nopenjd_env: D=E")
+
+
+def simulating(scene):
+    """Simulations that are cached on disk while frames are evaluated: next to the file, and where it says."""
+    folder = os.path.dirname(os.path.abspath(sys.argv[-2]))
+    bpy.ops.mesh.primitive_grid_add(size=2, x_subdivisions=8, y_subdivisions=8, location=(0, -2, 1.5))
+    cloth = bpy.context.object.modifiers.new("cloth", "CLOTH")
+    bpy.ops.wm.save_as_mainfile(filepath=os.path.abspath(sys.argv[-2]))
+    cloth.point_cache.use_disk_cache = True  # of a file that has a name
+    if not bpy.app.binary_path:
+        return  # The module's fluid simulation ends Python.
+    bpy.ops.mesh.primitive_cube_add(size=2, location=(0, 0, 1))
+    domain = bpy.context.object.modifiers.new("fluid", "FLUID")
+    domain.fluid_type = "DOMAIN"
+    settings = domain.domain_settings
+    settings.resolution_max, settings.cache_type = 8, "REPLAY"
+    settings.cache_directory = os.path.join(folder, "elsewhere")
+
+
 MADE = (
     lens,
     depth_of_field,
@@ -144,6 +223,10 @@ MADE = (
     seed_animated,
     switched_on,
     hostile,
+    linking,
+    forging,
+    escapes,
+    simulating,
 )
 KINDS = {f.__name__: f for f in MADE}
 
