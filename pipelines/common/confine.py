@@ -10,7 +10,7 @@ import ctypes
 import os
 import sys
 
-# System calls, the same numbers on all processors, and constants of linux/landlock.h and linux/prctl.h.
+# System calls, the same numbers on all processors, and constants of the kernel (landlock, prctl).
 CREATE_RULESET, ADD_RULE, RESTRICT_SELF = 444, 445, 446
 GET_VERSION, PATH_BENEATH, SET_NO_NEW_PRIVS = 1, 1, 38
 WRITE_FILE = 1 << 1
