@@ -52,7 +52,7 @@ def _opened(path):
         raise DriverError(ExitCode.BAD_INPUT, f"{path}: {error.strerror}") from error
     if magic != MAGIC:
         raise DriverError(ExitCode.BAD_INPUT, f"{path}: is not an EXR file")
-    file = oiio.ImageInput.open(os.fsencode(path))  # As bytes: a path need not be UTF-8.
+    file = oiio.ImageInput.open(_name_for_oiio(path))
     if not file:
         raise DriverError(ExitCode.BAD_INPUT, f"{path}: {_error_of(oiio)}")
     try:
@@ -61,6 +61,16 @@ def _opened(path):
         raise DriverError(ExitCode.BAD_INPUT, f"{path}: a name in it is not UTF-8") from error
     finally:
         file.close()
+
+
+def _name_for_oiio(path):
+    """The path as text, which alone newer versions of OpenImageIO's module take; as bytes if it is not UTF-8."""
+    name = os.fspath(path)
+    try:
+        name.encode()
+    except UnicodeEncodeError:
+        return os.fsencode(name)
+    return name
 
 
 def _error_of(source):
@@ -84,7 +94,7 @@ def write(path, channels, attributes=None, compression="zip:2"):
         spec.attribute(name, value)
     with replacing(path) as temporary:
         file = oiio.ImageOutput.create("openexr")
-        if not file.open(os.fsencode(temporary), spec) or not file.write_image(np.ascontiguousarray(pixels)):
+        if not file.open(_name_for_oiio(temporary), spec) or not file.write_image(np.ascontiguousarray(pixels)):
             raise DriverError(ExitCode.OUTPUT, f"{path}: {_error_of(file)}")
         if not file.close():
             raise DriverError(ExitCode.OUTPUT, f"{path}: {_error_of(file)}")
