@@ -20,7 +20,7 @@ shader camera(string mask = "", float left = 0, float bottom = 0, float width = 
 {
   point place = camera_shader_raster_position();  // 0..1 over the frame, y up
   float x = (place[0] - left) / width, y = (place[1] - bottom) / height;
-  color inside = texture(mask, x, 1 - y, "interp", "closest", "wrap", "black", "width", 0);
+  color inside = texture(mask, x, %(row)s, "interp", "closest", "wrap", "black", "width", 0);
   if (inside[0] < 0.5) {
     throughput = 0.0;
     return;
@@ -127,6 +127,9 @@ class MaskCamera:
             if orthographic
             else camera.lens * 1e-3,  # Cycles' unit for perspective cameras is the focal length.
             "orthographic": orthographic,
+            "row": "y"
+            if bpy.app.version >= (5, 2)
+            else "1 - y",  # before 5.2 shaders count an image's rows from the top
             "near": camera.clip_start,
         }
 

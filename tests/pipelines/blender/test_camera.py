@@ -11,15 +11,15 @@ from pipelines.blender.renderer import BlenderRenderer
 from pipelines.common import exr
 from pipelines.common.rectangles import bounding_box
 from pipelines.loop.renderer import RENDER_SECONDS, SAMPLE_COUNT
-from tests.pipelines.blender.support import SceneTest
+from tests.pipelines.blender.support import NO_BLENDER_5_2, PYTHON_OF_BLENDER_5_2, SceneTest
 
 SAMPLES = 16
 
 
 class Cameras(SceneTest):
-    def passes(self, kind, samples):
+    def passes(self, kind, samples, blender):
         """{channel: (Blender's camera, mask camera)} of the same samples of every pixel."""
-        renderer = BlenderRenderer(self.scene(kind), "bpy")
+        renderer = BlenderRenderer(self.scene(kind), blender)
         try:
             audit = renderer.begin(None)
             self.assertEqual(audit.method, "masks by a camera shader")
@@ -33,11 +33,11 @@ class Cameras(SceneTest):
             name: (unmasked[name], masked[name]) for name in unmasked if name in masked and "Render Seconds" not in name
         }
 
-    def assert_same_picture(self, kind):
+    def assert_same_picture(self, kind, blender="bpy"):
         """Both cameras draw the same numbers, so every sample's path is the same up to rounding, which may change
         single paths: nearly all pixels agree closely, and the others differ by chance."""
-        for name, (unmasked, masked) in self.passes(kind, SAMPLES).items():
-            scale = np.abs(unmasked).mean() + 1e-6
+        for name, (unmasked, masked) in self.passes(kind, SAMPLES, blender).items():
+            scale = np.abs(unmasked).mean(dtype=float) + 1e-6
             off = np.abs(unmasked - masked) > 1e-3 * (np.abs(unmasked) + scale)
             self.assertLess(off.mean(), 0.03, f"{kind}: {name} differs in {off.mean():.1%} of the pixels")
             self.assertLess(abs((unmasked - masked).mean()) / scale, 2e-3, f"{kind}: {name}")
@@ -47,6 +47,10 @@ class Cameras(SceneTest):
 
     def test_shift_fit_aspect_near_plane_and_polygonal_blurred_lens(self):
         self.assert_same_picture("lens")
+
+    @unittest.skipUnless(PYTHON_OF_BLENDER_5_2, NO_BLENDER_5_2)
+    def test_the_same_lens_in_blender_5_2(self):
+        self.assert_same_picture("lens", self.blender_5_2())
 
     def test_orthographic(self):
         self.assert_same_picture("orthographic")
@@ -62,7 +66,14 @@ class Cameras(SceneTest):
 
 class Masks(SceneTest):
     def test_each_pixel_gets_its_count_and_nothing_of_its_neighbours(self):
-        renderer = BlenderRenderer(self.scene(), "bpy")
+        self.check_counts("bpy")
+
+    @unittest.skipUnless(PYTHON_OF_BLENDER_5_2, NO_BLENDER_5_2)
+    def test_the_same_in_blender_5_2(self):
+        self.check_counts(self.blender_5_2())
+
+    def check_counts(self, blender):
+        renderer = BlenderRenderer(self.scene(), blender)
         self.addCleanup(renderer.close)
         renderer.begin(None)
         random = np.random.default_rng(5)
