@@ -8,9 +8,9 @@ import numpy as np
 
 from ..common import exr
 from ..common.errors import DriverError, ExitCode
+from ..common.scene_inputs import SceneInputs
 from ..loop.renderer import RENDER_SECONDS, SAMPLE_COUNT, Audit, Renderer, Switch
 from . import masks, prior
-from .inputs import SceneInputs
 from .pass_list import masked_passes, rectangular_passes
 from .session import BlenderSession
 

@@ -46,7 +46,7 @@ class BlenderSession:
         self.child, self.listeners = None, []
         self.lock, self.halted = threading.Lock(), False
         # Blender replaces '#' and '{' in an output path; this folder's name has neither.
-        self._work = WorkFolder()
+        self._work = WorkFolder("blender")
         self.folder = self._work.path
         self.not_confined = confine.why_not(self.command[0])
 

@@ -86,6 +86,6 @@ def _runs(pid):
 def _refuse_links(folder):
     """A file that is written under the name of a link would replace the link's target."""
     for parent in (folder, *(entry for entry in os.scandir(folder) if entry.is_dir(follow_symlinks=False))):
-        for entry in os.scandir(parent):
+        for entry in list(os.scandir(parent)):
             if entry.is_symlink():
                 raise DriverError(ExitCode.USAGE, f"{entry.path}: is a link: remove it, or choose another --passes-dir")

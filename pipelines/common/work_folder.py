@@ -4,20 +4,22 @@ import contextlib
 import fcntl
 import os
 import pathlib
+import re
 import shutil
 import stat
 import tempfile
 
-PREFIX = "polyrecon-"  # Then the number of the process, and random characters.
+_NAME = re.compile(r"polyrecon-[a-z]+-([0-9]+)-.+")  # polyrecon-KIND-PROCESS-RANDOM
 
 
 class WorkFolder:
-    """A new folder for this user alone. The folder is locked as long as this process runs."""
+    """A new folder for this user alone, which is locked as long as this process runs. Its name begins with
+    polyrecon-KIND."""
 
-    def __init__(self, parent=None):
+    def __init__(self, kind, parent=None):
         self.parent = pathlib.Path(parent or tempfile.gettempdir())
         remove_stale(self.parent)
-        self.path = pathlib.Path(tempfile.mkdtemp(prefix=f"{PREFIX}{os.getpid()}-", dir=self.parent))
+        self.path = pathlib.Path(tempfile.mkdtemp(prefix=f"polyrecon-{kind}-{os.getpid()}-", dir=self.parent))
         self._descriptor = os.open(self.path, os.O_RDONLY | os.O_DIRECTORY)
         with contextlib.suppress(OSError):  # A file system without locks
             fcntl.flock(self._descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
@@ -42,8 +44,8 @@ def remove_stale(parent):
     """Removes this user's work folders whose driver has ended."""
     with contextlib.suppress(OSError):
         for entry in os.scandir(parent):
-            number = entry.name[len(PREFIX) :].partition("-")[0]
-            if entry.name.startswith(PREFIX) and number.isdecimal() and _is_stale(entry, int(number)):
+            match = _NAME.fullmatch(entry.name)
+            if match and _is_stale(entry, int(match[1])):
                 shutil.rmtree(entry, ignore_errors=True)
 
 

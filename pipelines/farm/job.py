@@ -1,11 +1,14 @@
 """The description of a job, which all its tasks read: a JSON file in the job's folder."""
 
 import dataclasses
+import errno
 import json
+import os
 import pathlib
 import re
 from dataclasses import dataclass, field
 
+from ..common.decode import InvalidFileError, decode, read_json
 from ..common.errors import DriverError, ExitCode
 from ..common.files import write_text
 from ..common.frame_names import ranges_text
@@ -25,9 +28,9 @@ def chunks(frames, size):
 class Job:
     input: str  # absolute pattern of the renders
     output: str  # absolute pattern of the results
-    frames: list
+    frames: list[int]
     polyrecon: str  # path of the program
-    options: list = field(default_factory=list)  # further options of `polyrecon denoise`
+    options: list[str] = field(default_factory=list)  # further options of `polyrecon denoise`
     chunk: int = 1  # frames of a task
     threads: int = 0  # of a task; 0: the program's default
     memory: int = 0  # --max-memory in bytes; 0: the program's default
@@ -53,12 +56,15 @@ class Job:
     @classmethod
     def load(cls, folder):
         path = pathlib.Path(folder) / JOB_FILE
+        if not path.exists():
+            raise DriverError(ExitCode.MISSING, f"{path}: {os.strerror(errno.ENOENT)}")
         try:
-            return cls(**json.loads(path.read_text()))
-        except OSError as error:
-            raise DriverError(ExitCode.MISSING, f"{path}: {error.strerror}") from error
-        except (ValueError, TypeError) as error:
+            job = decode(cls, read_json(path), lowest=-(2**31))
+            if not job.frames or job.chunk < 1 or min(job.threads, job.memory, job.request) < 0:
+                raise InvalidFileError("a number is out of range")
+        except InvalidFileError as error:
             raise DriverError(ExitCode.BAD_INPUT, f"{path}: is not the description of a job ({error})") from error
+        return job
 
 
 def write_json(path, value):

@@ -4,7 +4,7 @@
 import argparse
 import collections
 import concurrent.futures
-import json
+import dataclasses
 import math
 import pathlib
 import re
@@ -15,6 +15,7 @@ if not __package__:  # run as a script from a checkout
     __package__ = "pipelines.farm"
 
 from ..common import process
+from ..common.decode import InvalidFileError, decode, read_json
 from ..common.errors import DriverError, ExitCode, run_main
 from ..common.frame_names import parse_ranges, ranges_text
 from ..common.polyrecon_cli import find_polyrecon
@@ -27,6 +28,30 @@ examples:
   polyrecon-farm report -i shot.####.exr -o out/shot.####.exr --frames 1-100 -- --quality best
 """
 FINISHED = re.compile(r"frame (-?\d+): .*, finished already: skipped")
+
+
+@dataclasses.dataclass
+class Attempt:
+    """The record of a task that has begun."""
+
+    chunk: int
+    frames: str
+    node: str
+    begun: float
+
+
+@dataclasses.dataclass
+class EndedAttempt(Attempt):
+    """The record of a task that has ended."""
+
+    seconds: float
+    cpu_seconds: float
+    peak_bytes: int
+    bytes_read: int
+    bytes_written: int
+    exit_code: int
+    frame_errors: dict[str, str]
+    written: str
 
 
 def check(job, frames):
@@ -60,10 +85,20 @@ def records_of(folder):
     records = []
     for path in pathlib.Path(folder, RECORDS).glob("*.json"):
         try:
-            records.append(json.loads(path.read_text()))
-        except (OSError, ValueError):
+            records.append(checked_record(read_json(path)))
+        except (InvalidFileError, DriverError, ValueError):
             continue
     return sorted(records, key=lambda record: record["begun"])
+
+
+def checked_record(record):
+    """The record, if it is one. Raises InvalidFileError, or the error of a text in it."""
+    ended = isinstance(record, dict) and "exit_code" in record
+    decode(EndedAttempt if ended else Attempt, record, lowest=-255)
+    if ended:
+        frames_in(record["written"])
+        list(map(int, record["frame_errors"]))
+    return record
 
 
 def frames_in(text):
@@ -103,8 +138,8 @@ def summary(job, finished, problems, records):
         - min((r["begun"] for r in ended), default=0),
         "peak_bytes": max((r["peak_bytes"] for r in ended), default=0),
         "bytes_requested": job.request,
-        "bytes_read_per_frame": sum(r.get("bytes_read", 0) for r in ended) / written if written else 0,
-        "bytes_written_per_frame": sum(r.get("bytes_written", 0) for r in ended) / written if written else 0,
+        "bytes_read_per_frame": sum(r["bytes_read"] for r in ended) / written if written else 0,
+        "bytes_written_per_frame": sum(r["bytes_written"] for r in ended) / written if written else 0,
     }
 
 

@@ -168,7 +168,7 @@ def make_folder(folder, job):
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise DriverError(ExitCode.OUTPUT, f"{folder}: {error.strerror}") from error
-    for entry in os.scandir(folder):  # Slurm follows links at the names of logs.
+    for entry in list(os.scandir(folder)):  # Slurm follows links at the names of logs.
         if entry.is_symlink():
             raise DriverError(ExitCode.OUTPUT, f"{entry.path}: is a link: remove it, or name another --folder")
     for old in (REPORT_LOG, REPORT_FILE):

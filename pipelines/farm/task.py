@@ -37,7 +37,7 @@ def traffic(pid):
     try:
         lines = pathlib.Path(f"/proc/{pid}/io").read_text().splitlines()
     except OSError:
-        return {}
+        return {"bytes_read": 0, "bytes_written": 0}
     counts = dict(line.split(": ") for line in lines)
     return {"bytes_read": int(counts["rchar"]), "bytes_written": int(counts["wchar"])}
 

@@ -4,12 +4,12 @@ import base64
 import math
 import os
 import pathlib
-import tempfile
 
 import jinja2
 
 from ..common.files import write_text
 from ..common.terminal import printable
+from ..common.work_folder import WorkFolder
 from .folder import PassFolder
 
 TEMPLATE = pathlib.Path(__file__).with_name("report.html.j2")
@@ -47,10 +47,10 @@ def write(result, settings, polyrecon):
     environment.filters["error_text"] = _error_text
     passes = PassFolder(settings.passes)
     rounds = result.state.rounds
-    with tempfile.TemporaryDirectory() as folder:
+    with WorkFolder("report") as folder:
         files = [_files_of(entry.round, passes) for entry in rounds]
         files.append([result.merged, settings.output, result.error_map])
-        *pictures, final = _pictures(polyrecon, files, pathlib.Path(folder))
+        *pictures, final = _pictures(polyrecon, files, folder)
     page = environment.from_string(TEMPLATE.read_text(encoding="utf-8")).render(
         result=result,
         settings=settings,

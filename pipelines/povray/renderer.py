@@ -13,8 +13,9 @@ import numpy as np
 
 from ..common import exr
 from ..common.errors import DriverError, ExitCode
+from ..common.scene_inputs import SceneInputs
 from ..loop.renderer import SAMPLE_COUNT, Audit, Renderer, Switch
-from . import passes
+from . import inputs, passes
 from .crops import cover
 from .render_passes import FIRST_GRID, channels
 from .scene import CONCURRENT_RUNS, Scene, Shot
@@ -43,6 +44,8 @@ class PovrayRenderer(Renderer):
     def begin(self, frame):
         self.close()
         options = [*self.options, *([f"+SF{frame}", f"+EF{frame}"] if frame is not None else [])]
+        self.inputs = SceneInputs()
+        input_digests = self.inputs.begin_frame(inputs.used(self.path, options))
         self.scene = Scene(self.path, options, self.povray, self.timeout)
         self.name = self.scene.version
         self.choice = passes.choose_passes(self.scene, self.camera)
@@ -55,9 +58,16 @@ class PovrayRenderer(Renderer):
             beauty="Combined",
             switches=[Switch("antialiasing", "off", "the samples are subpixels")],
             passes={decision.name: decision.reason for decision in self.choice.decisions if decision.run},
-            notes=[f"no {decision.name}: {decision.reason}" for decision in self.choice.decisions if not decision.run],
+            notes=self._notes(),
             method="crops with grids of subpixels",
+            inputs=input_digests,
         )
+
+    def _notes(self):
+        notes = [f"no {decision.name}: {decision.reason}" for decision in self.choice.decisions if not decision.run]
+        if self.scene.not_confined:
+            notes.append(f"POV-Ray can write where the scene says: {self.scene.not_confined}")
+        return notes
 
     def uniform(self, first, samples, target):
         if self.first is None:
@@ -121,15 +131,25 @@ class PovrayRenderer(Renderer):
     def _used_grids(self, target):
         """[(box, n)] of the extra parts in the folder, without `target`, which an interrupted run may have left."""
         used = []
-        for path in target.parent.glob("*.exr"):
+        for path in target.parent.glob("part_*.exr"):
             if path != target:
-                used += [(row[:4], row[4]) for row in json.loads(exr.metadata(path).get(GRIDS, "[]"))]
+                used += _grids_of(path)
         return used
 
     def _write(self, target, mean, counts, shots):
+        self.inputs.check()
         rows = [[s.crop.x0, s.crop.y0, s.crop.x1, s.crop.y1, s.scale] for s in shots]
         beauty = {f"Combined.{c}": mean[..., i] for i, c in enumerate("RGB")}
         exr.write(target, {**beauty, SAMPLE_COUNT: counts}, {GRIDS: json.dumps(rows)})
+
+
+def _grids_of(part):
+    """[(box, n)] of a part."""
+    try:
+        rows = json.loads(exr.metadata(part).get(GRIDS, "[]"))
+        return [(list(map(int, box)), int(n)) for *box, n in rows if len(box) == 4]
+    except (ValueError, TypeError, RecursionError) as error:
+        raise DriverError(ExitCode.BAD_INPUT, f"{part}: the attribute {GRIDS} is damaged: {error}") from error
 
 
 def field_order(n):

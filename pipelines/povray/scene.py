@@ -1,8 +1,9 @@
 """A POV-Ray scene: the user's file and options, and the runs of POV-Ray on it.
 
-The input of every run is a wrapper file, which #includes the user's scene and adds lines at its end. POV-Ray runs in
-the scene's folder and gets names in a work folder, in which the scene is a symbolic link. So it never meets a name that
-it cannot read on a command line or in a string (quotes, a leading '-', spaces)."""
+The input of every run is a wrapper file, which #includes the user's scene and adds lines at its end. POV-Ray gets names
+in a work folder, in which the scene is a symbolic link. So it never meets a name that it cannot read on a command line
+or in a string (quotes, a leading '-', spaces). It runs in a folder of links to the files of the scene's folder, and can
+write nowhere but in the work folder: a scene chooses what it writes, too."""
 
 import dataclasses
 import os
@@ -10,20 +11,19 @@ import pathlib
 import re
 import shutil
 import subprocess
-import tempfile
 import time
 from typing import Optional
 
 import numpy as np
 import OpenImageIO as oiio
 
-from ..common import process
+from ..common import confine, process
 from ..common.errors import DriverError, ExitCode
+from ..common.work_folder import WorkFolder
 from .crops import Crop
 
 # POV-Ray's default configuration (/etc/povray/3.7/povray.conf) allows it to write there.
 WORK_PARENT = pathlib.Path("/tmp")
-WORK_PREFIX = "polyrecon-povray-"
 # Options after the user's, which overrule them: linear EXR without alpha, one ray a (sub)pixel, no window, no waiting,
 # no continuing of an older file.
 FORCED = ("+FE", "-UA", "-A", "-D", "-P", "-C", "Fatal_Console=on", "Render_Console=on")
@@ -85,11 +85,13 @@ class Scene:
             )
         self.timeout = timeout
         self.messages = ""  # of POV-Ray in its last run
-        _remove_stale_work()
-        self.work = pathlib.Path(tempfile.mkdtemp(prefix=f"{WORK_PREFIX}{os.getpid()}-", dir=WORK_PARENT))
+        self.not_confined = confine.why_not(self.program)
+        self._work_folder = WorkFolder("povray", WORK_PARENT)
+        self.work = self._work_folder.path
         try:
             (self.work / "scene.pov").symlink_to(self.path)
             self.options = self._safe_options(options)
+            self.place = self.path.parent if self.not_confined else self._linked_place()
             begun = time.monotonic()
             self.width, self.height = self._resolution()
             self.parse_seconds = time.monotonic() - begun  # of every run, before its first pixel
@@ -104,7 +106,7 @@ class Scene:
         self.close()
 
     def close(self):
-        shutil.rmtree(self.work, ignore_errors=True)
+        self._work_folder.close()
 
     def render(self, scale=1, tail="", options=(), crop=None, size=None):
         """Renders a Shot with these values; returns its image."""
@@ -148,8 +150,12 @@ class Scene:
         wrapper.write_text(f'#include "{self.work}/scene.pov"\n{shot.tail}\n')
         words = [self.program, f"+L{self.work}/caller", *self.options, *FORCED, *shot.options, *shot.words(self)]
         words += [f"+I{wrapper}", f"+O{folder}/render.exr"]
+        if not self.not_confined:
+            words = confine.confined(words, [self.work])
         with (folder / "messages").open("wb") as messages:
-            return _Run(folder, process.start(words, cwd=self.path.parent, stdout=messages, stderr=messages))
+            environment = {**os.environ, "TMPDIR": str(self.work)}
+            child = process.start(words, cwd=self.place, stdout=messages, stderr=messages, env=environment)
+            return _Run(folder, child)
 
     def _image(self, shot, run):
         """Waits for a run and reads its image."""
@@ -215,6 +221,15 @@ class Scene:
         (self.work / name).symlink_to(pathlib.Path(path).absolute())
         return str(self.work / name)
 
+    def _linked_place(self):
+        """A folder of links to what is in the scene's folder. The scene finds its files there and may make others."""
+        place = self.work / "place"
+        place.mkdir()
+        for entry in os.scandir(self.path.parent):
+            (place / entry.name).symlink_to(entry.path)
+        self.options.append(f"+L{self._link(self.path.parent, 'folder')}")  # For names that begin with ../
+        return place
+
     def _resolution(self):
         """The width and height of the options, as POV-Ray reads them, from a render of one pixel. It fails if POV-Ray
         cannot parse the scene."""
@@ -225,20 +240,10 @@ class Scene:
         found = re.search(r"Image resolution\W+(\d+) by (\d+)", self.messages)
         if not found:
             raise DriverError(ExitCode.RENDERER, f"{self.path}: POV-Ray did not print the size of the image")
-        return int(found[1]), int(found[2])
-
-
-def _remove_stale_work():
-    """Removes this user's work folders whose driver was killed."""
-    for folder in WORK_PARENT.glob(f"{WORK_PREFIX}*-*"):
-        process_number = folder.name[len(WORK_PREFIX) :].partition("-")[0]
-        try:
-            if folder.stat().st_uid == os.getuid():
-                os.kill(int(process_number), 0)
-        except ProcessLookupError:
-            shutil.rmtree(folder, ignore_errors=True)
-        except (OSError, ValueError):
-            continue
+        width, height = int(found[1]), int(found[2])
+        if not width or not height:
+            raise DriverError(ExitCode.USAGE, f"{self.path}: the options give a size of {width} x {height} pixels")
+        return width, height
 
 
 def _read_rgb(path, scale, crop):

@@ -16,7 +16,7 @@ from pipelines.common import exr
 from pipelines.common.errors import DriverError, ExitCode, run_main
 from pipelines.loop.folder import PassFolder
 from pipelines.loop.journal import VERSION, Journal, Part, Round, RoundPlan, State
-from tests.pipelines.loop import synthetic
+from tests.pipelines.loop import journal_attacks, synthetic
 
 IDENTITY = {"scene": "/a ä.blend", "frame": None, "first_pass": 8, "options": ["+W64"]}
 EMPTY = hashlib.sha256().hexdigest()
@@ -264,6 +264,12 @@ class CommandLine(unittest.TestCase):
             for place, value in ((("parts", 0, "seconds"), -1), (("version",), 4), (("parts", 0, "half"), MISSING)):
                 journal.write_text(json.dumps(with_value(good, place, value)))
                 self.assert_refused(folder, "journal.json: ", ExitCode.BAD_INPUT)
+
+    def test_journal_tracebacks(self):
+        """Random damage to the folder of passes: see journal_attacks.py."""
+        found = journal_attacks.run(count=40, seed=5)
+        self.assertEqual([what for what in found if what.startswith("wrong")], [])
+        self.assertGreater(len(found), 2)
 
     def assert_refused(self, folder, text, code):
         with contextlib.redirect_stderr(io.StringIO()) as stderr:

@@ -1,14 +1,14 @@
-"""The files that the pictures of a scene depend on, as Blender lists them (inside/inputs.py)."""
+"""The files that the pictures of a scene depend on."""
 
-from ..common.digests import InputDigests, changed_at
-from ..common.errors import DriverError, ExitCode
+from .digests import InputDigests, changed_at
+from .errors import DriverError, ExitCode
 
 
 class SceneInputs:
     """Raises DriverError where a file changes so that samples of two scenes would be averaged.
 
-    Blender reads the scene and its libraries once, when it opens them, so a later change does not matter until a new
-    process opens them. Images and caches are read at any time."""
+    What a process of a renderer reads once, when it opens the scene, may change later, until a new process opens it.
+    The rest is read at any time."""
 
     def __init__(self):
         self._digests = InputDigests()

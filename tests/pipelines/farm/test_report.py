@@ -1,0 +1,111 @@
+"""What the report makes of records and messages that someone else wrote."""
+
+import contextlib
+import io
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+from pipelines.common.errors import DriverError, ExitCode
+from pipelines.common.terminal import print_lines
+from pipelines.farm import report
+from pipelines.farm.job import JOB_FILE, RECORDS, Job
+
+from .shot import make_shot
+
+ROOT = Path(__file__).resolve().parents[3]
+POLYRECON = os.path.abspath(os.environ["POLYRECON"])
+BEGUN = {"chunk": 0, "frames": "1-2", "node": "node1", "begun": 5.0}
+ENDED = {
+    **BEGUN,
+    "seconds": 2.0,
+    "cpu_seconds": 3.0,
+    "peak_bytes": 10,
+    "bytes_read": 4,
+    "bytes_written": 6,
+    "exit_code": 4,
+    "frame_errors": {"2": "broken"},
+    "written": "1",
+}
+FORGED = "x\nopenjd_fail: forged\ropenjd_env: A=B\x1b]0;title\x07\u2028openjd_status: forged"
+
+
+class Reports(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+        self.job = Job("in.####.exr", "out.####.exr", [-1, 1, 2], "/polyrecon", ["--quality", "best"])
+        (self.folder / RECORDS).mkdir()
+
+    def lines(self, *records, problems=None):
+        for number, record in enumerate(records):
+            (self.folder / RECORDS / f"{number}.json").write_text(json.dumps(record))
+        found = report.summary(self.job, {1}, problems or {}, report.records_of(self.folder))
+        with contextlib.redirect_stdout(io.StringIO()) as stdout:
+            print_lines(*report.lines_of(found))
+        return stdout.getvalue().splitlines()
+
+    def test_openjd_injection(self):
+        """A line of the session begins with openjd_; no name or message of a file can begin one."""
+        forged = {**ENDED, "node": FORGED, "frame_errors": {"2": FORGED, "-1": "openjd_fail: forged"}}
+        names = {**BEGUN, "node": "openjd_fail: forged", "frames": "1"}
+        lines = self.lines(forged, names, {**ENDED, "node": "openjd_fail: forged"}, problems={2: FORGED})
+        self.assertEqual([line for line in lines if line.startswith("openjd") or not line.isprintable()], [])
+        self.assertTrue(any("x\\nopenjd_fail: forged\\ropenjd_env" in line for line in lines), lines)
+
+    def test_records_that_are_none_are_left_out(self):
+        wrong = [None, [], {}, {"begun": 1}, {**BEGUN, "begun": "x"}, {**ENDED, "written": "x"}, {**ENDED, "more": 1}]
+        wrong += [{**ENDED, "frame_errors": {"x": "y"}}, {**ENDED, "node": 7}, {**ENDED, "seconds": float("nan")}]
+        lines = self.lines(ENDED, *wrong, BEGUN)
+        self.assertIn("node node1: 1 frames by 1 tasks, 2 s (3 s of processors), 1800 frames an hour and task", lines)
+        self.assertIn("no end, the node died or still works on it: node1: 1-2", lines)
+        (self.folder / RECORDS / "x.json").write_bytes(b"[" * 100000)
+        os.mkfifo(self.folder / RECORDS / "y.json")
+        self.assertEqual(len(report.records_of(self.folder)), 2)
+
+    def test_jobs_that_are_edited_are_refused(self):
+        self.job.save(self.folder)
+        self.assertEqual(Job.load(self.folder), self.job)
+        content = json.loads((self.folder / JOB_FILE).read_text())
+        for name, value in (
+            *((name, None) for name in content),
+            ("frames", ["1"]),
+            ("frames", []),
+            ("frames", "1-2"),
+            ("chunk", 0),
+            ("threads", -1),
+            ("memory", 1e99),
+            ("options", [1]),
+            ("more", 1),
+        ):
+            (self.folder / JOB_FILE).write_text(json.dumps({**content, name: value}))
+            with self.assertRaisesRegex(DriverError, "job.json: is not the description of a job") as caught:
+                Job.load(self.folder)
+            self.assertEqual(caught.exception.code, ExitCode.BAD_INPUT)
+        (self.folder / JOB_FILE).unlink()
+        with self.assertRaisesRegex(DriverError, "job.json: No such file") as caught:
+            Job.load(self.folder)
+        self.assertEqual(caught.exception.code, ExitCode.MISSING)
+
+    def test_a_frame_of_a_stranger(self):
+        """The program's message about a broken frame holds the frame's path."""
+        shot = self.folder / "a\nopenjd_fail: b\x1b[31m"
+        shot.mkdir()
+        make_shot(shot, [1, 2])
+        (shot / "shot.0002.exr").write_bytes(b"no frame")
+        words = ["-i", shot / "shot.####.exr", "-o", self.folder / "shot.####.exr", "--frames", "1-2"]
+        command = [sys.executable, ROOT / "pipelines/farm/report.py", *words, "--polyrecon", POLYRECON]
+        done = subprocess.run([*map(str, command), "--progress", "openjd"], capture_output=True, text=True)
+        self.assertEqual(done.returncode, ExitCode.MISSING, done.stderr)
+        lines = [line for line in done.stdout.splitlines() if line.startswith("openjd_fail")]
+        self.assertEqual(lines, ["openjd_fail: not finished: 1,2"])
+        self.assertNotIn("\x1b", done.stdout + done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
