@@ -190,13 +190,33 @@ void leave_out_other_pictures(Render& render) {
   render.layers.erase(std::remove_if(render.layers.begin(), render.layers.end(), is_other), render.layers.end());
 }
 
-std::vector<Render> open_renders(const std::vector<std::string>& paths, const ReadLimits& limits) {
+/// Leaves out passes in files next to a render that other renders do not have. Returns their names.
+std::set<std::string> leave_out_lone_passes(std::vector<Render>& renders) {
+  std::map<std::string, std::size_t> uses;
+  for (const Render& render : renders)
+    for (const Layer& layer : render.layers)
+      if (layer.file > 0) ++uses[layer.name];
+  std::set<std::string> lone;
+  for (const auto& [name, count] : uses)
+    if (count < renders.size()) lone.insert(name);
+  for (Render& render : renders) {
+    const auto is_lone = [&](const Layer& layer) { return layer.file > 0 && lone.count(layer.name) > 0; };
+    render.layers.erase(std::remove_if(render.layers.begin(), render.layers.end(), is_lone), render.layers.end());
+    if (lone.size() < uses.size()) continue;
+    render.files.resize(1);  // whose picture has the pass of the file's name only where others are next to it
+    render.layers = find_layers(render.files.front());
+  }
+  return lone;
+}
+
+std::vector<Render> open_renders(const std::vector<std::string>& paths, const ReadLimits& limits,
+                                 std::vector<std::string>& notes) {
   if (paths.size() < 2) throw Error(ExitCode::Usage, "merge needs at least two renders of the same frame");
   std::vector<Render> renders;
-  std::vector<std::string> notes;  // of files next to the renders, whose layers are in the result's lists
+  std::vector<std::string> siblings;  // of all renders, whose layers are in the result's lists
   for (const std::string& path : paths) {
     Render render;
-    FrameSource source = open_source(path, limits, notes);
+    FrameSource source = open_source(path, limits, siblings);
     render.files = std::move(source.files);
     render.layers = std::move(source.layers);
     leave_out_other_pictures(render);
@@ -206,9 +226,11 @@ std::vector<Render> open_renders(const std::vector<std::string>& paths, const Re
     for (const Render& other : renders)
       if (std::filesystem::equivalent(path, path_of(other), failure))
         throw Error(ExitCode::Usage, fmt::format("{}: given twice; renders have to be independent", path));
-    if (!renders.empty()) check_fits(render, renders.front());
     renders.push_back(std::move(render));
   }
+  for (const std::string& name : leave_out_lone_passes(renders))
+    notes.push_back(fmt::format("{} is left out: not every render has a file with it", name));
+  for (std::size_t k = 1; k < renders.size(); ++k) check_fits(renders[k], renders.front());
   check_absent(renders);
   find_regions(renders);
   return renders;
@@ -472,11 +494,12 @@ class Merger {
         if (render.region == first().region) total += samples.value_or(0);
       }
       if (known) metadata_samples_[view_layer] = total;
-      if (known && samples_ <= 0 && metadata_count_sequence(view_layer))
+      const FirstSamples first_samples = compare_first_samples(view_layer);
+      if (known && samples_ <= 0 && metadata_count_sequence(view_layer) && first_samples != FirstSamples::Shared)
         report_.notes.push_back(
             fmt::format("{}: {:g} samples in all by the metadata; subsets of one sequence have fewer, give --samples",
                         view_layer, total));
-      if (known && (layer < 0 || fraction)) note_shared_samples(view_layer, total);
+      if (known && (layer < 0 || fraction)) note_shared_samples(view_layer, total, first_samples);
       if (known || (layer >= 0 && !fraction))
         counted_.push_back(view_layer);
       else if (!joins_)
@@ -487,33 +510,31 @@ class Merger {
 
   enum class FirstSamples { Shared, Apart, Unknown };
 
-  /// Whether the first two renders have their first sample at one place of each pixel: by the depth of that sample, in
-  /// the lines in the middle of the picture. A render of later samples of a sequence has sky there.
+  /// Whether the first two renders both have the first sample of a sequence: by the depth of that sample, in the lines
+  /// in the middle of the picture. A render of later samples of the sequence has sky there.
   FirstSamples compare_first_samples(const std::string& view_layer) const {
     for (std::size_t l = 0; l < first().layers.size(); ++l) {
       const Layer& layer = first().layers[l];
-      if (!is_compositing_depth(layer.pass) || layer.view_layer != view_layer || renders_[1].absent[l] ||
-          !part_of(first(), layer).readable() ||
-          !(part_of(first(), layer).data_window == part_of(renders_[1], renders_[1].layers[l]).data_window))
-        continue;
-      const Rect& lines = part_of(first(), layer).data_window;
-      const int y0 = std::max(lines.y0, (lines.y0 + lines.y1 - chunk_lines) / 2);
-      const int y1 = std::min(lines.y1, y0 + chunk_lines);
-      std::array<std::vector<float>, 2> depth;
-      for (std::size_t k = 0; k < 2; ++k) {
-        const Layer& same = renders_[k].layers[l];
-        depth[k] = ChannelReader(file_of(renders_[k], same), same.part, same.channels).read(y0, y1);
-      }
-      const auto is_sky = [](float z) { return !(z < sky_depth()); };
-      if (depth[0] != depth[1]) return FirstSamples::Apart;
-      if (!std::all_of(depth[0].begin(), depth[0].end(), is_sky)) return FirstSamples::Shared;
+      if (!is_compositing_depth(layer.pass) || layer.view_layer != view_layer || renders_[1].absent[l]) continue;
+      const bool a = hits_something(renders_[0], l), b = hits_something(renders_[1], l);
+      if (a || b) return a && b ? FirstSamples::Shared : FirstSamples::Apart;
     }
     return FirstSamples::Unknown;
   }
 
+  static bool hits_something(const Render& render, std::size_t l) {
+    const Layer& layer = render.layers[l];
+    if (!part_of(render, layer).readable()) return false;
+    const Rect& window = part_of(render, layer).data_window;
+    const int y0 = std::max(window.y0, (window.y0 + window.y1 - chunk_lines) / 2);
+    ChannelReader reader(file_of(render, layer), layer.part, layer.channels);
+    const std::vector<float>& depth = reader.read(y0, std::min(window.y1, y0 + chunk_lines));
+    return std::any_of(depth.begin(), depth.end(), [](float z) { return z < sky_depth(); });
+  }
+
   /// Notes that the errors of short renders with different seeds are not independent where their first sample has the
   /// same place. samples: of all renders.
-  void note_shared_samples(const std::string& view_layer, double samples) {
+  void note_shared_samples(const std::string& view_layer, double samples, FirstSamples first_samples) {
     const auto others = static_cast<double>(renders_.size() - 1);
     const double each = samples / static_cast<double>(renders_.size());
     const FileInfo& file = first().files.front();
@@ -523,7 +544,6 @@ class Merger {
     });
     const bool subsets = samples_ > 0 && samples_ < samples_in_metadata(file, view_layer).value_or(0);
     if (!central || subsets || has_regions_ || each > longest_shared * others) return;
-    const FirstSamples first_samples = compare_first_samples(view_layer);
     if (first_samples == FirstSamples::Apart) return;
     report_.notes.push_back(fmt::format(
         "{}: {}the first of the {:g} samples of each of the {} renders lies at the pixel's centre, so their "
@@ -799,11 +819,15 @@ class Merger {
 MergeResult merge(const std::vector<std::string>& paths, const std::string& target, const MergeOptions& options) {
   std::vector<std::string> all = paths;
   all.insert(all.end(), options.half_b.begin(), options.half_b.end());
-  Merger merger(open_renders(all, options.limits), options, options.half_b.empty() ? 0 : paths.size());
+  std::vector<std::string> notes;
+  std::vector<Render> renders = open_renders(all, options.limits, notes);
+  Merger merger(std::move(renders), options, options.half_b.empty() ? 0 : paths.size());
   merger.require_memory(options.limits.max_bytes);
   write_single_part(
       target, merger.header(), [&](NativeBand& band) { merger.make(band); }, merger.lines_per_band());
-  return merger.report();
+  MergeResult result = merger.report();
+  result.notes.insert(result.notes.begin(), notes.begin(), notes.end());
+  return result;
 }
 
 }  // namespace polyrecon

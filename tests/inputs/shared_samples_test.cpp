@@ -45,6 +45,8 @@ const auto alike = HasSubstr("their errors are alike");
 TEST(SharedSamples, ShortRendersOfOtherSeedsAreNoted) {
   EXPECT_THAT(notes_of(4, "4", Depth::Equal), Contains(certain));
   EXPECT_THAT(notes_of(4, "4", Depth::Equal), Contains(HasSubstr("fewer and longer renders have less error")));
+  EXPECT_THAT(notes_of(4, "4", Depth::Equal), Not(Contains(HasSubstr("give --samples"))));
+  EXPECT_THAT(notes_of(4, "4", Depth::OfLaterSamples), Contains(HasSubstr("give --samples")));
 }
 
 TEST(SharedSamples, WithoutTheDepthOfTheFirstSampleTheNoteHasACondition) {
