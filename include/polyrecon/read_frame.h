@@ -18,7 +18,7 @@ struct ReadResult {
 };
 
 /// Reads one view layer of a render. Layers in use are read completely, so that a missing last chunk is noticed. NaN
-/// and infinity are kept; reconstruct repairs them. A depth or visibility layer of several channels is averaged to one.
+/// and infinity are kept; reconstruct repairs them. Several channels of a layer whose role has one are averaged.
 /// Throws Error{Missing} if the file or a requested layer is missing, Error{BadInput} if the file is damaged, has no
 /// beauty, or its layers do not fit together, Error{OutOfMemory} if the pixels need more than options.limits.max_bytes.
 ReadResult read_frame(const std::string& path, const ReadOptions& options = {});

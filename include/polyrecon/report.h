@@ -13,7 +13,7 @@ enum class Spared { Nothing, Pixels, Columns, Prefilter };
 
 /// Whether a step of the method was run on a frame, and why.
 struct Decision {
-  std::string step;  ///< As --steps names it.
+  std::string step;  ///< In words: "feature albedo", "firefly removal".
   bool run = false;
   std::string reason;
   Spared spared = Spared::Nothing;

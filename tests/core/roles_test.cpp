@@ -5,6 +5,7 @@
 #include <set>
 #include <string>
 
+#include "polyrecon/read_options.h"
 #include "regression/basis.h"
 
 namespace polyrecon {
@@ -16,6 +17,9 @@ TEST(Roles, NamesAreFoundAgain) {
     EXPECT_EQ(role_from(info.name), info.role) << info.name;
     EXPECT_STREQ(name_of(info.role), info.name);
     EXPECT_TRUE(names.insert(info.name).second) << info.name;
+    if (!info.chosen) continue;
+    const RoleMapping mapping = parse_mapping(std::string(info.name) + "=x");
+    EXPECT_TRUE(mapping.role == info.role && mapping.companion == Companion::Mean) << info.name;
   }
   EXPECT_FALSE(role_from("Beauty"));
   EXPECT_FALSE(role_from(""));

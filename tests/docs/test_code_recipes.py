@@ -5,6 +5,8 @@ tree: what they edit is there, and every source that they make or change compile
     At the end of `PATH`, ...:              ... its last lines
     In `PATH`, behind `TEXT`:               ... lines behind the one that begins with TEXT; "in front of" likewise
     In `PATH`, in place of `TEXT`:          ... in place of that text
+
+What can be added again is followed twice, under a second name: the first edits must leave the places of the next.
 """
 
 import concurrent.futures
@@ -34,10 +36,16 @@ LIKE = (
 )
 
 
-def follow(page, root):
-    """Makes the page's edits below root. Returns the paths that were edited, without repetition."""
+def renamed(text, names):
+    for name, other in names.items():
+        text = text.replace(name, other).replace(name.capitalize(), other.capitalize())
+    return text
+
+
+def follow(page, root, names):
+    """Makes the page's edits below root with other names. Returns the paths that were edited, without repetition."""
     paths = {}
-    for step in STEP.finditer(tree.read(page)):
+    for step in STEP.finditer(renamed(tree.read(page), names)):
         path, code = root / step["path"], step["code"]
         paths[step["path"]] = None
         if step["new"]:
@@ -85,7 +93,7 @@ def errors_of(path, root, known):
 
 
 class Recipes(unittest.TestCase):
-    def check(self, page):
+    def check(self, page, again=None):
         build = pathlib.Path(os.environ["POLYRECON_BUILD"])
         if not (build / "compile_commands.json").exists():
             self.skipTest("CMAKE_EXPORT_COMPILE_COMMANDS is off")
@@ -94,18 +102,21 @@ class Recipes(unittest.TestCase):
         self.assertEqual(text.count("\n```"), 2 * len(STEP.findall(text)), "a code block that no sentence places")
         with tempfile.TemporaryDirectory() as folder:
             root = pathlib.Path(folder)
-            for name in ("docs/dev", "include", "src", "tests"):
+            for name in ("docs", "include", "src", "tests"):
                 shutil.copytree(tree.ROOT / name, root / name, ignore=shutil.ignore_patterns("corpus", "__pycache__"))
-            sources = [path for path in follow(page, root) if path.endswith(".cpp")]
+            paths = follow(page, root, {})
+            if again:
+                paths = dict.fromkeys([*paths, *follow(page, root, again)])
+            sources = [path for path in paths if path.endswith(".cpp")]
             with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
                 for path, errors in zip(sources, pool.map(lambda path: errors_of(path, root, known), sources)):
                     self.assertEqual("", errors, path)
 
     def test_a_feature_pass(self):
-        self.check("docs/dev/add_a_feature_pass.md")
+        self.check("docs/dev/add_a_feature_pass.md", {"curvature": "thickness"})
 
     def test_a_renderer(self):
-        self.check("docs/dev/add_a_renderer.md")
+        self.check("docs/dev/add_a_renderer.md", {"stub": "second"})
 
     def test_a_denoiser(self):
         self.check("docs/dev/add_a_denoiser.md")

@@ -3,6 +3,7 @@
 import difflib
 import os
 import pathlib
+import re
 import subprocess
 import tempfile
 import unittest
@@ -24,6 +25,14 @@ class CommandLine(unittest.TestCase):
         )
         if change:
             self.fail(f"{PAGE} is stale. Update it with `{UPDATE}` and commit it. What differs:\n{change}")
+
+    def test_the_list_of_all_steps_but_fireflies(self):
+        steps = re.search(r"`--steps`.* or a list of ([\w,-]+)", tree.read(PAGE))[1].split(",")
+        steps.remove("fireflies")
+        self.assertIn(
+            f"name all steps but `fireflies`:\n  `--steps {','.join(steps)}`",
+            tree.read("docs/guide/troubleshooting.md"),
+        )
 
 
 if __name__ == "__main__":

@@ -32,7 +32,7 @@ FileInfo file_with(std::vector<PartInfo> parts) {
   return file;
 }
 
-/// "A.RGB" stands for A.R, A.G, A.B.
+/// "A.RGB" stands for A.R, A.G, A.B. A name without a dot is letters too: a layer of one channel is "depth.Y".
 std::vector<std::string> channels(const std::vector<std::string>& layers) {
   std::vector<std::string> names;
   for (const std::string& layer : layers) {

@@ -41,7 +41,7 @@ struct BeautyCompanion {
 /// An attribute of the file that holds the samples per pixel.
 struct SamplesAttribute {
   std::string name;          ///< "{}" stands for the view layer.
-  bool of_sequence = false;  ///< A render of a part of the samples has the number of all of them.
+  bool of_sequence = false;  ///< The header of a render of samples 17 to 32 of 64 still says 64.
 };
 
 /// The form in which a renderer takes a sample map (--export).
@@ -81,7 +81,8 @@ struct Renderer {
   /// The first sample of a pixel lies at its centre in every render, whatever the seed.
   bool first_sample_is_central = false;
 
-  /// Least depth where a ray hits nothing.
+  /// Least depth that the renderer writes where a ray hits nothing. Files do not say who wrote them: the least of all
+  /// renderers decides for every file, and depths from a tenth of it on are sky (known_names.h).
   double sky_depth = std::numeric_limits<double>::infinity();
   /// Factors that turn the channels of the motion pass into Frame::motion.
   std::array<Real, 4> motion_factors{1, 1, 1, 1};
