@@ -12,9 +12,13 @@ import argparse
 import os
 import struct
 import sys
-import tempfile
 
 import bpy
+
+sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+
+from common.terminal import print_lines, printable
+from common.work_folder import WorkFolder
 
 BLENDER_5 = bpy.app.version >= (5, 0)
 
@@ -40,7 +44,7 @@ def size_of(path):
         header = file.read(1 << 20)
     at = header.find(mark)
     if at < 0:
-        raise SystemExit(f"{path}: is not an EXR file")
+        raise SystemExit(printable(f"{path}: is not an EXR file"))
     x0, y0, x1, y1 = struct.unpack_from("<4i", header, at + len(mark))
     return x1 - x0 + 1, y1 - y0 + 1
 
@@ -100,8 +104,8 @@ def render(size, path):
     settings.image_settings.color_mode = "RGBA"
     settings.image_settings.color_depth = "32"
     folder = os.path.dirname(os.path.abspath(path))
-    with tempfile.TemporaryDirectory(prefix=".compositing-", dir=folder) as scratch:
-        settings.filepath = os.path.join(scratch, "picture.exr")
+    with WorkFolder("compositing", folder) as scratch:
+        settings.filepath = str(scratch / "picture.exr")
         bpy.ops.render.render(write_still=True)
         os.replace(settings.filepath, path)
 
@@ -114,7 +118,7 @@ def main():
     source.image = image
     if options.list:
         for socket in source.outputs:
-            print(f"layer: {socket.name}")
+            print_lines(f"layer: {socket.name}")
     if options.output:
         matte = add_matte(tree, image, options.object)
         tree.links.new(add_grade(tree, source.outputs[0], matte, options.exposure), result)

@@ -13,6 +13,7 @@ if not __package__:  # run as a script from a checkout
     __package__ = "pipelines.farm"
 
 from ..common.errors import DriverError, ExitCode, run_main
+from ..common.files import write_text
 from ..common.frame_names import parse_ranges, ranges_text
 from ..common.polyrecon_cli import Polyrecon
 from ..common.terminal import print_lines
@@ -95,10 +96,10 @@ def write_bundle(options):
     parameters = {"parameterValues": [{"name": name, "value": value} for name, value in values.items()]}
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        (folder / "template.yaml").write_text(yaml.safe_dump(template, sort_keys=False))
-        (folder / "parameter_values.yaml").write_text(yaml.safe_dump(parameters, sort_keys=False))
     except OSError as error:
         raise DriverError(ExitCode.OUTPUT, f"{folder}: {error.strerror}") from error
+    write_text(folder / "template.yaml", yaml.safe_dump(template, sort_keys=False))
+    write_text(folder / "parameter_values.yaml", yaml.safe_dump(parameters, sort_keys=False))
     print_lines(f"{folder}: {len(frames)} frames, {chunk} a task; a task: {threads} threads, {request / 1e9:.2f} GB")
 
 

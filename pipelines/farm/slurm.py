@@ -187,6 +187,8 @@ def submit(options):
     job, request = job_of(options)
     name = options.name or re.sub(r"\W+", "_", pathlib.Path(options.input).name.split("#")[0].split("%")[0]).strip("_")
     name = name or "polyrecon"
+    if "/" in name or name in (".", ".."):
+        raise DriverError(ExitCode.USAGE, f"--name {name}: is the name of a folder, too: give one without /")
     folder = job_folder(options, name, job)
     print_lines(describe(job, request))
     if options.dry_run:
