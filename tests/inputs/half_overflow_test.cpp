@@ -108,7 +108,9 @@ TEST(HalfOverflow, ALampIsDenoisedAsIfItWereTheLargestHalf) {
   EXPECT_TRUE(test::same_bits(image, denoised(read_frame(write_exr(folder / "float.exr", {floats})))));
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x)
-      if (std::hypot(x - 24, y - 20) < 9) EXPECT_NEAR(image.at(x, y, 0), 65504, 0.01 * 65504) << x << " " << y;
+      if (std::hypot(x - 24, y - 20) < 9) {
+        EXPECT_NEAR(image.at(x, y, 0), 65504, 0.01 * 65504) << x << " " << y;
+      }
 }
 
 TEST(HalfOverflow, MergedRendersHoldTheLargestHalf) {
