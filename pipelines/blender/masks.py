@@ -44,10 +44,10 @@ def write(folder, render_pass, overhang, frame):
     path = os.fspath(folder / f"mask_{next(_number)}.tif")
     spec = oiio.ImageSpec(mask.shape[1], mask.shape[0], 1, "uint8")
     spec.attribute("compression", "none")
-    file = oiio.ImageOutput.create(path)
+    file = oiio.ImageOutput.create("tiff")
     if (
         not file
-        or not file.open(path, spec)
+        or not file.open(os.fsencode(path), spec)
         or not file.write_image(mask.astype(np.uint8)[..., None] * 255)
         or not file.close()
     ):

@@ -18,8 +18,10 @@ def digest(path):
     """The SHA-256 of a file's content, in hexadecimal. Raises OSError."""
     found = hashlib.sha256()
     with open_regular(path) as file:
-        while chunk := file.read(CHUNK):
+        left = os.fstat(file.fileno()).st_size  # Files of the kernel may have no end.
+        while left > 0 and (chunk := file.read(min(left, CHUNK))):
             found.update(chunk)
+            left -= len(chunk)
     return found.hexdigest()
 
 
@@ -73,10 +75,10 @@ def changed_at(path):
 
 
 def _files(path):
-    """The file itself, or the files below a folder."""
+    """The file itself, or the files in a folder."""
     if not os.path.isdir(path):
         return [path]
-    return [os.path.join(folder, name) for folder, _, names in os.walk(path) for name in sorted(names)]
+    return [entry.path for entry in os.scandir(path) if entry.is_file()]
 
 
 def _status(path):

@@ -18,7 +18,7 @@ def read(path, wanted=None):
     If `wanted` is given, only the channels with wanted(name) are read. Of parts that have a name in common, the first
     one counts."""
     channels, part = {}, 0
-    with _opened(path) as file:
+    with opened(path) as file:
         while file.seek_subimage(part, 0):
             spec = file.spec()
             names = [name for name in spec.channelnames if name not in channels and (not wanted or wanted(name))]
@@ -35,12 +35,12 @@ def read(path, wanted=None):
 
 def metadata(path):
     """The attributes of the first part: {name: value}."""
-    with _opened(path) as file:
+    with opened(path) as file:
         return {attribute.name: attribute.value for attribute in file.spec().extra_attribs}
 
 
 @contextlib.contextmanager
-def _opened(path):
+def opened(path):
     """A context with the oiio.ImageInput of an EXR file. OpenImageIO would open a file with this name that another of
     its formats recognises, too, so the file's first bytes are checked here."""
     try:

@@ -2,11 +2,13 @@
 time works in it."""
 
 import contextlib
+import errno
 import fcntl
 import json
 import os
 import pathlib
 import socket
+import stat
 
 from .errors import DriverError, ExitCode
 
@@ -28,13 +30,18 @@ def claimed(folder, sign=LOCK):
                 f"{folder}: is not empty and holds no passes of a driver: choose another --passes-dir",
             )
         descriptor = os.open(folder / LOCK, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW, 0o666)
+        if not stat.S_ISREG(os.fstat(descriptor).st_mode):
+            os.close(descriptor)
+            raise OSError(errno.EINVAL, "is not a regular file", str(folder / LOCK))
     except OSError as error:
         raise DriverError(ExitCode.OUTPUT, f"{error.filename or folder}: {error.strerror}") from error
     try:
         _lock(folder, descriptor)
-        _refuse_links(folder)
-        yield
-        os.ftruncate(descriptor, 0)
+        try:
+            _refuse_links(folder)
+            yield
+        finally:
+            os.ftruncate(descriptor, 0)
     finally:
         os.close(descriptor)
 

@@ -4,6 +4,8 @@ import os
 import pathlib
 import re
 
+from ..common.files import open_regular
+
 LARGEST_TEXT = 1 << 26  # Bytes of a file in which names are looked for
 _STRING = re.compile(rb'"([^"\n\0]+)"')
 _LIBRARY = re.compile(r"(?im)^\s*(?:[+-]L|Library_Path\s*=)\s*\"?(.+?)\"?\s*$")
@@ -32,8 +34,8 @@ def used(scene, options):
 def _text(path):
     """The content of a file; nothing of a file that is no text."""
     try:
-        with open(path, "rb") as file:
-            content = file.read(LARGEST_TEXT)
+        with open_regular(path) as file:
+            content = file.read(min(LARGEST_TEXT, os.fstat(file.fileno()).st_size))
     except OSError:
         return b""
     return b"" if b"\0" in content else content

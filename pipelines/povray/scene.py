@@ -15,9 +15,8 @@ import time
 from typing import Optional
 
 import numpy as np
-import OpenImageIO as oiio
 
-from ..common import confine, process
+from ..common import confine, exr, process
 from ..common.errors import DriverError, ExitCode
 from ..common.work_folder import WorkFolder
 from .crops import Crop
@@ -151,9 +150,9 @@ class Scene:
         words = [self.program, f"+L{self.work}/caller", *self.options, *FORCED, *shot.options, *shot.words(self)]
         words += [f"+I{wrapper}", f"+O{folder}/render.exr"]
         if not self.not_confined:
-            words = confine.confined(words, [self.work])
+            words = confine.confined(words, [folder, self.place])
         with (folder / "messages").open("wb") as messages:
-            environment = {**os.environ, "TMPDIR": str(self.work)}
+            environment = {**os.environ, "TMPDIR": str(folder)}
             child = process.start(words, cwd=self.place, stdout=messages, stderr=messages, env=environment)
             return _Run(folder, child)
 
@@ -248,15 +247,10 @@ class Scene:
 
 def _read_rgb(path, scale, crop):
     """The crop of a file of the whole frame. The file has no values outside of it."""
-    file = oiio.ImageInput.open(os.fspath(path))
-    if not file:
-        raise DriverError(ExitCode.RENDERER, f"{path}: {oiio.geterror()}")
-    try:
+    with exr.opened(path) as file:
         y0, y1 = scale * crop.y0, scale * crop.y1
         pixels = file.read_scanlines(0, 0, y0, y1, 0, 0, 3, "float")
         if pixels is None:
             raise DriverError(ExitCode.RENDERER, f"{path}: {file.geterror()}")
         pixels = np.asarray(pixels, np.float32).reshape(y1 - y0, file.spec().width, 3)
         return np.ascontiguousarray(pixels[:, scale * crop.x0 : scale * crop.x1])
-    finally:
-        file.close()

@@ -5,6 +5,7 @@ import os
 import re
 
 import bpy
+import caches
 
 
 def opened(path):
@@ -15,7 +16,7 @@ def opened(path):
 def used():
     """{name: files and folders} that are read while frames are evaluated and rendered. A sequence has one name."""
     sequences = dict(_sequences())
-    found = {path: [path] for path in bpy.utils.blend_paths(absolute=True, packed=False, local=False) if path}
+    found = {path: _parts(path) for path in bpy.utils.blend_paths(absolute=True, packed=False, local=False) if path}
     for blend in opened(bpy.data.filepath):
         found.pop(blend, None)
         stem = os.path.splitext(os.path.basename(blend))[0]
@@ -24,6 +25,11 @@ def used():
             found[folder] = [folder]
     named = (os.path.realpath(path) for path in _names_in_nodes())
     return {**found, **{path: [path] for path in named if os.path.isfile(path)}, **sequences}
+
+
+def _parts(path):
+    """The file itself, or the folders of a fluid's cache."""
+    return [os.path.join(path, name) for name in caches.FLUID_FOLDERS] if os.path.isdir(path) else [path]
 
 
 def _names_in_nodes():

@@ -48,13 +48,13 @@ class Digests(unittest.TestCase):
             self.of(self.file, known)
 
     def test_a_folder_and_a_sequence(self):
-        (self.folder / "cache" / "data").mkdir(parents=True)
-        for name in ("cache/one", "cache/data/two"):
+        (self.folder / "cache").mkdir()
+        for name in ("cache/one", "cache/two"):
             (self.folder / name).write_bytes(b"content")
         found = {self.of(self.folder / "cache")}
-        swap(self.folder / "cache/data/two", b"CONTENT")
+        swap(self.folder / "cache/two", b"CONTENT")
         found.add(self.of(self.folder / "cache"))
-        (self.folder / "cache/data/two").rename(self.folder / "cache/two")
+        (self.folder / "cache/two").rename(self.folder / "cache/zwei")
         found.add(self.of(self.folder / "cache"))
         (self.folder / "cache/three").touch()
         found.add(self.of(self.folder / "cache"))
@@ -64,6 +64,8 @@ class Digests(unittest.TestCase):
     def test_what_cannot_be_read(self):
         os.mkfifo(self.folder / "pipe")
         self.assertEqual(self.of(self.folder / "pipe"), "is not a regular file")
+        for path in ("/proc/kmsg", "/proc/self/pagemap", "/proc/kcore", "/dev/zero"):  # They have no end, or none soon.
+            self.assertTrue(self.of(Path(path)))
         self.assertEqual(self.of(self.folder / "gone"), "No such file or directory")
         self.assertEqual(changed_at(self.folder / "gone"), 0)
 

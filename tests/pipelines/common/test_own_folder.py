@@ -105,6 +105,10 @@ class OwnFolders(unittest.TestCase):
             (self.folder / name).symlink_to(victim)
             self.refused(f"{name}: is a link")
             (self.folder / name).unlink()
+        self.assertEqual((self.folder / LOCK).read_text(), "")  # A driver that failed holds no lock.
+        (self.folder / LOCK).unlink()
+        os.mkfifo(self.folder / LOCK)
+        self.refused("is not a regular file", ExitCode.OUTPUT)
         (self.folder / LOCK).unlink()
         (self.folder / LOCK).symlink_to(victim)
         self.refused("symbolic links", ExitCode.OUTPUT)

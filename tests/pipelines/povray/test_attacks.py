@@ -32,6 +32,7 @@ class Attacks(InFolder):
         for name in (
             "outside/new.inc",
             "mine.inc",
+            "../new.inc",
             f"{pathlib.Path.home()}/polyrecon_test.inc",
             "/tmp/n",
         ):
@@ -39,9 +40,7 @@ class Attacks(InFolder):
                 self.render(WRITING.format(name=name) + GREY)
             self.assertEqual(caught.exception.code, ExitCode.RENDERER)
             self.assertFalse(os.path.exists(name) and name != "mine.inc")
-        for name in ("new.inc", "../new.inc"):
-            np.testing.assert_allclose(self.render(WRITING.format(name=name) + GREY), 0.25, rtol=1e-3)
-            self.assertFalse(os.path.exists(name))
+        np.testing.assert_allclose(self.render(WRITING.format(name="new.inc") + GREY), 0.25, rtol=1e-3)
         self.assertEqual(pathlib.Path("mine.inc").read_text(), "precious")
         self.assertEqual(sorted(os.listdir()), ["mine.inc", "outside", "scene.pov"])
 
