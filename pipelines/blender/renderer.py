@@ -9,9 +9,9 @@ import numpy as np
 from ..common import exr
 from ..common.errors import DriverError, ExitCode
 from ..common.scene_inputs import SceneInputs
+from ..loop.pass_list import masked_passes, rectangular_passes
 from ..loop.renderer import RENDER_SECONDS, SAMPLE_COUNT, Audit, Renderer, Switch
 from . import masks, prior
-from .pass_list import masked_passes, rectangular_passes
 from .session import BlenderSession
 
 PART_LAYERS = {
@@ -27,6 +27,10 @@ PART_LAYERS = {
 }
 RENDER_TIME = "Render Time"  # Cycles' pass: milliseconds of a thread for all samples of a pixel
 OVERHEAD_SECONDS = 0.045  # fixed seconds of a pass, until they are measured
+
+# The fixed costs of a masked pass, and of each pixel of its box, in samples of a pixel outside the mask
+# (docs/lab/2026-11-27-loop-seconds.md).
+MASKED_PASS, MASKED_PIXEL = 100_000, 2.5
 
 
 class BlenderRenderer(Renderer):
@@ -121,9 +125,12 @@ class BlenderRenderer(Renderer):
         samples = int(counts.max())
         if samples == counts.min():
             self._write(target, self._render(first=first, samples=samples)[0], counts)
-            return samples
+            return
         sums, taken = {}, np.zeros(counts.shape)
-        passes = masked_passes(counts) if self.masked else rectangular_passes(counts, self._overhead_samples())
+        if self.masked:
+            passes = masked_passes(counts, MASKED_PASS, MASKED_PIXEL)
+        else:
+            passes = rectangular_passes(counts, self._overhead_samples())
         for render_pass, channels in self._render_ahead(first, passes):
             x0, y0, x1, y1 = render_pass.box
             inside = render_pass.inside
@@ -134,7 +141,6 @@ class BlenderRenderer(Renderer):
             taken[y0:y1, x0:x1] += render_pass.samples * inside
         means = {name: whole if _is_time(name) else whole / np.maximum(taken, 1) for name, whole in sums.items()}
         self._write(target, means, taken)
-        return int(taken.max(initial=0))
 
     def complete_last(self, merged):
         if self.with_prior:

@@ -21,6 +21,12 @@ def bounding_box(inside, box=None):
     return x0 + int(columns[0]), y0 + int(rows[0]), x0 + int(columns[-1]) + 1, y0 + int(rows[-1]) + 1
 
 
+def first_of_fullest_rows(values, rows):
+    """The first of so many adjacent rows whose values have the largest sum."""
+    sums = np.concatenate([[0], values.sum(1).cumsum()])
+    return int((sums[rows:] - sums[:-rows]).argmax())
+
+
 def area(box):
     x0, y0, x1, y1 = box
     return (x1 - x0) * (y1 - y0)

@@ -7,6 +7,9 @@ from ..common.command import each_frame
 from ..common.terminal import print_lines
 from . import adaptive, report
 from .budget import Budget
+from .journal import HALVES
+
+MIN_FIRST_PASS = 2 * len(HALVES)
 
 
 def add_loop_arguments(parser, first_pass, first_pass_help):
@@ -31,6 +34,10 @@ def add_loop_arguments(parser, first_pass, first_pass_help):
 
 
 def check_budget(parser, options):
+    """Ends the program with exit code 2 where the budget or the first pass is impossible. Each half needs two samples,
+    since variance is measured by their difference. A driver may demand more of --first-pass."""
+    if options.first_pass < MIN_FIRST_PASS or options.first_pass % len(HALVES):
+        parser.error(f"--first-pass {options.first_pass}: must be an even number from {MIN_FIRST_PASS} on")
     if options.budget_spp and options.budget_spp < options.first_pass:
         parser.error(f"--budget-spp {options.budget_spp:g} is less than --first-pass {options.first_pass}")
 

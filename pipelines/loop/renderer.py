@@ -2,8 +2,8 @@
 
 Terms:
   sequence  The samples of a pixel, numbered from 0. Sample s of a pixel is the same one in every pass, and the loop
-            never requests a number twice. A renderer without a sequence may use `first` as its seed if different
-            numbers give independent samples.
+            never requests a number twice. A renderer that has only a seed takes `first` for it. Different seeds must
+            give independent samples, and so must two rectangles of one part, which have the same seed.
   part      One EXR file with one pass over the whole frame, in any layout that `polyrecon merge` reads. All parts of a
             frame have the same layers; the first part may have more, which are kept as they are. Every part has these
             channels, after the prefix of the view layer if there is one (`ViewLayer.Sample Count.X`):
@@ -54,6 +54,10 @@ class Renderer(abc.ABC):
 
     name = ""  # Name and version for the report: "Blender 5.0.1"
 
+    # Whether `extra` takes its samples from the sequence. If not, the renderer itself sees to it that no pixel takes a
+    # sample twice, and may take more than the largest count.
+    extra_in_sequence = True
+
     # Seconds of complete_last over the seconds of a decision (both reconstructions and sample maps). A budget of
     # seconds keeps them in reserve.
     complete_last_over_decision = 0.0
@@ -69,13 +73,16 @@ class Renderer(abc.ABC):
         The first part of a frame may hold further layers that the user switched on."""
 
     @abc.abstractmethod
-    def extra(self, first: int, counts: np.ndarray, target: pathlib.Path) -> int:
+    def extra(self, first: int, counts: np.ndarray, target: pathlib.Path) -> None:
         """Renders counts[y, x] samples of each pixel and writes them as one part. Row 0 is at the top. The counts are
-        whole numbers: the same one everywhere, or 0 and powers of two. Takes as many numbers of the sequence as it
-        likes, from `first` on, and returns how many.
+        whole numbers, not all 0: the same one everywhere, or 0 and powers of two.
 
-        A renderer that cannot sample single pixels may take more samples than requested. `Sample Count.X` says what was
-        taken. It must not depend on the values of the samples, or the picture is biased."""
+        Takes the numbers first .. first + max(counts) - 1 and no others: those behind are the other half's. A pixel
+        with n samples takes the first n of them.
+
+        A renderer that cannot sample single pixels may take other counts than requested, at least one sample and about
+        as many in all. `Sample Count.X` says what was taken. It must not depend on the values of the samples, or the
+        picture is biased."""
 
     def complete(self, merged: pathlib.Path) -> None:  # noqa: B027 (optional)
         """Adds to a file of merged parts what is rendered once for the frame, such as feature passes. They must not

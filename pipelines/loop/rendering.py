@@ -57,6 +57,8 @@ class PartRendering:
             if self.state.part_count(plan.round, half) <= index_in_round:
                 self.announce(f"round {plan.round}, half {half.upper()}", round=plan.round)
                 counts = self._counts(plan, half)
+                if not counts.any():  # The samples of this round are all the other half's.
+                    continue
                 first_sample = plan.first_samples[half] + index * int(counts.max())
                 weighted = plan.cost_weighted_samples / len(HALVES)
                 self._render_part(
@@ -73,9 +75,15 @@ class PartRendering:
         if counts is None:
             self.renderer.uniform(first_sample, samples, target)
         else:
-            samples = self.renderer.extra(first_sample, counts, target)
+            samples = int(counts.max())
+            self.renderer.extra(first_sample, counts, target)
         seconds = time.monotonic() - begin
         taken = read_taken(target)
+        most = int(taken.counts.max())
+        if not most or (most > samples and (counts is None or self.renderer.extra_in_sequence)):
+            raise DriverError(
+                ExitCode.RENDERER, f"{target}: the renderer took {most} samples of a pixel, not 1 to {samples}"
+            )
         self._add(half, taken)
         mean = float(taken.counts.mean())
         masked = counts is not None and bool(counts.min() < counts.max())
@@ -92,7 +100,7 @@ class PartRendering:
                 sha256=digest(target),
             )
         )
-        self.state.next_sample = max(self.state.next_sample, first_sample + int(samples))
+        self.state.next_sample = max(self.state.next_sample, first_sample + max(samples, most))
         self.journal.save()
 
     def _counts(self, plan, half):

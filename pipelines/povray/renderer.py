@@ -13,6 +13,7 @@ import numpy as np
 
 from ..common import exr
 from ..common.errors import DriverError, ExitCode
+from ..common.rectangles import first_of_fullest_rows
 from ..common.scene_inputs import SceneInputs
 from ..loop.renderer import SAMPLE_COUNT, Audit, Renderer, Switch
 from . import inputs, passes
@@ -31,6 +32,8 @@ class PovrayRenderer(Renderer):
 
     path, options, povray, timeout: see Scene. first_pass: samples of a pixel in the uniform pass, the square of an even
     number. camera: its place, "x,y,z", or None."""
+
+    extra_in_sequence = False  # See _free_grids.
 
     def __init__(self, path, options, povray, timeout, first_pass, camera=None):
         self.path, self.options, self.povray, self.timeout, self.camera = path, options, povray, timeout, camera
@@ -92,7 +95,6 @@ class PovrayRenderer(Renderer):
             mean[rows, columns] = blocks(image, shot.scale).mean((2, 3), dtype=np.float64)
             taken[rows, columns] = shot.scale**2
         self._write(target, mean, taken, shots)
-        return int(taken.max())
 
     def complete(self, merged):
         """Adds the feature passes, which are rendered at the first call and the same for all parts."""
@@ -168,8 +170,7 @@ def field_order(n):
 
 def _rows_that_want_most(crop, counts, rows):
     """The part of a crop, of so many rows, whose counts are largest."""
-    sums = np.concatenate([[0], counts[crop.y0 : crop.y1, crop.x0 : crop.x1].sum(1).cumsum()])
-    first = crop.y0 + int((sums[rows:] - sums[:-rows]).argmax())
+    first = crop.y0 + first_of_fullest_rows(counts[crop.y0 : crop.y1, crop.x0 : crop.x1], rows)
     return dataclasses.replace(crop, y0=first, y1=first + rows)
 
 

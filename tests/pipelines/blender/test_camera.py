@@ -6,10 +6,10 @@ import unittest
 import numpy as np
 
 from pipelines.blender import masks
-from pipelines.blender.pass_list import masked_passes
-from pipelines.blender.renderer import BlenderRenderer
+from pipelines.blender.renderer import MASKED_PASS, MASKED_PIXEL, BlenderRenderer
 from pipelines.common import exr
 from pipelines.common.rectangles import bounding_box
+from pipelines.loop.pass_list import masked_passes
 from pipelines.loop.renderer import RENDER_SECONDS, SAMPLE_COUNT
 from tests.pipelines.blender.support import NO_BLENDER_5_2, PYTHON_OF_BLENDER_5_2, SceneTest
 
@@ -79,7 +79,7 @@ class Masks(SceneTest):
         random = np.random.default_rng(5)
         counts = random.choice([0, 1, 2, 8], size=renderer.shape)
         counts[:, -6:] = 0
-        self.assertEqual(renderer.extra(8, counts, self.folder / "extra.exr"), 8)
+        renderer.extra(8, counts, self.folder / "extra.exr")
         part = exr.read(self.folder / "extra.exr")
         np.testing.assert_array_equal(part[f"ViewLayer.{SAMPLE_COUNT}"], counts)
         # The time of a sample depends neither on its pixel's count nor on the number of passes.
@@ -101,7 +101,7 @@ class Masks(SceneTest):
         counts = np.ones(renderer.shape, int)
         counts[: counts.shape[0] // 2] = 1 << 20  # hours
         for delay in (0, 0.001, 0.01, 0.1):
-            passes = renderer._render_ahead(0, masked_passes(counts))
+            passes = renderer._render_ahead(0, masked_passes(counts, MASKED_PASS, MASKED_PIXEL))
             next(passes)
             time.sleep(delay)
             with self.assertRaises(KeyboardInterrupt):

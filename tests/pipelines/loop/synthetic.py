@@ -53,7 +53,6 @@ class SyntheticRenderer(Renderer):
         part[f"L.{SAMPLE_COUNT}"] = counts
         part[f"L.{RENDER_SECONDS}"] = counts * self.seconds
         exr.write(target, part)
-        return int(counts.max())
 
 
 def loop(folder, budget, resume=False, seed=1, quality="draft", renderer=None, max_rounds=8, **size):

@@ -17,6 +17,7 @@ from pipelines.common import exr
 from pipelines.common.errors import DriverError, ExitCode
 from pipelines.loop import budget
 from pipelines.loop.budget import Budget
+from pipelines.loop.reconstruction import Reconstruction
 from pipelines.loop.renderer import SAMPLE_COUNT
 from tests.pipelines.loop.synthetic import SyntheticRenderer, loop
 
@@ -102,6 +103,22 @@ class Budgets(Folder):
         for (first, length), (following, _) in zip(ranges, ranges[1:]):
             self.assertLessEqual(first + length, following)
 
+    def test_a_renderer_that_takes_numbers_of_the_other_half_is_refused(self):
+        for method in ("uniform", "extra"):
+            with self.subTest(method), self.assertRaisesRegex(DriverError, "took .* samples of a pixel") as caught:
+                loop(self.folder / method, Budget(samples=16), renderer=Greedy(method))
+            self.assertEqual(caught.exception.code, ExitCode.RENDERER)
+
+    def test_a_half_without_samples_has_no_part_in_that_round(self):
+        counts = {"a": np.zeros((64, 96), int), "b": np.repeat([[4, 0]], 48, axis=1) * np.ones((64, 1), int)}
+        decided = unittest.mock.patch.object(Reconstruction, "sample_counts", return_value=counts)
+        with decided, unittest.mock.patch("pipelines.loop.adaptive.map_pays", return_value=True):
+            _, result = loop(self.folder, Budget(samples=64), max_rounds=1)
+        parts = [part for part in result.state.parts if part.round == 1]
+        self.assertEqual([(part.half, part.samples) for part in parts], [("b", 2)])
+        self.assertEqual(result.samples, 10)
+        self.assertTrue(np.isfinite(exr.read(self.folder / "out.exr")["L.Combined.R"]).all())
+
     def test_a_target_ends_the_loop(self):
         _, result = loop(self.folder, Budget(target=1.0))
         self.assertEqual(len(result.state.rounds), 1)
@@ -145,6 +162,20 @@ class SlowFeatures(SyntheticRenderer):
         if not self.done:
             time.sleep(self.seconds_once)
         self.done = True
+
+
+class Greedy(SyntheticRenderer):
+    """Takes a sample more than it may."""
+
+    def __init__(self, method):
+        super().__init__()
+        self.method = method
+
+    def uniform(self, first, samples, target):
+        super().extra(first, np.full(self.mean.shape, samples + (self.method == "uniform")), target)
+
+    def extra(self, first, counts, target):
+        super().extra(first, counts + (self.method == "extra"), target)
 
 
 class Failing(SyntheticRenderer):

@@ -52,7 +52,7 @@ class PovrayBehindTheLoop(InFolder):
         grids, total = [], 0
         for number in range(3):
             target = pathlib.Path(f"part_{number}.exr")
-            self.assertGreater(renderer.extra(16, counts, target), 0)
+            renderer.extra(16, counts, target)
             part = exr.read(target)
             taken = part["Sample Count.X"]
             self.assertLessEqual(taken.sum(), counts.sum())

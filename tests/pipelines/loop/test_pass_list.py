@@ -2,7 +2,9 @@ import unittest
 
 import numpy as np
 
-from pipelines.blender.pass_list import masked_passes, rectangular_passes
+from pipelines.loop.pass_list import masked_passes, rectangular_passes
+
+COSTS = 100_000, 2.5  # Of a masked pass and of each pixel of its box
 
 
 def taken(counts, overhead):
@@ -49,27 +51,40 @@ class RectangularPasses(unittest.TestCase):
         self.assertLess((samples > 0).sum(), 400)
         self.assertLess(samples.sum(), 3 * 4096)
 
+    def test_counts_too_few_for_a_rectangle_become_rows(self):
+        counts = np.zeros((40, 60), int)
+        counts[30:34, ::2] = 1  # 120 samples
+        for overhead in (1e6, np.inf):
+            passes, samples, _ = taken(counts, overhead)
+            self.assertEqual((samples.sum(), samples.max()), (120, 1))
+            self.assertEqual(len(passes), 1)
+            self.assertGreaterEqual(passes[0].box[1], 30)
+            self.assertLessEqual(passes[0].box[3], 34)
+        single = np.zeros((40, 60), int)
+        single[7, 50] = 1
+        self.assertEqual([p.box for p in rectangular_passes(single, np.inf)], [(0, 7, 60, 8)])
+
 
 class MaskedPasses(unittest.TestCase):
     def test_passes_lie_one_in_another_and_continue_the_sequence(self):
         counts = np.array([[0, 4, 4], [0, 0, 1]])
-        passes = [(p.skip, p.samples, p.box, p.inside.tolist()) for p in masked_passes(counts)]
+        passes = [(p.skip, p.samples, p.box, p.inside.tolist()) for p in masked_passes(counts, *COSTS)]
         self.assertEqual(
             passes, [(0, 1, (1, 0, 3, 2), [[True, True], [False, True]]), (1, 3, (1, 0, 3, 1), [[True, True]])]
         )
-        self.assertEqual(masked_passes(np.zeros((2, 2))), [])
+        self.assertEqual(masked_passes(np.zeros((2, 2)), *COSTS), [])
 
     def test_passes_are_cut_where_what_lies_between_costs_more_than_another_pass(self):
         counts = np.zeros((360, 640), int)
         counts[10:20, 10:30] = counts[340:350, 600:630] = 64
-        self.assertEqual([p.box for p in masked_passes(counts)], [(10, 10, 30, 20), (600, 340, 630, 350)])
+        self.assertEqual([p.box for p in masked_passes(counts, *COSTS)], [(10, 10, 30, 20), (600, 340, 630, 350)])
         near = np.zeros((360, 640), int)
         near[10:20, 10:30] = near[10:20, 100:120] = 64  # 45,000 samples in between, less than a pass
-        self.assertEqual([p.box for p in masked_passes(near)], [(10, 10, 120, 20)])
+        self.assertEqual([p.box for p in masked_passes(near, *COSTS)], [(10, 10, 120, 20)])
         random = np.random.default_rng(8)
         counts = np.kron(random.choice([0, 0, 1, 4, 128], size=(18, 32)), np.ones((20, 20), int))
         taken = np.zeros_like(counts)
-        for render_pass in masked_passes(counts):
+        for render_pass in masked_passes(counts, *COSTS):
             x0, y0, x1, y1 = render_pass.box
             self.assertTrue((taken[y0:y1, x0:x1][render_pass.inside] == render_pass.skip).all())
             taken[y0:y1, x0:x1] += render_pass.samples * render_pass.inside
