@@ -45,7 +45,9 @@ def arguments(words):
 def work(words):
     options = arguments(words)
     command.run_frames(
-        options, renderer_of(options, options.method), {"visibility": options.visibility, "renderer": "Blender"}
+        options,
+        renderer_of(options, options.method),
+        {"renderer": "Blender", "scene": str(options.scene.resolve()), "visibility": options.visibility},
     )
 
 

@@ -2,7 +2,7 @@
 
 import pathlib
 
-from ..common.arguments import positive
+from ..common.arguments import add_pass_timeout
 from ..common.command import add_frame_arguments
 from ..common.errors import DriverError, ExitCode
 from .renderer import BlenderRenderer
@@ -28,9 +28,7 @@ def add_common(parser):
     blender.add_argument(
         "--bpy", action="store_const", const="bpy", dest="blender", help="use the module bpy of this Python as Blender"
     )
-    parser.add_argument(
-        "--pass-timeout", type=positive, default=3600, metavar="S", help="seconds after which a pass has failed (3600)"
-    )
+    add_pass_timeout(parser, 3600)
 
 
 def renderer_of(options, method="auto"):

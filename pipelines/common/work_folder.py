@@ -9,7 +9,7 @@ import shutil
 import stat
 import tempfile
 
-_NAME = re.compile(r"polyrecon-[a-z]+-([0-9]+)-.+")  # polyrecon-KIND-PROCESS-RANDOM
+_NAME = re.compile(r"polyrecon-[a-z0-9_]+-([0-9]+)-.+")  # polyrecon-KIND-PROCESS-RANDOM
 
 
 class WorkFolder:

@@ -1,7 +1,5 @@
 """The command line options of the adaptive loop, and the loop over the frames that they name."""
 
-import pathlib
-
 from ..common.arguments import positive
 from ..common.command import each_frame
 from ..common.terminal import print_lines
@@ -45,9 +43,8 @@ def check_budget(parser, options):
 def run_frames(options, renderer, identity):
     """Runs the loop for every frame of the options.
 
-    `identity` and the scene's path say what the passes are of. --resume continues only passes of the same identity and
-    the same inputs (Audit.inputs)."""
-    identity = {"scene": str(pathlib.Path(options.scene).resolve()), **identity}
+    identity: every setting that changes a sample, such as the scene's path, with a name. --resume continues only passes
+    of the same identity, frame and --first-pass, and of the same inputs (Audit.inputs)."""
 
     def work(frame, output, passes, polyrecon, progress):
         settings = adaptive.Settings(

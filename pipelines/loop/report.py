@@ -7,6 +7,7 @@ import pathlib
 
 import jinja2
 
+from ..common.errors import DriverError
 from ..common.files import write_text
 from ..common.terminal import printable
 from ..common.work_folder import WorkFolder
@@ -36,7 +37,8 @@ def lines(result, settings, page):
 
 
 def write(result, settings, polyrecon):
-    """Writes report.html into the folder of passes; returns its path. The page holds its pictures and loads nothing."""
+    """Writes report.html into the folder of passes; returns its path. The page holds its pictures and loads nothing.
+    Where these cannot be made, a note says so."""
     environment = jinja2.Environment(
         autoescape=True,
         trim_blocks=True,
@@ -50,7 +52,11 @@ def write(result, settings, polyrecon):
     with WorkFolder("report") as folder:
         files = [_files_of(entry.round, passes) for entry in rounds]
         files.append([result.merged, settings.output, result.error_map])
-        *pictures, final = _pictures(polyrecon, files, folder)
+        try:
+            *pictures, final = _pictures(polyrecon, files, folder)
+        except DriverError as error:  # The frame is finished, so it does not fail for a page's pictures.
+            result.audit.notes.append(f"the report has no pictures: {error}")
+            pictures, final = [None] * len(rounds), None
     page = environment.from_string(TEMPLATE.read_text(encoding="utf-8")).render(
         result=result,
         settings=settings,

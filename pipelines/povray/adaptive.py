@@ -38,9 +38,18 @@ def _main(words):
     if not options.scene.is_file():
         raise DriverError(ExitCode.MISSING, f"{options.scene}: no such scene")
     renderer = PovrayRenderer(
-        options.scene, povray_options, options.povray, options.timeout, options.first_pass, options.camera
+        options.scene, povray_options, options.povray, options.pass_timeout, options.first_pass, options.camera
     )
-    command.run_frames(options, renderer, {"renderer": "POV-Ray", "options": povray_options, "camera": options.camera})
+    command.run_frames(
+        options,
+        renderer,
+        {
+            "renderer": "POV-Ray",
+            "scene": str(options.scene.resolve()),
+            "options": povray_options,
+            "camera": options.camera,
+        },
+    )
 
 
 def _arguments(words):

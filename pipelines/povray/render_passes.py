@@ -16,7 +16,7 @@ import time
 import numpy as np
 
 from ..common import exr
-from ..common.arguments import positive
+from ..common.arguments import add_pass_timeout
 from ..common.errors import run_main
 from ..common.terminal import print_lines
 from ..loop.renderer import SAMPLE_COUNT
@@ -45,7 +45,7 @@ def _main(words):
     words, povray_options = split_words(words)
     options = _parser().parse_args(words)
     say = (lambda *_: None) if options.quiet else print_lines
-    with Scene(options.scene, povray_options, options.povray, options.timeout) as scene:
+    with Scene(options.scene, povray_options, options.povray, options.pass_timeout) as scene:
         say(f"{options.scene}: {scene.width} x {scene.height}, parsed in {scene.parse_seconds:.1f} s")
         begun = time.monotonic()
         choice = passes.choose_passes(scene, options.camera)
@@ -129,9 +129,7 @@ def add_povray_arguments(parser):
         "--camera", metavar="X,Y,Z", type=_place, help="place of the camera, if it is not found in the scene file"
     )
     parser.add_argument("--povray", default="povray", metavar="PATH", help="POV-Ray (default: `povray`)")
-    parser.add_argument(
-        "--timeout", type=positive, metavar="SECONDS", help="limit of a single run of POV-Ray (default: none)"
-    )
+    add_pass_timeout(parser)
 
 
 def _place(text):

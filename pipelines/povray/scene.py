@@ -162,7 +162,7 @@ class Scene:
             code = run.child.wait(self.timeout)
         except subprocess.TimeoutExpired:
             process.stop(run.child)
-            text = f"{self.path}: POV-Ray ran for more than {self.timeout:g} s (--timeout)"
+            text = f"{self.path}: POV-Ray ran for more than {self.timeout:g} s (--pass-timeout)"
             raise DriverError(ExitCode.RENDERER, text) from None
         except BaseException:
             process.stop(run.child)

@@ -33,7 +33,7 @@ class Recipe(unittest.TestCase):
             environment = {**os.environ, "POLYRECON": os.path.abspath(os.environ["POLYRECON"])}
             done = subprocess.run(command, cwd=root, env=environment, capture_output=True, text=True)
             self.assertEqual(0, done.returncode, done.stderr)
-            self.assertIn("Ran 2 tests", done.stderr)
+            self.assertIn("Ran 4 tests", done.stderr)
 
 
 if __name__ == "__main__":

@@ -11,7 +11,7 @@ ROOT = Path(__file__).resolve().parents[3]
 HOLD = """import sys
 from pipelines.common.work_folder import WorkFolder
 
-WorkFolder('a', sys.argv[1])
+WorkFolder('toy_2', sys.argv[1])
 print(flush=True)
 input()
 """

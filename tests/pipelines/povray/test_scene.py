@@ -104,7 +104,7 @@ class Scenes(InFolder):
     def test_time_limit(self):
         grace, process.GRACE_SECONDS = process.GRACE_SECONDS, 0.5
         self.addCleanup(setattr, process, "GRACE_SECONDS", grace)
-        self.assertIn("--timeout", self.fails(ExitCode.RENDERER, self.scene(SLOW), SIZE, timeout=1))
+        self.assertIn("--pass-timeout", self.fails(ExitCode.RENDERER, self.scene(SLOW), SIZE, timeout=1))
 
     def test_an_interrupt_leaves_no_renderer_and_no_file(self):
         command = [
