@@ -24,13 +24,13 @@ constexpr double pi = 3.14159265358979323846;
 
 /// 1 / (brightness^2 + epsilon). The square is smoothed so that one dark pixel does not dominate the risk of its
 /// neighbourhood.
-Image inverse_brightness(const Image& brightness, double epsilon) {
+Image inverse_brightness(const Image& brightness, double epsilon, const Image& picture) {
   Image out = brightness;
   for_rows(out.height(), [&](int y) {
     for (int c = 0; c < 3; ++c)
       for (int x = 0; x < out.width(); ++x) out.at(x, y, c) *= out.at(x, y, c);
   });
-  out = gaussian_blur(out, brightness_sigma);
+  out = gaussian_blur(out, brightness_sigma, picture);
   for_rows(out.height(), [&](int y) {
     for (int c = 0; c < 3; ++c)
       for (int x = 0; x < out.width(); ++x)
@@ -63,7 +63,8 @@ struct Best {
 };
 
 /// exp(-z^2 / 2), z = D / SE, of a candidate compared with the best one of each pixel.
-Image likelihood(const Image& raw, const Image& risk, const Best& best, const SelectParams& params) {
+Image likelihood(const Image& raw, const Image& risk, const Best& best, const SelectParams& params,
+                 const Image& picture) {
   const int width = raw.width(), height = raw.height();
   Image moments(width, height, 2);
   for_rows(height, [&](int y) {
@@ -73,7 +74,7 @@ Image likelihood(const Image& raw, const Image& risk, const Best& best, const Se
       moments.at(x, y, 1) = difference * difference;
     }
   });
-  moments = gaussian_blur(moments, params.risk_sigma);
+  moments = gaussian_blur(moments, params.risk_sigma, picture);
   // The number of independent pixels whose mean has the variance of the Gaussian average.
   const double independent = 4 * pi * params.risk_sigma * params.risk_sigma;
   Image out(width, height, 1);
@@ -90,14 +91,14 @@ Image likelihood(const Image& raw, const Image& risk, const Best& best, const Se
 }
 
 /// Divides the shares of a candidate by the standard deviation s of its noise, which is relative like the risk.
-void divide_by_noise(const Image& variance, const Image& scale, double sigma, Image& shares) {
+void divide_by_noise(const Image& variance, const Image& scale, double sigma, const Image& picture, Image& shares) {
   if (variance.empty()) return;
   Image relative(shares.width(), shares.height(), 1);
   for_rows(shares.height(), [&](int y) {
     for (int c = 0; c < 3; ++c)
       for (int x = 0; x < shares.width(); ++x) relative.at(x, y, 0) += variance.at(x, y, c) * scale.at(x, y, c);
   });
-  relative = gaussian_blur(relative, sigma);
+  relative = gaussian_blur(relative, sigma, picture);
   for_rows(shares.height(), [&](int y) {
     for (int x = 0; x < shares.width(); ++x) {
       const Real v = relative.at(x, y, 0) + least_relative_variance;
@@ -160,22 +161,24 @@ Candidate select(const HalfPair& pair, const Image& brightness, const std::vecto
                  const SelectParams& params) {
   assert(!candidates.empty());
   const int width = brightness.width(), height = brightness.height();
-  const Image scale = inverse_brightness(brightness, pair.epsilon);
+  const Image scale = inverse_brightness(brightness, pair.epsilon, pair.sampled);
   std::vector<Image> raw, risk, shares;
   for (const Candidate& candidate : candidates) {
     raw.push_back(raw_risk(pair, candidate, scale));
-    risk.push_back(gaussian_blur(raw.back(), params.risk_sigma));
+    risk.push_back(gaussian_blur(raw.back(), params.risk_sigma, pair.sampled));
   }
   const Best best = best_of(raw, risk);
   Image total(width, height, 1);
   for (std::size_t k = 0; k < candidates.size(); ++k) {
-    Image share = likelihood(raw[k], risk[k], best, params);
-    divide_by_noise(candidates[k].variance, scale, params.risk_sigma, share);
-    shares.push_back(gaussian_blur(share, params.map_sigma));
+    Image share = likelihood(raw[k], risk[k], best, params, pair.sampled);
+    divide_by_noise(candidates[k].variance, scale, params.risk_sigma, pair.sampled, share);
+    shares.push_back(gaussian_blur(share, params.map_sigma, pair.sampled));
     for_rows(height, [&](int y) {
       for (int x = 0; x < width; ++x) total.at(x, y, 0) += shares[k].at(x, y, 0);
     });
   }
+  if (!pair.sampled.empty())  // far from the picture all shares are 0
+    std::replace(total.plane(0), total.plane(0) + total.pixels(), Real(0), Real(1));
   Candidate out = make_candidate(width, height, candidates[0].half[0].channels());
   const auto value = [](Real v) { return v; };
   const auto root = [](Real v) { return std::sqrt(v); };  // biases are averaged, not their squares; see BlendedFit
@@ -207,8 +210,11 @@ std::array<Image, 2> select_correction(const HalfPair& pair, const std::array<Im
       std::min(max_bytes / correction_bytes_per_pixel(channels, corrections.count), largest_tile);
   for (const Tile& tile : make_tiles(out[0].bounds(), select_halo(params) + corrections.halo, 1, pixels)) {
     const Rect& r = tile.padded;
-    const HalfPair part{
-        {crop(pair.color[0], r, 0, channels), crop(pair.color[1], r, 0, channels)}, {}, {}, pair.epsilon};
+    const HalfPair part{{crop(pair.color[0], r, 0, channels), crop(pair.color[1], r, 0, channels)},
+                        {},
+                        {},
+                        pair.epsilon,
+                        crop(pair.sampled, r)};
     std::vector<Candidate> candidates{{{crop(halves[0], r), crop(halves[1], r)}, {}, {}, {}}};
     for (std::array<Image, 2>& corrected : corrections.make(candidates[0].half, r))
       candidates.push_back({std::move(corrected), {}, {}, {}});

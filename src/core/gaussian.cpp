@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/parallel.h"
+#include "core/picture_mask.h"
 #include "core/simd.h"
 
 namespace polyrecon {
@@ -60,6 +61,11 @@ Image gaussian_blur(const Image& image, double sigma) {
     });
   }
   return out;
+}
+
+Image gaussian_blur(const Image& image, double sigma, const Image& picture) {
+  if (picture.empty()) return gaussian_blur(image, sigma);
+  return divided_by_share(gaussian_blur(outside_set_to(0, picture, image), sigma), gaussian_blur(picture, sigma));
 }
 
 }  // namespace polyrecon

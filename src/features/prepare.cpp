@@ -10,6 +10,7 @@
 #include "core/color_layout.h"
 #include "core/halves.h"
 #include "core/parallel.h"
+#include "core/picture_mask.h"
 #include "core/repair.h"
 #include "noise/fission.h"
 #include "polyrecon/error.h"
@@ -21,6 +22,14 @@ namespace {
 constexpr int repair_radius = 8;      // pixels; the values around a larger hole say nothing of its middle
 constexpr double noise_floor = 1e-5;  // noise variance over variance of the feature below which it is not prefiltered
 
+/// Repairs an image and continues it beyond the picture. Returns the number of repaired pixels of the picture.
+std::size_t repair(Image& image, const Image& picture) {
+  if (picture.empty()) return repair_nonfinite(image, repair_radius);
+  image = outside_set_to(std::numeric_limits<Real>::quiet_NaN(), picture, std::move(image));
+  const std::size_t all = image.pixels();
+  return repair_nonfinite(image, repair_radius) - (all - picture_pixels(picture, all));
+}
+
 /// Calls body(c, y) for every row of every channel, rows in parallel.
 template <typename Body>
 void for_rows_of(const Image& image, const Body& body) {
@@ -29,8 +38,8 @@ void for_rows_of(const Image& image, const Body& body) {
   });
 }
 
-/// Mean of the finite, positive values of the beauty over all pixels.
-double mean_brightness(const Image& beauty) {
+/// Mean of the finite, positive values of the beauty over all pixels of the picture.
+double mean_brightness(const Image& beauty, const Image& picture) {
   const double sum = ordered_sum(static_cast<std::size_t>(beauty.height()), [&](std::size_t y) {
     double row = 0;
     for (int c = 0; c < 3; ++c) {
@@ -40,7 +49,7 @@ double mean_brightness(const Image& beauty) {
     }
     return row;
   });
-  return sum / (3.0 * static_cast<double>(beauty.pixels()));
+  return sum / (3.0 * static_cast<double>(picture_pixels(picture, beauty.pixels())));
 }
 
 struct Range {
@@ -195,14 +204,15 @@ void scale(Image& image, Real factor) {
 
 /// Moves the halves out of a pass and repairs them. A pass without halves has its mean split, with half_variance as the
 /// noise variance of one half; where that is empty both halves are the mean.
-std::array<Image, 2> halves_of(Pass& pass, const Image& half_variance, std::uint64_t stream, std::size_t& repaired) {
+std::array<Image, 2> halves_of(Pass& pass, const Image& half_variance, std::uint64_t stream, const Image& picture,
+                               std::size_t& repaired) {
   if (pass.has_halves()) {
     std::array<Image, 2> halves{std::move(pass.half_a), std::move(pass.half_b)};
-    for (Image& half : halves) repaired += repair_nonfinite(half, repair_radius);
+    for (Image& half : halves) repaired += repair(half, picture);
     return halves;
   }
   Image mean = pass.mean;
-  repaired += repair_nonfinite(mean, repair_radius);
+  repaired += repair(mean, picture);
   if (half_variance.empty()) return {mean, mean};
   Image variance = half_variance;
   scale(variance, Real(0.5));
@@ -217,12 +227,12 @@ void remove_noise_of_sky(const Image& depth, double sky, Image& variance) {
 
 /// Noise variance of one half of a feature; empty where it is unknown. An estimated variance is that of the mean, which
 /// then serves as both halves: splitting it adds as much noise as the independence of the halves removes.
-Image feature_half_variance(Feature& feature, double sky, std::size_t& repaired) {
+Image feature_half_variance(Feature& feature, double sky, const Image& picture, std::size_t& repaired) {
   Pass& pass = feature.pass;
   if (!pass.variance.empty()) {
     Image variance = std::move(pass.variance);
     if (is_depth(feature)) remove_noise_of_sky(pass.mean, sky, variance);
-    repaired += repair_nonfinite(variance, repair_radius);
+    repaired += repair(variance, picture);
     make_non_negative(variance);
     if (!pass.variance_is_estimated) scale(variance, 2);
     return variance;
@@ -235,7 +245,7 @@ Image feature_half_variance(Feature& feature, double sky, std::size_t& repaired)
     for (int x = 0; x < variance.width(); ++x) values[x] = 2 * variance_of_mean(values[x], b[x]);
   });
   if (is_depth(feature)) remove_noise_of_sky(pass.mean, sky, variance);
-  repaired += repair_nonfinite(variance, repair_radius);
+  repaired += repair(variance, picture);
   return variance;
 }
 
@@ -254,9 +264,10 @@ std::size_t negative_pixels(const Image& image) {
 
 /// Halves of a colour pass that has none. They differ by the pass's share, pass / beauty, of the difference between the
 /// beauty's halves, so that the halves of passes which add up to the beauty add up to the beauty's halves.
-std::array<Image, 2> split_like(const std::array<Image, 2>& beauty, const Pass& pass, std::size_t& repaired) {
+std::array<Image, 2> split_like(const std::array<Image, 2>& beauty, const Pass& pass, const Image& picture,
+                                std::size_t& repaired) {
   Image mean = pass.mean;
-  repaired += repair_nonfinite(mean, repair_radius);
+  repaired += repair(mean, picture);
   std::array<Image, 2> halves{mean, mean};
   for (int c = 0; c < 3; ++c)
     for (std::size_t i = 0; i < mean.pixels(); ++i) {
@@ -282,15 +293,16 @@ void append(const std::array<Image, 2>& halves, std::array<Image, 2>& to, int& c
 }
 
 std::array<Image, 2> prepared_feature(Feature feature, const FeatureUse& use, double sky, std::size_t stream,
-                                      const PrefilterParams& prefilter_params, std::size_t& repaired,
-                                      Progress& progress) {
-  Image variance = feature_half_variance(feature, sky, repaired);
-  auto halves = halves_of(feature.pass, feature.pass.variance_is_estimated ? Image() : variance, stream, repaired);
+                                      const PrefilterParams& prefilter_params, const Image& picture,
+                                      std::size_t& repaired, Progress& progress) {
+  Image variance = feature_half_variance(feature, sky, picture, repaired);
+  auto halves =
+      halves_of(feature.pass, feature.pass.variance_is_estimated ? Image() : variance, stream, picture, repaired);
   if (use.prefilter && !variance.empty()) {
-    repair_nonfinite(feature.pass.mean, repair_radius);
+    repair(feature.pass.mean, picture);
     transform_variance(use, feature.pass.mean, variance);
     for (Image& half : halves) transform(use, half);
-    return prefilter(halves, variance, prefilter_params, progress);
+    return prefilter(halves, variance, prefilter_params, progress, picture);
   }
   for (Image& half : halves) transform(use, half);
   return halves;
@@ -315,17 +327,19 @@ void prepare_colors(Frame& frame, std::uint64_t stream, bool with_alpha, Prepare
   const int channels = ColorLayout(static_cast<int>(frame.aovs.size()), alpha).channels();
   for (Image& color : out.pair.color) color = Image(frame.width(), frame.height(), channels);
   int channel = 0;
-  const auto beauty = halves_of(frame.beauty, out.pair.variance, stream, out.repaired_pixels);
+  const Image& picture = out.pair.sampled;
+  const auto beauty = halves_of(frame.beauty, out.pair.variance, stream, picture, out.repaired_pixels);
   append(beauty, out.pair.color, channel);
   frame.beauty.variance = {};
   for (Pass& aov : frame.aovs) {
-    append(aov.has_halves() ? halves_of(aov, {}, 0, out.repaired_pixels) : split_like(beauty, aov, out.repaired_pixels),
+    append(aov.has_halves() ? halves_of(aov, {}, 0, picture, out.repaired_pixels)
+                            : split_like(beauty, aov, picture, out.repaired_pixels),
            out.pair.color, channel);
     aov.variance = {};
   }
   if (alpha) {
     Pass pass{"alpha", frame.alpha, {}, {}, {}};
-    append(halves_of(pass, {}, 0, out.repaired_pixels), out.pair.color, channel);
+    append(halves_of(pass, {}, 0, picture, out.repaired_pixels), out.pair.color, channel);
   }
 }
 
@@ -337,9 +351,10 @@ void prepare_features(Frame& frame, const Preparation& preparation, const Prefil
   for (Image& features : out.pair.features) features = Image(frame.width(), frame.height(), channels);
   int channel = 0;
   for (const FeatureUse& use : preparation.features)
-    append(prepared_feature(std::move(frame.features[use.index]), use, frame.sky_depth,
-                            preparation.stream + use.index + 1, prefilter_params, out.repaired_pixels, progress),
-           out.pair.features, channel);
+    append(
+        prepared_feature(std::move(frame.features[use.index]), use, frame.sky_depth, preparation.stream + use.index + 1,
+                         prefilter_params, out.pair.sampled, out.repaired_pixels, progress),
+        out.pair.features, channel);
   frame.features.clear();
 }
 
@@ -350,10 +365,10 @@ void require_usable(const Frame& frame) {
     throw Error(ExitCode::CheckFailed, "layer '" + frame.beauty.name + "': no finite pixel; render the frame again");
 }
 
-Preparation look_at(const Frame& frame, const Steps& steps) {
+Preparation look_at(const Frame& frame, const Steps& steps, const Image& sampled) {
   require_usable(frame);
   Preparation out;
-  const double brightness = mean_brightness(frame.beauty.mean);
+  const double brightness = mean_brightness(frame.beauty.mean, sampled);
   out.epsilon = brightness > 0 ? 0.09 * brightness * brightness : 1;
   std::vector<FeatureLook> looks(frame.features.size());
   in_parallel(looks.size(), [&](std::size_t i) { looks[i] = look_at_feature(frame.features[i], frame.sky_depth); });
@@ -386,8 +401,9 @@ Prepared prepare(Frame& frame, const Preparation& preparation, const Image& vari
   Prepared out;
   out.pair.epsilon = preparation.epsilon;
   out.independent_halves = frame.beauty.has_halves();
+  out.pair.sampled = preparation.sampled;
   out.pair.variance = variance;
-  repair_nonfinite(out.pair.variance, repair_radius);
+  repair(out.pair.variance, out.pair.sampled);
   make_non_negative(out.pair.variance);
   scale(out.pair.variance, 2);  // half the samples have twice the variance
   out.negative_pixels = negative_pixels(frame.beauty.mean);

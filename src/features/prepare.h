@@ -27,13 +27,15 @@ struct Preparation {
   std::uint64_t stream =
       0;  ///< Random stream of the first of up to 64 splits. Frames that are joined need different ones.
   std::vector<Decision> decisions;
+  Image picture = {};  ///< Mask of the pixels that hold a picture; the others stay 0 (core/picture.h).
+  Image sampled = {};  ///< Mask of the pixels that are samples of it; the others are hidden.
 };
 
 /// Decides which features take part in the fit and which of them are prefiltered. Features that are not finite,
 /// constant, or nothing but noise are dropped, and so are those beyond the number of channels that the model holds.
 /// Without steps.decide every allowed feature with a finite value takes part and is prefiltered. Throws
-/// Error{CheckFailed} if the beauty has no finite pixel.
-Preparation look_at(const Frame& frame, const Steps& steps = {});
+/// Error{CheckFailed} if the beauty has no finite pixel. sampled: as Preparation::sampled, which is not set here.
+Preparation look_at(const Frame& frame, const Steps& steps = {}, const Image& sampled = {});
 
 /// Throws Error{CheckFailed} if the beauty has no finite pixel.
 void require_usable(const Frame& frame);

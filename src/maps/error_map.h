@@ -19,6 +19,8 @@ constexpr std::size_t error_map_channels = 3 + 1 + 1 + 1;
 /// Variance and noise of single pixels are unreliable and so are averaged by a Gaussian of 2 pixels.
 /// variance: of the mean's noise as measured (HalfPair::variance has a floor), 3 channels. Where it is negative or not
 /// finite, HalfPair::variance is used.
-ErrorMap make_error_map(const HalfPair& pair, const Image& variance, const Candidate& result);
+/// picture: mask of the pixels that hold a picture (core/picture.h); the others have no error.
+ErrorMap make_error_map(const HalfPair& pair, const Image& variance, const Candidate& result,
+                        const Image& picture = {});
 
 }  // namespace polyrecon

@@ -7,6 +7,7 @@
 #include "core/gaussian.h"
 #include "core/halves.h"
 #include "core/parallel.h"
+#include "core/picture_mask.h"
 #include "core/real.h"
 #include "core/rect.h"
 #include "core/repair.h"
@@ -32,25 +33,37 @@ double degrees_of_freedom(const NestedFactor& factor, const Window& window) {
   return trace;
 }
 
-/// Calls body(i, j) for each pair of horizontal or vertical neighbours of a window that covers area; i and j count its
-/// pixels row by row. Returns the number of pairs.
+/// The pixels of an area that are in a window: their places in it, row by row; -1 for pixels outside the picture.
+struct Places {
+  Rect area;
+  std::array<int, (2 * fit_radius + 1) * (2 * fit_radius + 1)> place;
+};
+
+/// Calls body(i, j) for each pair of horizontal or vertical neighbours of a window. Returns the number of pairs.
 template <typename Body>
-int for_neighbours(const Rect& area, const Body& body) {
-  const int width = area.width(), height = area.height();
+int for_neighbours(const Places& places, const Body& body) {
+  const int width = places.area.width(), height = places.area.height();
+  int pairs = 0;
+  const auto visit = [&](int a, int b) {
+    const int i = places.place[static_cast<std::size_t>(a)], j = places.place[static_cast<std::size_t>(b)];
+    if (i < 0 || j < 0) return;
+    body(static_cast<std::size_t>(i), static_cast<std::size_t>(j));
+    ++pairs;
+  };
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x) {
-      const auto i = static_cast<std::size_t>(y * width + x);
-      if (x + 1 < width) body(i, i + 1);
-      if (y + 1 < height) body(i, i + static_cast<std::size_t>(width));
+      const int i = y * width + x;
+      if (x + 1 < width) visit(i, i + 1);
+      if (y + 1 < height) visit(i, i + width);
     }
-  return (width - 1) * height + width * (height - 1);
+  return pairs;
 }
 
 /// Mean of H over the pairs of neighbours: h in variance.h.
-double mean_hat_of_neighbours(const NestedFactor& factor, const Window& window, const Rect& area) {
+double mean_hat_of_neighbours(const NestedFactor& factor, const Window& window, const Places& places) {
   double sum = 0;
   const auto pitch = static_cast<std::size_t>(window.pitch);
-  const int pairs = for_neighbours(area, [&](std::size_t i, std::size_t j) {
+  const int pairs = for_neighbours(places, [&](std::size_t i, std::size_t j) {
     for (std::size_t k = 0; k < static_cast<std::size_t>(factor.kept); ++k)
       sum += static_cast<double>(factor.q[i * pitch + k]) * static_cast<double>(factor.q[j * pitch + k]);
   });
@@ -75,10 +88,10 @@ void residuals_of(const NestedFactor& factor, const Window& window, const std::v
 }
 
 /// Variance N of the noise in the residuals of a fit; see variance.h.
-double noise_in(const std::vector<double>& rest, const Rect& area, double freedom, double hat) {
+double noise_in(const std::vector<double>& rest, const Places& places, double freedom, double hat) {
   double squares = 0, covariance = 0;
   for (const double r : rest) squares += r * r;
-  const int pairs = for_neighbours(area, [&](std::size_t i, std::size_t j) { covariance += rest[i] * rest[j]; });
+  const int pairs = for_neighbours(places, [&](std::size_t i, std::size_t j) { covariance += rest[i] * rest[j]; });
   if (pairs > 0) covariance /= pairs;
   return std::max((squares / freedom - covariance / texture_correlation) / (1 + hat / texture_correlation), 0.0);
 }
@@ -92,16 +105,23 @@ struct Scratch {
 };
 
 /// Estimates the variance of the noise per channel from the fit around a centre; -1 where the window has too few pixels
-/// for the columns.
-void fit_noise(const Image& y, const Image& features, int cx, int cy, Scratch& s, Real* out) {
+/// for the columns, or its centre is outside the picture.
+void fit_noise(const Image& y, const Image& features, const Image& picture, int cx, int cy, Scratch& s, Real* out) {
+  if (!in_picture(picture, y.index(cx, cy))) {
+    std::fill_n(out, y.channels(), Real(-1));
+    return;
+  }
   const BasisLayout layout(features.channels(), 1);
   Window& window = s.window;
   window.reserve(fit_radius, layout.columns(), y.channels());
   s.weight.assign(static_cast<std::size_t>(window.stride), Real(0));
   window.count = 0;
-  const Rect area = intersect(grow({cx, cy, cx + 1, cy + 1}, fit_radius), y.bounds());
-  for (int v = area.y0; v < area.y1; ++v)
-    for (int u = area.x0; u < area.x1; ++u) {
+  Places places{intersect(grow({cx, cy, cx + 1, cy + 1}, fit_radius), y.bounds()), {}};
+  auto place = places.place.begin();
+  for (int v = places.area.y0; v < places.area.y1; ++v)
+    for (int u = places.area.x0; u < places.area.x1; ++u) {
+      *place = in_picture(picture, y.index(u, v)) ? window.count : -1;
+      if (*place++ < 0) continue;
       const auto j = static_cast<std::size_t>(window.count++);
       window.x[j] = u;
       window.y[j] = v;
@@ -110,10 +130,10 @@ void fit_noise(const Image& y, const Image& features, int cx, int cy, Scratch& s
   gather({&y, &y, &features, nullptr}, layout, cx, cy, fit_radius, window);
   factorise(window, window.layout.columns(), s.weight.data(), s.factor);
   const double freedom = window.count - degrees_of_freedom(s.factor, window);
-  const double hat = mean_hat_of_neighbours(s.factor, window, area);
+  const double hat = mean_hat_of_neighbours(s.factor, window, places);
   for (int c = 0; c < y.channels(); ++c) {
     residuals_of(s.factor, window, s.weight, c, s.rest);
-    out[c] = freedom > 0.5 ? storable(noise_in(s.rest, area, freedom, hat)) : Real(-1);
+    out[c] = freedom > 0.5 ? storable(noise_in(s.rest, places, freedom, hat)) : Real(-1);
   }
 }
 
@@ -158,26 +178,26 @@ Real median_of_fits(const Image& fits, int x, int y, int c) {
   return *middle;
 }
 
-Image variance_from_halves(const Pass& beauty) {
+Image variance_from_halves(const Pass& beauty, const Image& picture) {
   Image out = beauty.half_a;
   for (int c = 0; c < 3; ++c)
     for (std::size_t i = 0; i < out.pixels(); ++i)
       out.plane(c)[i] = variance_of_mean(beauty.half_a.plane(c)[i], beauty.half_b.plane(c)[i]);
   repair_nonfinite(out, 2);
-  return gaussian_blur(out, half_difference_sigma);
+  return gaussian_blur(out, half_difference_sigma, picture);
 }
 
 }  // namespace
 
 bool noise_is_measured(const Frame& frame) { return frame.beauty.noise_is_known(); }
 
-Image estimate_variance(const Image& y, const Image& features, Progress& progress) {
+Image estimate_variance(const Image& y, const Image& features, Progress& progress, const Image& picture) {
   Image fits((y.width() + fit_stride - 1) / fit_stride, (y.height() + fit_stride - 1) / fit_stride, y.channels());
   parallel_for(static_cast<std::size_t>(fits.height()), progress, [&](std::size_t row) {
     Scratch scratch;
     std::vector<Real> variance(static_cast<std::size_t>(y.channels()));
     for (int x = 0; x < fits.width(); ++x) {
-      fit_noise(y, features, x * fit_stride, static_cast<int>(row) * fit_stride, scratch, variance.data());
+      fit_noise(y, features, picture, x * fit_stride, static_cast<int>(row) * fit_stride, scratch, variance.data());
       for (int c = 0; c < y.channels(); ++c)
         fits.at(x, static_cast<int>(row), c) = variance[static_cast<std::size_t>(c)];
     }
@@ -194,20 +214,20 @@ Image estimate_variance(const Image& y, const Image& features, Progress& progres
   return out;
 }
 
-NoiseVariance noise_variance(const Frame& frame, Progress& progress) {
+NoiseVariance noise_variance(const Frame& frame, Progress& progress, const Image& picture) {
   if (!frame.beauty.variance.empty()) return {frame.beauty.variance, "from the file", true};
-  if (frame.beauty.has_halves()) return {variance_from_halves(frame.beauty), "from the half buffers", true};
+  if (frame.beauty.has_halves()) return {variance_from_halves(frame.beauty, picture), "from the half buffers", true};
   Image y = frame.beauty.mean;
   repair_nonfinite(y, 2);
-  return {estimate_variance(y, repaired_features(frame), progress), "estimated from the image", false};
+  return {estimate_variance(y, repaired_features(frame), progress, picture), "estimated from the image", false};
 }
 
-void estimate_feature_variance(Frame& frame, Progress& progress) {
+void estimate_feature_variance(Frame& frame, Progress& progress, const Image& picture) {
   for (Feature& feature : frame.features) {
     if (!noise_is_estimated(feature.role, feature.pass.noise_is_known())) continue;
     Image mean = feature.pass.mean;
     repair_nonfinite(mean, 2);
-    feature.pass.variance = estimate_variance(mean, Image(mean.width(), mean.height(), 0), progress);
+    feature.pass.variance = estimate_variance(mean, Image(mean.width(), mean.height(), 0), progress, picture);
     feature.pass.variance_is_estimated = true;
   }
 }

@@ -18,7 +18,8 @@ bool noise_is_measured(const Frame& frame);
 
 /// The noise variance of the beauty: the variance in the file; without one the smoothed variance of the half buffers
 /// (variance_of_mean, core/halves.h); without these estimate_variance.
-NoiseVariance noise_variance(const Frame& frame, Progress& progress);
+/// picture: mask of the pixels that take part (core/picture_mask.h), here and below.
+NoiseVariance noise_variance(const Frame& frame, Progress& progress, const Image& picture = {});
 
 /// Estimates the noise variance of an image that has none, from the residuals r of local fits (constant, features and
 /// plane over 7 x 7 pixels, around every second pixel). The noise of different pixels is independent, but the texture
@@ -31,11 +32,11 @@ NoiseVariance noise_variance(const Frame& frame, Progress& progress);
 /// where rounding to half floats explains all of it (a deviation of at most 2^-11 of the value).
 /// y: finite, any channels.
 /// features: finite, of y's size, may have no channels. Returns y's shape, y's unit squared.
-Image estimate_variance(const Image& y, const Image& features, Progress& progress);
+Image estimate_variance(const Image& y, const Image& features, Progress& progress, const Image& picture = {});
 
 /// Sets the variance of the features whose noise is estimated (noise_is_estimated, polyrecon/roles.h). Renderers carry
 /// features through reflections, depth of field and motion blur, which makes them noisy; a model that takes this noise
 /// for detail keeps noise in the beauty.
-void estimate_feature_variance(Frame& frame, Progress& progress);
+void estimate_feature_variance(Frame& frame, Progress& progress, const Image& picture = {});
 
 }  // namespace polyrecon

@@ -8,6 +8,7 @@
 
 #include "core/color_layout.h"
 #include "core/parallel.h"
+#include "core/picture_mask.h"
 #include "core/rect.h"
 
 namespace polyrecon {
@@ -154,6 +155,7 @@ std::ptrdiff_t against_other_half(const HalfPair& pair, std::size_t h, int x, in
 /// Index of the pixel that replaces pixel (x, y) of half h if that is an outlier, else -1.
 std::ptrdiff_t replacement_of(const HalfPair& pair, std::size_t h, int x, int y, const PairNoise& known,
                               const OutlierParams& p) {
+  if (!in_picture(pair.sampled, pair.variance.index(x, y))) return -1;
   const std::ptrdiff_t neighbour = against_neighbours(pair, h, x, y, known, p);
   return neighbour >= 0 || !known.independent_halves ? neighbour : against_other_half(pair, h, x, y, known, p);
 }

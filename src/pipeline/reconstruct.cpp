@@ -10,6 +10,7 @@
 #include "core/color_layout.h"
 #include "core/halves.h"
 #include "core/parallel.h"
+#include "core/picture.h"
 #include "core/rect.h"
 #include "features/prepare.h"
 #include "maps/error_map.h"
@@ -187,12 +188,13 @@ std::shared_ptr<const Neighbour> prepare_neighbour(const Frame& frame, int numbe
   require_usable(frame);
   Report not_kept;
   Stages stages(progress, not_kept);
-  const NoiseVariance noise = noise_variance(frame, progress);
+  Preparation preparation;
+  preparation.sampled = sampled_of(picture_of(frame), frame);
+  const NoiseVariance noise = noise_variance(frame, progress, preparation.sampled);
   Frame colors;  // the features of a neighbour are not used
   colors.beauty = frame.beauty;
   colors.aovs = frame.aovs;
   colors.alpha = frame.alpha;
-  Preparation preparation;
   preparation.stream = 64 * (std::uint64_t{static_cast<std::uint32_t>(number)} + 1);
   Params without_bound = params;
   without_bound.parts.noise_bound = false;
@@ -233,12 +235,17 @@ Result reconstruct(Frame& frame, const std::vector<TimedNeighbour>& neighbours, 
   const std::size_t max_bytes = tile_memory(shape, params);
   Candidate solved = fit_polynomials(frame, pair, params, max_bytes, stages, report);
 
+  // Nothing was rendered there, and nothing comes out.
+  const Image& picture = survey.preparation.picture;
+  empty_void(picture, pair, solved);
+
   // The noise bound, the estimate of the error that is left, and the prior where its error is smaller.
   const BoundEnergy bound = stages.run("noise bound", 1, [&](Progress&) {
     return halves.bound.empty() ? BoundEnergy() : bind_to_noise(pair, halves.bound, max_total_gain, solved);
   });
   report.bound_pixels = bound.pixels;
-  result.error = stages.run("error map", 1, [&](Progress&) { return make_error_map(pair, noise.variance, solved); });
+  result.error =
+      stages.run("error map", 1, [&](Progress&) { return make_error_map(pair, noise.variance, solved, picture); });
   result.order = solved.order;
   if (!frame.prior.mean.empty())
     solved = stages.run("prior", 1, [&](Progress&) {

@@ -8,6 +8,7 @@
 #include "core/gaussian.h"
 #include "core/halves.h"
 #include "core/parallel.h"
+#include "core/picture_mask.h"
 #include "core/relmse.h"
 #include "core/tiles.h"
 
@@ -25,7 +26,8 @@ bool noise_matters(const HalfPair& pair, std::size_t i, Real enough) {
   return false;
 }
 
-/// Marks the pixels that have noise and so are fitted. A pixel has none if its halves are equal and its variance is 0.
+/// Marks the pixels of the picture that have noise and so are fitted. A pixel has none if its halves are equal and its
+/// variance is 0.
 std::vector<unsigned char> noisy_pixels(const HalfPair& pair, const Params& params) {
   std::vector<unsigned char> noisy(pair.variance.pixels(), params.steps.decide ? 0 : 1);
   for (int c = 0; c < pair.color[0].channels(); ++c) {
@@ -33,6 +35,8 @@ std::vector<unsigned char> noisy_pixels(const HalfPair& pair, const Params& para
     for (std::size_t i = 0; i < noisy.size(); ++i)
       if (a[i] != b[i] || (v && v[i] > 0)) noisy[i] = 1;
   }
+  if (!pair.sampled.empty())
+    for (std::size_t i = 0; i < noisy.size(); ++i) noisy[i] = noisy[i] && in_picture(pair.sampled, i);
   if (params.enough > 0)
     for (std::size_t i = 0; i < noisy.size(); ++i)
       noisy[i] = noisy[i] && noise_matters(pair, i, static_cast<Real>(params.enough));
@@ -56,7 +60,7 @@ void add_candidates(const HalfPair& pair, const Guide& guide, const Candidate* b
     const std::size_t other = cross_filter ? 1 - h : h;
     const FitSource source{&pair.color[h], &pair.variance, &pair.features[other],
                            guide.color[h], guide.variance, before ? &before->half[other] : nullptr,
-                           pair.epsilon};
+                           pair.epsilon,   &pair.sampled};
     fits[h] = fit_and_blend(source, noisy, fit, counters, progress);
   }
   const auto mean = [](Image a, const Image& b) {
@@ -87,14 +91,14 @@ Candidate unfitted(const HalfPair& pair) {
 }
 
 /// Noise variance of the halves of a stage's result, from their difference.
-Image residual_variance(const Candidate& candidate) {
+Image residual_variance(const Candidate& candidate, const Image& picture) {
   Image out(candidate.half[0].width(), candidate.half[0].height(), 3);
   for (int c = 0; c < 3; ++c)
     for (std::size_t i = 0; i < out.pixels(); ++i) {
       const Real difference = candidate.half[0].plane(c)[i] - candidate.half[1].plane(c)[i];
       out.plane(c)[i] = difference * difference;
     }
-  return gaussian_blur(out, residual_sigma);
+  return gaussian_blur(out, residual_sigma, picture);
 }
 
 Candidate stage_of_tile(const HalfPair& pair, const Candidate* before, const Params& params, FitCounters& counters,
@@ -109,7 +113,7 @@ Candidate stage_of_tile(const HalfPair& pair, const Candidate* before, const Par
   Image brightness;
   if (before) {
     brightness = mean_of_halves(before->half, 3);
-    const Image variance = residual_variance(*before);
+    const Image variance = residual_variance(*before, pair.sampled);
     const Guide guided{{&brightness, &brightness}, &variance};
     add_candidates(pair, guided, before, noisy, fit_params(params, params.guided_bandwidths), cross_filter, counters,
                    progress, candidates);

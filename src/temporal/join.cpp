@@ -8,6 +8,7 @@
 
 #include "core/gaussian.h"
 #include "core/parallel.h"
+#include "core/picture_mask.h"
 #include "core/rect.h"
 #include "polyrecon/error.h"
 #include "temporal/follow.h"
@@ -31,15 +32,25 @@ struct Estimate {
   std::vector<unsigned char> valid;  ///< One byte per pixel.
 };
 
+/// Whether a pixel is seen in the neighbour and holds a picture there.
+unsigned char sees_picture(const Places& places, int x, int y) {
+  const Image& picture = places.frame->pair.sampled;
+  const unsigned char seen = places.seen[places.position.index(x, y)];
+  if (!seen || picture.empty()) return seen;
+  const auto nearest = [](Real position, int size) {
+    return std::clamp(static_cast<int>(std::lround(position)), 0, size - 1);
+  };
+  return in_picture(picture, picture.index(nearest(places.position.at(x, y, 0), picture.width()),
+                                           nearest(places.position.at(x, y, 1), picture.height())));
+}
+
 Estimate estimate_from(const Places& places, const Rect& area) {
   const HalfPair& pair = places.frame->pair;
   Estimate out{{sample_at(pair.color[0], places, area, true), sample_at(pair.color[1], places, area, true)},
                sample_at(pair.variance, places, area, false),
                {}};
-  for (int y = area.y0; y < area.y1; ++y) {
-    const auto begin = places.seen.begin() + static_cast<std::ptrdiff_t>(places.position.index(area.x0, y));
-    out.valid.insert(out.valid.end(), begin, begin + area.width());
-  }
+  for (int y = area.y0; y < area.y1; ++y)
+    for (int x = area.x0; x < area.x1; ++x) out.valid.push_back(sees_picture(places, x, y));
   return out;
 }
 

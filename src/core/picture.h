@@ -1,0 +1,32 @@
+#pragma once
+
+#include "core/candidate.h"
+#include "core/half_pair.h"
+#include "polyrecon/frame.h"
+
+namespace polyrecon {
+
+/// The mask (core/picture_mask.h) of the pixels of a frame that hold a picture. Empty where all do, or none does.
+///
+/// A pixel is void where nothing was rendered: beauty, colour layers and alpha are 0, and so are the features (a depth
+/// may be that of the sky, a visibility 1). Examples are the surroundings of a render region, transparent film, and the
+/// gaps between the islands of a light map. A value that is not finite counts as 0 where alpha is 0. Without an alpha
+/// or a feature to tell, no pixel is void: black is then a colour.
+///
+/// Where void pixels and others are mixed like salt and pepper, as in a thin volume, the void ones are samples that
+/// found nothing, and they count as picture.
+Image picture_of(const Frame& frame);
+
+/// The mask of the pixels that are samples of the picture: it and the void pixels around its soft borders, where alpha
+/// is a part of 1. There the picture ends in the void by itself, which is as good a sample as any. At a hard border,
+/// such as that of a render region, it was cut off, and the void says nothing of it. Without alpha borders count as
+/// soft. picture: of the frame, by picture_of.
+Image sampled_of(const Image& picture, const Frame& frame);
+
+/// Makes NaN of all samples outside of a mask, alpha and prior excepted, so that statistics leave them out.
+void hide_void(const Image& picture, Frame& frame);
+
+/// Sets void pixels of a pair and of a result to 0.
+void empty_void(const Image& picture, HalfPair& pair, Candidate& result);
+
+}  // namespace polyrecon
