@@ -33,6 +33,15 @@ struct Layer {
 /// The companion in words: "variance of the mean", "half A".
 const char* name_of(Companion companion);
 
+/// A view layer as one view sees it: what a frame is read of.
+struct LayerView {
+  std::string view_layer, view;  ///< Either is empty where names have none.
+  bool operator==(const LayerView& o) const { return view_layer == o.view_layer && view == o.view; }
+};
+
+/// "view layer ViewLayer, view left"; empty where both are.
+std::string name_of(const LayerView& place);
+
 /// A layer in use.
 struct RoleChoice {
   Role role = Role::Other;
@@ -44,11 +53,12 @@ struct RoleChoice {
 /// Where a frame came from: the files, their layers, and which of them are in use.
 struct FrameSource {
   std::string path;
-  std::vector<FileInfo> files;     ///< [0] is the file at path; the others hold passes of the same frame.
-  std::vector<Layer> layers;       ///< All layers of all files.
-  std::string view_layer, view;    ///< The ones in use.
-  std::vector<RoleChoice> chosen;  ///< The layers in use: beauty, its companions, features, others.
-  std::string alpha_layer;         ///< The layer that Frame::alpha is read from; empty without one.
+  std::vector<FileInfo> files;      ///< [0] is the file at path; the others hold passes of the same frame.
+  std::vector<Layer> layers;        ///< All layers of all files.
+  std::string view_layer, view;     ///< The ones in use.
+  std::vector<LayerView> pictures;  ///< All that have a beauty and that the options select, in file order.
+  std::vector<RoleChoice> chosen;   ///< The layers in use: beauty, its companions, features, others.
+  std::string alpha_layer;          ///< The layer that Frame::alpha is read from; empty without one.
 };
 
 }  // namespace polyrecon

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -35,8 +36,12 @@ RoleMapping parse_mapping(const std::string& text);
 struct ReadOptions {
   std::vector<RoleMapping> map;   ///< Roles that the user gives; all others are found by name.
   std::vector<std::string> aovs;  ///< Layers for Frame::aovs: whole names, or names within the view layer.
-  std::string view_layer;         ///< Empty: the first one that has a beauty.
-  std::string view;               ///< Stereo view; empty: the first one.
+  std::string view_layer;         ///< Selects the view layer; empty: all that have a beauty.
+  std::string view;               ///< Selects the stereo view; empty: all that have a beauty.
+  /// The one of the selected (FrameSource::pictures) that is read; nothing: the first.
+  std::optional<LayerView> picture;
+  /// A layer to read in place of the beauty, with the features of its view layer and without a prior; empty: none.
+  std::string own_windows;
   VarianceKind variance_kind = VarianceKind::Auto;
   double samples = 0;   ///< Samples per pixel of a file that does not say; 0: unknown.
   bool motion = false;  ///< Whether to read the motion vectors.

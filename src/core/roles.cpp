@@ -39,8 +39,8 @@ constexpr RoleInfo alpha() {
 // docs/dev/add_a_feature_pass.md.
 constexpr std::array<RoleInfo, role_count> table{
     color(Role::Beauty, "beauty", true, true),
-    feature(Role::Normal, "normal", 3, {3}, Noise::Estimated),
-    feature(Role::Albedo, "albedo", 3, {3}, Noise::Estimated),
+    feature(Role::Normal, "normal", 3, {1, 3}, Noise::Estimated),
+    feature(Role::Albedo, "albedo", 3, {1, 3}, Noise::Estimated),
     // An estimate of the depth's noise gains nothing.
     feature(Role::Depth, "depth", 1, {1, 2, 3}, Noise::IfKnown, FeatureTransform::BoundedDepth),
     feature(Role::Visibility, "visibility", 1, {1, 2, 3}, Noise::Estimated),

@@ -4,11 +4,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cstdlib>
-#include <map>
 #include <string_view>
 
+#include "io/channel_groups.h"
 #include "io/renderers/known_names.h"
 
 namespace polyrecon {
@@ -20,97 +19,9 @@ bool ends_with(std::string_view text, std::string_view end) {
 
 bool starts_with(std::string_view text, std::string_view begin) { return text.substr(0, begin.size()) == begin; }
 
-/// Sort key of a channel within its layer: R G B or X Y Z come first, the rest follow in the order of the file.
-int channel_order(std::string_view suffix) {
-  static constexpr std::string_view known = "RGBXYZUVW";
-  if (suffix.size() != 1) return static_cast<int>(known.size());
-  const auto place = known.find(static_cast<char>(std::toupper(static_cast<unsigned char>(suffix[0]))));
-  return place == std::string_view::npos ? static_cast<int>(known.size()) : static_cast<int>(place);
-}
-
-bool is_bare_color(std::string_view name) { return name == "R" || name == "G" || name == "B" || name == "A"; }
-
 std::string_view channel_suffix(std::string_view name) {
   const auto dot = name.rfind('.');
   return dot == std::string_view::npos ? name : name.substr(dot + 1);
-}
-
-/// The name of the layer that a channel belongs to: its prefix. In files with several named parts, channels without a
-/// prefix belong to a layer with the name of the part (OpenEXR's convention). In other files R, G, B, A without a
-/// prefix are one layer, and every other channel is a layer.
-std::string layer_of_channel(const FileInfo& file, const PartInfo& part, const std::string& channel) {
-  const auto dot = channel.rfind('.');
-  if (dot != std::string::npos) return channel.substr(0, dot);
-  if (file.parts.size() > 1 && !part.name.empty()) {
-    const std::string view_suffix = "." + part.view;
-    return !part.view.empty() && ends_with(part.name, view_suffix)
-               ? part.name.substr(0, part.name.size() - view_suffix.size())
-               : part.name;
-  }
-  return is_bare_color(channel) ? bare_pass : channel;
-}
-
-/// Moves the stereo view, where the name contains one, from the name to the layer: "diffuse.left" becomes "diffuse" of
-/// view "left".
-void separate_view(const PartInfo& part, Layer& layer, std::string& name) {
-  layer.view = part.view;
-  if (part.views.empty()) return;
-  const auto dot = name.rfind('.');
-  const std::string last = name.substr(dot == std::string::npos ? 0 : dot + 1);
-  if (std::find(part.views.begin(), part.views.end(), last) == part.views.end()) {
-    layer.view = part.views.front();
-    return;
-  }
-  layer.view = last;
-  name = dot == std::string::npos ? bare_pass : name.substr(0, dot);
-}
-
-void order_channels(Layer& layer) {
-  std::stable_sort(layer.channels.begin(), layer.channels.end(), [](const std::string& a, const std::string& b) {
-    return channel_order(channel_suffix(a)) < channel_order(channel_suffix(b));
-  });
-  if (layer.channels.size() != 4) return;
-  const auto alpha = std::find_if(layer.channels.begin(), layer.channels.end(), [](const std::string& name) {
-    return channel_suffix(name) == "A" || channel_suffix(name) == "a";
-  });
-  if (alpha == layer.channels.end() || channel_order(channel_suffix(layer.channels[0])) != 0) return;
-  layer.alpha = *alpha;
-  layer.channels.erase(alpha);
-}
-
-std::vector<Layer> group_channels(const FileInfo& file) {
-  std::vector<Layer> layers;
-  std::map<std::string, int> uses;
-  for (std::size_t p = 0; p < file.parts.size(); ++p) {
-    const PartInfo& part = file.parts[p];
-    const std::size_t first = layers.size();
-    for (const ChannelInfo& channel : part.channels) {
-      const std::string full = layer_of_channel(file, part, channel.name);
-      auto found = std::find_if(layers.begin() + static_cast<std::ptrdiff_t>(first), layers.end(),
-                                [&](const Layer& l) { return l.name == full; });
-      if (found == layers.end()) {
-        Layer layer;
-        layer.name = full;
-        layer.part = static_cast<int>(p);
-        std::string name = full;
-        separate_view(part, layer, name);
-        const auto dot = name.rfind('.');
-        if (dot != std::string::npos) layer.view_layer = name.substr(0, dot);
-        layer.pass = name.substr(dot == std::string::npos ? 0 : dot + 1);
-        layers.push_back(std::move(layer));
-        found = std::prev(layers.end());
-      }
-      found->channels.push_back(channel.name);
-    }
-    for (std::size_t l = first; l < layers.size(); ++l) {
-      order_channels(layers[l]);
-      ++uses[layers[l].name];
-    }
-  }
-  for (Layer& layer : layers)
-    if (uses[layer.name] > 1)
-      layer.name = fmt::format("{}:{}", file.parts[static_cast<std::size_t>(layer.part)].name, layer.name);
-  return layers;
 }
 
 bool all_uint(const std::vector<FileInfo>& files, const Layer& layer) {
@@ -124,8 +35,9 @@ bool all_uint(const std::vector<FileInfo>& files, const Layer& layer) {
 
 bool fits(Role role, const Layer& layer) { return info_of(role).layer_channels.allow(layer.channels.size()); }
 
-bool is_color(const Layer& layer) {
-  return layer.channels.size() == 3 && channel_order(channel_suffix(layer.channels[0])) == 0;
+/// Whether the layer is a picture in CIE XYZ or a grey one.
+bool is_bare_film(const Layer& layer) {
+  return layer.view_layer.empty() && (layer.pass == bare_tristimulus || layer.pass == bare_luminance);
 }
 
 /// The class of a layer by its name, else by the letter of its only channel.
@@ -136,6 +48,12 @@ std::optional<PassClass> classify(const Layer& layer) {
 }
 
 void assign_role(const std::vector<FileInfo>& files, Layer& layer) {
+  if (is_bare_film(layer)) {
+    layer.role = Role::Beauty;
+    layer.rank = last_rank;
+    layer.why = layer.pass == bare_luminance ? "a grey picture" : "a picture in CIE XYZ";
+    return;
+  }
   const auto known = classify(layer);
   if (known && fits(known->role, layer)) {
     layer.role = known->role;
@@ -143,7 +61,7 @@ void assign_role(const std::vector<FileInfo>& files, Layer& layer) {
     layer.why = fmt::format("named as by {}", known->renderers);
     return;
   }
-  const bool color = !has_data_prefix(layer.pass) && is_color(layer) && !all_uint(files, layer);
+  const bool color = !has_data_prefix(layer.pass) && is_rgb(layer) && !all_uint(files, layer);
   layer.role = color ? Role::Color : Role::Other;
   layer.why = color ? "a colour pass" : "data";
 }
@@ -309,6 +227,20 @@ void find_nested_moment(const Renderer& renderer, std::vector<Layer>& layers) {
     }
 }
 
+/// A file without a beauty by name has the first colour without a layer name for it: parts called "subimage00", "rgb".
+void find_beauty_without_name(std::vector<Layer>& layers) {
+  for (Layer& layer : layers) {
+    const bool known = std::any_of(layers.begin(), layers.end(), [&](const Layer& other) {
+      return other.role == Role::Beauty && other.view == layer.view;
+    });
+    if (known || layer.role != Role::Color || !is_rgb(layer) || !is_bare(layer)) continue;
+    layer.pass = bare_pass;
+    layer.role = Role::Beauty;
+    layer.rank = last_rank;
+    layer.why = "the first colour without a layer name";
+  }
+}
+
 std::optional<double> number_in(const FileInfo& file, const std::string& attribute) {
   for (const PartInfo& part : file.parts)
     if (const AttributeInfo* found = find_attribute(part, attribute)) {
@@ -341,6 +273,12 @@ const char* name_of(Companion companion) {
   return "";
 }
 
+std::string name_of(const LayerView& place) {
+  std::string name = place.view_layer.empty() ? "" : "view layer " + place.view_layer;
+  if (place.view.empty()) return name;
+  return name + (name.empty() ? "" : ", ") + "view " + place.view;
+}
+
 std::vector<Layer> find_layers(const FileInfo& file) {
   std::vector<Layer> layers = group_channels(file);
   classify_layers({file}, layers);
@@ -349,10 +287,25 @@ std::vector<Layer> find_layers(const FileInfo& file) {
 
 void classify_layers(const std::vector<FileInfo>& files, std::vector<Layer>& layers) {
   for (Layer& layer : layers) assign_role(files, layer);
+  find_beauty_without_name(layers);
   find_denoised(layers);
   find_companions(layers);
   find_beauty_companions(layers);
   for (const Renderer& renderer : renderers()) find_nested_moment(renderer, layers);
+}
+
+bool adopt_only_color(std::vector<Layer>& layers) {
+  const auto is_color = [](const Layer& l) { return l.role == Role::Color && l.companion == Companion::Mean; };
+  const auto first = std::find_if(layers.begin(), layers.end(), is_color);
+  if (first == layers.end() || std::count_if(layers.begin(), layers.end(), is_color) != 1) return false;
+  const std::string name = first->name;
+  for (Layer& layer : layers)
+    if (layer.name == name || layer.of == name) {
+      layer.role = Role::Beauty;
+      layer.rank = last_rank;
+    }
+  first->why = "the only colour layer";
+  return true;
 }
 
 const Layer* picture_layer(const std::vector<Layer>& layers) {

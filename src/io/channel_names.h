@@ -9,8 +9,8 @@
 
 namespace polyrecon {
 
-constexpr int rank_by_hand = -1000;        ///< The rank of a layer that the user named.
-constexpr const char* bare_pass = "RGBA";  ///< The pass of channels R, G, B, A without a prefix.
+constexpr int last_rank = 1000;      ///< The rank of a layer that has no known name.
+constexpr int rank_by_hand = -1000;  ///< The rank of a layer that the user named.
 
 inline bool is_half(Companion c) { return c == Companion::HalfA || c == Companion::HalfB; }
 
@@ -25,6 +25,9 @@ std::vector<Layer> find_layers(const FileInfo& file);
 
 /// Sets role, companion and rank of layers by the names that renderers use (io/renderers/).
 void classify_layers(const std::vector<FileInfo>& files, std::vector<Layer>& layers);
+
+/// Makes the only colour layer of a file without a beauty its beauty. Returns whether there is just one.
+bool adopt_only_color(std::vector<Layer>& layers);
 
 /// The layer that holds the picture: the first view layer and view with a beauty, in it the denoised beauty where there
 /// is one and the noisy one otherwise; nullptr where the file has neither.

@@ -9,7 +9,10 @@
 #include <tuple>
 
 #include "core/rect.h"
+#include "io/channel_groups.h"
 #include "io/channel_names.h"
+#include "io/choose_picture.h"
+#include "io/renderers/known_names.h"
 #include "io/sibling_files.h"
 #include "polyrecon/error.h"
 
@@ -32,40 +35,43 @@ std::string misfit(const PartInfo& part, const PartInfo& beauty) {
 }
 
 /// The layer of a file that is used where the file itself is named for a role: the one with that role, else the beauty,
-/// else the first.
-const Layer& layer_for(const std::vector<Layer>& layers, Role wanted) {
-  for (const Role role : {wanted, Role::Beauty})
-    for (const Layer& layer : layers)
-      if (layer.role == role && layer.companion == Companion::Mean) return layer;
+/// else the first; in the view layer and view of the frame where the file has them.
+const Layer& layer_for(const std::vector<Layer>& layers, Role wanted, const LayerView& place) {
+  for (const bool same_place : {true, false})
+    for (const Role role : {wanted, Role::Beauty})
+      for (const Layer& layer : layers)
+        if (layer.role == role && layer.companion == Companion::Mean && (!same_place || place_of(layer) == place))
+          return layer;
   return layers.front();
 }
 
-/// Adds one layer of another file under the name `pass`.
-void add_file(FrameSource& source, const std::string& path, const std::string& pass, Role role,
-              const ReadLimits& limits) {
+/// Adds one layer of another file. Returns its index.
+int add_file(FrameSource& source, const std::string& path, Role role, const ReadLimits& limits) {
   source.files.push_back(describe_file(path, limits));
   const std::vector<Layer> layers = find_layers(source.files.back());
   if (layers.empty()) throw Error(ExitCode::BadInput, fmt::format("{}: no channels", path));
-  Layer layer = layer_for(layers, role);
-  layer.file = static_cast<int>(source.files.size()) - 1;
+  source.layers.push_back(layer_for(layers, role, place_of(source)));
+  source.layers.back().file = static_cast<int>(source.files.size()) - 1;
+  return static_cast<int>(source.layers.size()) - 1;
+}
+
+/// Names a layer of another file after the pass that it holds.
+void rename_layer(Layer& layer, const std::string& pass) {
   layer.name = layer.pass = pass;
   layer.view_layer.clear();
-  source.layers.push_back(std::move(layer));
 }
 
 /// Whether the file holds one pass without a name in the file.
 bool is_one_bare_image(const FrameSource& source) {
   return source.layers.size() == 1 && source.layers.front().view_layer.empty() &&
-         (source.layers.front().pass == bare_pass || source.layers.front().channels.size() == 1);
+         (is_bare_name(source.layers.front().pass) || source.layers.front().channels.size() == 1);
 }
 
-/// The index of a layer by its whole name or its name within the view layer. A channel's name adds a layer with this
-/// channel alone. -1 where there is none.
-int find_layer(FrameSource& source, const std::string& name, const std::string& view_layer) {
+constexpr int nowhere = -1, elsewhere = -2;  // results of find_layer
+
+/// Adds a layer of this channel alone. nowhere: the file has no such channel.
+int add_channel(FrameSource& source, const std::string& name) {
   auto& layers = source.layers;
-  for (const std::string& candidate : {name, fmt::format("{}.{}", view_layer, name)})
-    for (std::size_t l = 0; l < layers.size(); ++l)
-      if (layers[l].name == candidate) return static_cast<int>(l);
   for (std::size_t l = 0; l < layers.size(); ++l) {
     Layer alone = layers[l];
     const bool is_alpha = alone.alpha == name;
@@ -77,7 +83,35 @@ int find_layer(FrameSource& source, const std::string& name, const std::string& 
     layers.push_back(alone);
     return static_cast<int>(layers.size()) - 1;
   }
-  return -1;
+  return nowhere;
+}
+
+/// The index of the first layer that fits; nowhere without one.
+template <class Fits>
+int index_of_layer(const FrameSource& source, const Fits& fits) {
+  const auto found = std::find_if(source.layers.begin(), source.layers.end(), fits);
+  return found == source.layers.end() ? nowhere : static_cast<int>(found - source.layers.begin());
+}
+
+/// The index of a layer by its whole name or its name within the view layer and view. A channel's name adds a layer
+/// with this channel alone. A name of one view stands for the same pass of the others. elsewhere: only other pictures
+/// of the file have such a layer; nowhere: none has.
+int find_layer(FrameSource& source, const std::string& name) {
+  const LayerView here = place_of(source);
+  const int whole = index_of_layer(source, [&](const Layer& l) { return l.name == name; });
+  const int within = index_of_layer(source, [&](const Layer& l) { return place_of(l) == here && l.pass == name; });
+  if (whole < 0 && within < 0) {
+    const int other = index_of_layer(
+        source, [&](const Layer& l) { return l.pass == name && is_of_another_picture(source, place_of(l)); });
+    return other >= 0 ? elsewhere : add_channel(source, name);
+  }
+  if (whole < 0) return within;
+  const Layer& named = source.layers[static_cast<std::size_t>(whole)];
+  if (!is_of_another_picture(source, place_of(named))) return whole;
+  const int twin = index_of_layer(source, [&](const Layer& l) {
+    return place_of(l) == here && l.pass == named.pass && l.view_layer == named.view_layer;
+  });
+  return twin >= 0 ? twin : elsewhere;
 }
 
 [[noreturn]] void no_such_layer(const FrameSource& source, const std::string& name) {
@@ -87,45 +121,76 @@ int find_layer(FrameSource& source, const std::string& name, const std::string& 
               fmt::format("{}: no layer {}; there are: {}", source.path, name, fmt::join(names, ", ")));
 }
 
-bool has_beauty(const FrameSource& source, const std::string& view_layer) {
+/// Whether a beauty has this view layer, or this view.
+bool has_beauty(const FrameSource& source, std::string Layer::*place, const std::string& name) {
   return std::any_of(source.layers.begin(), source.layers.end(), [&](const Layer& l) {
-    return l.view_layer == view_layer && l.role == Role::Beauty && l.companion == Companion::Mean;
+    return l.*place == name && l.role == Role::Beauty && l.companion == Companion::Mean;
   });
 }
 
-void choose_view_layer(FrameSource& source, const ReadOptions& options) {
-  const auto beauty = std::find_if(source.layers.begin(), source.layers.end(), [&](const Layer& l) {
-    return l.role == Role::Beauty && l.companion == Companion::Mean &&
-           (options.view_layer.empty() || l.view_layer == options.view_layer) &&
-           (options.view.empty() || l.view == options.view);
-  });
-  source.view_layer = options.view_layer;
-  source.view = options.view;
-  if (beauty != source.layers.end()) {
-    source.view_layer = beauty->view_layer;
-    source.view = beauty->view;
-  } else if (!options.view_layer.empty() &&
-             std::none_of(source.layers.begin(), source.layers.end(),
-                          [&](const Layer& l) { return l.view_layer == options.view_layer; })) {
-    throw Error(ExitCode::Missing, fmt::format("{}: no view layer {}", source.path, options.view_layer));
+/// Takes the only colour layer for the beauty where no layer has the name of one and the user names none.
+void adopt_beauty(LayerChoice& choice, const ReadOptions& options) {
+  auto& layers = choice.source.layers;
+  const auto is_beauty = [](const auto& l) { return l.role == Role::Beauty && l.companion == Companion::Mean; };
+  if (std::any_of(layers.begin(), layers.end(), is_beauty) ||
+      std::any_of(options.map.begin(), options.map.end(), is_beauty) || !adopt_only_color(layers))
+    return;
+  choice.notes.push_back(
+      fmt::format("{} is taken for the beauty: it is the only colour layer; --map beauty=LAYER names another layer",
+                  std::find_if(layers.begin(), layers.end(), is_beauty)->name));
+}
+
+bool is_shaped(Role role, const Layer& layer) { return info_of(role).layer_channels.allow(layer.channels.size()); }
+
+/// Refuses a layer that the user names for a role and that cannot have it.
+void require_fitting(const FrameSource& source, const Layer& layer, const RoleMapping& mapping) {
+  const RoleInfo& info = info_of(mapping.role);
+  if (!part_of(source, layer).readable())
+    throw Error(ExitCode::BadInput,
+                fmt::format("{}: layer {} is {}", source.path, layer.name, part_of(source, layer).obstacle()));
+  if (mapping.role == Role::Beauty && mapping.companion == Companion::Mean && layer.file > 0)
+    throw Error(ExitCode::BadInput,
+                fmt::format("{}: the beauty is a layer of the input, which takes the result; denoise {} instead",
+                            source.path, mapping.layer));
+  if (!is_shaped(mapping.role, layer))
+    throw Error(ExitCode::BadInput,
+                fmt::format("{}: layer {} cannot be the {}: it has the {} channels {}", source.path, layer.name,
+                            info.name, layer.channels.size(), fmt::join(layer.channels, ", ")));
+}
+
+/// The index of the layer that the user maps: of the file, or of another file, which is added. Below 0, with a note:
+/// the layer belongs to another picture.
+int mapped_layer(LayerChoice& choice, const RoleMapping& mapping, const ReadOptions& options, int files_of_frame) {
+  FrameSource& source = choice.source;
+  int index = find_layer(source, mapping.layer);
+  std::error_code failure;
+  const bool added = index >= 0 && source.layers[static_cast<std::size_t>(index)].file >= files_of_frame;
+  if ((index < 0 || added) && std::filesystem::is_regular_file(mapping.layer, failure)) {
+    index = add_file(source, mapping.layer, mapping.role, options.limits);
+    Layer& layer = source.layers[static_cast<std::size_t>(index)];
+    const bool of_another = source.pictures.size() > 1 && !(place_of(layer) == place_of(source)) &&
+                            !(place_of(source) == source.pictures.front());
+    rename_layer(layer, mapping.layer);
+    if (of_another) index = elsewhere;
   }
+  if (index == nowhere) no_such_layer(source, mapping.layer);
+  if (index == elsewhere)
+    choice.notes.push_back(fmt::format("{} is not used as {} of {}: it has no such layer", mapping.layer,
+                                       name_of(mapping.role), name_of(place_of(source))));
+  return index;
 }
 
 /// Sets the roles that the user gives; companions after the means that they accompany.
-void apply_map(FrameSource& source, const ReadOptions& options) {
+void apply_map(LayerChoice& choice, const ReadOptions& options) {
+  FrameSource& source = choice.source;
   const auto files_of_frame = static_cast<int>(source.files.size());
   for (const bool means : {true, false})
     for (const RoleMapping& mapping : options.map) {
       if ((mapping.companion == Companion::Mean) != means) continue;
-      int index = find_layer(source, mapping.layer, source.view_layer);
-      std::error_code failure;
-      const bool added = index >= 0 && source.layers[static_cast<std::size_t>(index)].file >= files_of_frame;
-      if ((index < 0 || added) && std::filesystem::is_regular_file(mapping.layer, failure)) {
-        add_file(source, mapping.layer, mapping.layer, mapping.role, options.limits);
-        index = static_cast<int>(source.layers.size()) - 1;
-      }
-      if (index < 0) no_such_layer(source, mapping.layer);
+      const int index = mapped_layer(choice, mapping, options, files_of_frame);
+      if (index < 0) continue;
       Layer& layer = source.layers[static_cast<std::size_t>(index)];
+      require_fitting(source, layer, mapping);
       layer.role = mapping.role;
       layer.companion = mapping.companion;
       layer.rank = rank_by_hand;
@@ -137,17 +202,18 @@ void apply_map(FrameSource& source, const ReadOptions& options) {
 }
 
 /// The mean for a role: a layer that the user named, else one of the chosen view layer, else one of a view layer
-/// without a beauty (nested layers); among these the one of lowest rank, then the first in the file. Layers of parts
-/// that cannot be read are skipped.
+/// without a beauty (nested layers); among these the one of lowest rank, then the first in the file. Layers without a
+/// view belong to every view where no beauty is without one. Layers of parts that cannot be read are skipped.
 int find_mean(const FrameSource& source, Role role, bool readable = true) {
   int best = -1;
   const auto key = [&](const Layer& l) {
-    return std::make_tuple(l.rank != rank_by_hand, l.view_layer != source.view_layer, l.rank);
+    return std::make_tuple(l.rank != rank_by_hand, l.view != source.view, l.view_layer != source.view_layer, l.rank);
   };
   for (std::size_t i = 0; i < source.layers.size(); ++i) {
     const Layer& layer = source.layers[i];
-    if (layer.role != role || layer.companion != Companion::Mean || layer.view != source.view) continue;
-    if (layer.view_layer != source.view_layer && has_beauty(source, layer.view_layer)) continue;
+    if (layer.role != role || layer.companion != Companion::Mean) continue;
+    if (layer.view != source.view && (!layer.view.empty() || has_beauty(source, &Layer::view, ""))) continue;
+    if (layer.view_layer != source.view_layer && has_beauty(source, &Layer::view_layer, layer.view_layer)) continue;
     if (part_of(source, layer).readable() != readable) continue;
     if (best < 0 || key(layer) < key(source.layers[static_cast<std::size_t>(best)])) best = static_cast<int>(i);
   }
@@ -180,6 +246,15 @@ PassChoice with_companions(const FrameSource& source, Role role, int mean) {
   return pass;
 }
 
+/// The layer that has the name of a beauty without its number of channels; nullptr without one.
+const Layer* misshapen_beauty(const FrameSource& source) {
+  for (const Layer& layer : source.layers)
+    if (const auto known = classify_pass(layer.pass);
+        known && known->role == Role::Beauty && !is_shaped(known->role, layer))
+      return &layer;
+  return nullptr;
+}
+
 [[noreturn]] void no_beauty(const FrameSource& source) {
   if (const int beauty = find_mean(source, Role::Beauty, false); beauty >= 0)
     throw Error(ExitCode::BadInput,
@@ -188,10 +263,28 @@ PassChoice with_companions(const FrameSource& source, Role role, int mean) {
   const std::vector<PartInfo>& parts = source.files.front().parts;
   if (std::none_of(parts.begin(), parts.end(), [](const PartInfo& part) { return part.readable(); }))
     throw Error(ExitCode::BadInput, fmt::format("{}: the image is {}", source.path, parts.front().obstacle()));
+  if (const Layer* layer = misshapen_beauty(source))
+    throw Error(
+        ExitCode::Missing,
+        fmt::format("{}: layer {} is no beauty: it has the {} channels {}; name another with --map beauty=LAYER",
+                    source.path, layer->name, layer->channels.size(), fmt::join(layer->channels, ", ")));
   std::vector<std::string> names;
   for (const Layer& layer : source.layers) names.push_back(layer.name);
   throw Error(ExitCode::Missing, fmt::format("{}: no beauty among the layers {}; name it with --map beauty=LAYER",
                                              source.path, fmt::join(names, ", ")));
+}
+
+/// Notes a layer that has the name of a role without the number of channels that the role needs.
+void note_misshapen(LayerChoice& choice, const RoleInfo& info) {
+  const FrameSource& source = choice.source;
+  for (const Layer& layer : source.layers) {
+    const auto known = classify_pass(layer.pass);
+    if (!known || known->role != info.role || layer.view != source.view || layer.view_layer != source.view_layer ||
+        is_shaped(info.role, layer))
+      continue;
+    choice.notes.push_back(fmt::format("{} is not used as {}: it has {} channels; --map {}=LAYER names another layer",
+                                       layer.name, info.name, layer.channels.size(), info.name));
+  }
 }
 
 /// Drops the layers of a pass that cannot be laid over the beauty.
@@ -214,12 +307,19 @@ void choose_aovs(LayerChoice& choice, const ReadOptions& options) {
   FrameSource& source = choice.source;
   const auto& beauty = source.layers[static_cast<std::size_t>(choice.passes.front().mean)];
   for (const std::string& name : options.aovs) {
-    const int index = find_layer(source, name, source.view_layer);
-    if (index < 0) no_such_layer(source, name);
+    const int index = find_layer(source, name);
+    if (index == nowhere) no_such_layer(source, name);
+    if (index == elsewhere) {
+      choice.notes.push_back(fmt::format("{} has no layer {} to be denoised", name_of(place_of(source)), name));
+      continue;
+    }
     const Layer& layer = source.layers[static_cast<std::size_t>(index)];
     const PartInfo& part = part_of(source, layer);
-    if (!part.readable() || !info_of(Role::Color).layer_channels.allow(layer.channels.size()))
+    if (!part.readable() || !is_shaped(Role::Color, layer))
       throw Error(ExitCode::BadInput, fmt::format("{}: layer {} is no colour layer", source.path, layer.name));
+    if (layer.file > 0)
+      throw Error(ExitCode::BadInput,
+                  fmt::format("{}: layer {} is in another file, which takes no result", source.path, layer.name));
     if (const std::string why = misfit(part, part_of(source, beauty)); !why.empty())
       throw Error(ExitCode::BadInput,
                   fmt::format("{}: layer {} cannot be denoised with the beauty: {}", source.path, layer.name, why));
@@ -237,6 +337,38 @@ void describe_choice(LayerChoice& choice) {
     }
 }
 
+/// Notes that the file has several pictures, unless one of them was chosen.
+void note_pictures(LayerChoice& choice, const ReadOptions& options) {
+  const auto& pictures = choice.source.pictures;
+  if (pictures.size() < 2 || options.picture) return;
+  std::vector<std::string> names;
+  for (const LayerView& place : pictures) {
+    const std::string name = name_of(place);
+    names.push_back(name.empty() ? "the layers without a view layer" : name);
+  }
+  choice.notes.push_back(
+      fmt::format("{} pictures with a beauty, which denoise takes one after the other: {}; "
+                  "--view-layer and --view choose",
+                  pictures.size(), fmt::join(names, "; ")));
+}
+
+/// Notes the beauties that stay as they are: a picture has one.
+void note_other_beauties(LayerChoice& choice, const ReadOptions& options) {
+  const FrameSource& source = choice.source;
+  const Layer& chosen = source.layers[static_cast<std::size_t>(choice.passes.front().mean)];
+  if (!options.own_windows.empty() || chosen.rank == rank_by_hand) return;
+  for (const Layer& layer : source.layers) {
+    const bool is_aov = std::any_of(choice.passes.begin(), choice.passes.end(), [&](const PassChoice& pass) {
+      return source.layers[static_cast<std::size_t>(pass.mean)].name == layer.name;
+    });
+    if (layer.role != Role::Beauty || layer.companion != Companion::Mean || is_aov || layer.file > 0 ||
+        !(place_of(layer) == place_of(source)))
+      continue;
+    choice.notes.push_back(fmt::format("{} stays as it is: the beauty is {}; --aov {} denoises it too", layer.name,
+                                       chosen.name, layer.name));
+  }
+}
+
 /// The beauty's alpha channel, unless the user named another layer or the beauty has none.
 void choose_alpha(LayerChoice& choice, const Layer& beauty) {
   FrameSource& source = choice.source;
@@ -246,6 +378,24 @@ void choose_alpha(LayerChoice& choice, const Layer& beauty) {
     const Layer& alpha = source.layers[static_cast<std::size_t>(pass.mean)];
     if (beauty.alpha.empty() || alpha.rank == rank_by_hand) source.alpha_layer = alpha.name;
   }
+}
+
+/// The layer that is reconstructed.
+int find_beauty(FrameSource& source, const ReadOptions& options) {
+  if (!options.own_windows.empty()) {
+    const int index = find_layer(source, options.own_windows);
+    if (index < 0) no_such_layer(source, options.own_windows);
+    Layer& layer = source.layers[static_cast<std::size_t>(index)];
+    layer.role = Role::Beauty;  // it guides itself no more, as a shadow would
+    layer.rank = rank_by_hand;
+    return index;
+  }
+  const int beauty = find_mean(source, Role::Beauty);
+  if (beauty < 0) no_beauty(source);
+  if (const int file = source.layers[static_cast<std::size_t>(beauty)].file; file > 0)
+    throw Error(ExitCode::Missing, fmt::format("{}: the beauty is in {}; denoise that file", source.path,
+                                               source.files[static_cast<std::size_t>(file)].path));
+  return beauty;
 }
 
 }  // namespace
@@ -261,7 +411,8 @@ FrameSource open_source(const std::string& path, const ReadLimits& limits, std::
   source.layers.front().name = source.layers.front().pass = pass_in_file_name(path);
   std::vector<std::string> names;
   for (const SiblingFile& sibling : siblings) {
-    add_file(source, sibling.path, sibling.pass, Role::Other, limits);
+    const int added = add_file(source, sibling.path, Role::Other, limits);
+    rename_layer(source.layers[static_cast<std::size_t>(added)], sibling.pass);
     names.push_back(std::filesystem::path(sibling.path).filename().string());
   }
   classify_layers(source.files, source.layers);
@@ -273,21 +424,27 @@ LayerChoice choose_layers(const std::string& path, const ReadOptions& options) {
   LayerChoice choice;
   FrameSource& source = choice.source;
   source = open_source(path, options.limits, choice.notes);
-  choose_view_layer(source, options);
-  apply_map(source, options);
-  const int beauty = find_mean(source, Role::Beauty);
-  if (beauty < 0) no_beauty(source);
+  adopt_beauty(choice, options);
+  choose_picture(source, options);
+  note_pictures(choice, options);
+  apply_map(choice, options);
+  const int beauty = find_beauty(source, options);
   choice.passes.push_back(with_companions(source, Role::Beauty, beauty));
   drop_misfits(choice, choice.passes.front());
   for (const RoleInfo& info : role_table()) {
     if (!info.chosen || info.role == Role::Beauty || (info.on_request && !options.motion)) continue;
+    if (info.role == Role::Prior && !options.own_windows.empty()) continue;
     const int mean = find_mean(source, info.role);
-    if (mean < 0) continue;
+    if (mean < 0) {
+      note_misshapen(choice, info);
+      continue;
+    }
     PassChoice pass = with_companions(source, info.role, mean);
     drop_misfits(choice, pass);
     if (pass.mean >= 0) choice.passes.push_back(pass);
   }
   choose_aovs(choice, options);
+  note_other_beauties(choice, options);
   choose_alpha(choice, source.layers[static_cast<std::size_t>(beauty)]);
   describe_choice(choice);
   return choice;

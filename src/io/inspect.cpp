@@ -118,18 +118,23 @@ double noise_level(const Pass& beauty) {
   return count == 0 ? -1 : sum / static_cast<double>(count);
 }
 
-bool is_chosen(const FrameSource& source, Role role, bool (*wanted)(Companion)) {
-  return std::any_of(source.chosen.begin(), source.chosen.end(),
-                     [&](const RoleChoice& c) { return c.role == role && wanted(c.companion); });
+/// Whether a frame has the role, or a file without a beauty has a layer for it.
+bool has_role(const Inspection& found, Role role) {
+  if (found.frame && role == Role::SampleCount) return !found.frame->sample_count.empty();
+  const auto& chosen = found.source.chosen;
+  const auto& layers = found.source.layers;
+  const auto is_mean = [&](const auto& l) { return l.role == role && l.companion == Companion::Mean; };
+  return found.frame ? std::any_of(chosen.begin(), chosen.end(), is_mean)
+                     : std::any_of(layers.begin(), layers.end(), is_mean);
 }
 
-std::vector<std::string> missing_roles(const FrameSource& source) {
-  const auto mean = [](Companion c) { return c == Companion::Mean; };
+/// What denoise has to do without.
+std::vector<std::string> missing_roles(const Inspection& found) {
   std::vector<std::string> missing;
   for (const RoleInfo& info : role_table())
-    if (info.expected && !is_chosen(source, info.role, mean)) missing.emplace_back(info.name);
-  if (!is_chosen(source, Role::Beauty, is_variance)) missing.emplace_back("variance");
-  if (!is_chosen(source, Role::Beauty, is_half)) missing.emplace_back("half buffers");
+    if (info.expected && !has_role(found, info.role)) missing.emplace_back(info.name);
+  if (!found.frame || found.frame->beauty.variance.empty()) missing.emplace_back("variance");
+  if (!found.frame || !found.frame->beauty.has_halves()) missing.emplace_back("half buffers");
   return missing;
 }
 
@@ -173,7 +178,7 @@ Inspection inspect(const std::string& path, const ReadOptions& options) {
   }
   tallies.add_other_parts(result.source);
   result.statistics = tallies.statistics();
-  result.missing = missing_roles(result.source);
+  result.missing = missing_roles(result);
   return result;
 }
 

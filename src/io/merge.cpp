@@ -23,6 +23,7 @@
 #include "core/parallel.h"
 #include "core/rect.h"
 #include "io/beyond_range.h"
+#include "io/channel_groups.h"
 #include "io/channel_names.h"
 #include "io/channel_reader.h"
 #include "io/choose_layers.h"
@@ -241,13 +242,11 @@ std::string output_name(const Render& first, const Layer& layer, const std::stri
                         const std::string& companion = {}) {
   const bool one_file = first.files.size() == 1;
   if (one_file && first.files.front().parts.size() == 1 && companion.empty()) return channel;
-  const auto dot = channel.rfind('.');
-  const std::string suffix = dot == std::string::npos ? channel : channel.substr(dot + 1);
   std::string name = layer.view_layer.empty() ? "" : layer.view_layer + ".";
   // A pass from a file's name has what separates it from the rest of that name in front.
   name += (one_file ? layer.pass : layer.pass.substr(layer.pass.find_first_not_of("_- "))) + companion;
   if (!layer.view.empty()) name += "." + layer.view;
-  return name + "." + suffix;
+  return name + "." + word_of(layer, channel);
 }
 
 /// Copies the attributes of all parts except those that describe the storage. The first part that has an attribute

@@ -28,6 +28,7 @@
 #include "core/rect.h"
 #include "io/atomic_file.h"
 #include "io/beyond_range.h"
+#include "io/channel_groups.h"
 #include "io/exr/bands.h"
 #include "io/exr/raw.h"
 #include "io/exr/single_part.h"
@@ -74,7 +75,7 @@ const Layer& layer_named(const FrameSource& source, const std::string& name) {
 /// front.
 std::string noisy_name(const Layer& layer, const std::string& channel) {
   const auto dot = channel.rfind('.');
-  if (dot == std::string::npos) return layer.pass + noisy_suffix + "." + channel;
+  if (dot == std::string::npos) return layer.pass + noisy_suffix + "." + word_of(layer, channel);
   return channel.substr(0, dot) + noisy_suffix + channel.substr(dot);
 }
 

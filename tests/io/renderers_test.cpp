@@ -136,7 +136,7 @@ TEST(Renderers, NamesAreComparedWithoutCaseAndSeparators) {
   EXPECT_TRUE(same_name("Noisy Image", "noisy_image"));
   EXPECT_TRUE(same_name("Z-Depth", "zDepth"));
   EXPECT_FALSE(same_name("Z-Depth", "Z.Depth"));
-  EXPECT_EQ(classify_pass("zDepth")->renderers, "V-Ray");
+  EXPECT_EQ(classify_pass("zDepth")->renderers, "V-Ray, Octane");
   EXPECT_EQ(classify_pass("RGB")->renderers, "pbrt, Mitsuba, POV-Ray");
   EXPECT_FALSE(classify_pass(""));
   EXPECT_FALSE(classify_pass("Albedo2"));

@@ -20,6 +20,7 @@ LayeredFile open_layers(const std::string& path) {
   LayeredFile file;
   file.info = describe_file(path);
   file.layers = find_layers(file.info);
+  if (!picture_layer(file.layers)) adopt_only_color(file.layers);
   return file;
 }
 

@@ -7,8 +7,8 @@
 
 #include "cli/commands.h"
 #include "cli/common/progress_output.h"
-#include "cli/denoise/denoise_frame.h"
 #include "cli/denoise/fetch_frame.h"
+#include "cli/denoise/file_run.h"
 #include "cli/denoise/job.h"
 #include "cli/denoise/sequence.h"
 #include "core/parallel.h"
@@ -17,12 +17,25 @@
 namespace polyrecon {
 namespace {
 
+void denoise_file(const Job& job, const FrameFiles& files, LoadedFrame loaded, FrameFetcher& fetcher,
+                  Progress& progress) {
+  FileRun run(job, files);
+  for (;;) {
+    run.plan(loaded);
+    run.denoise(std::move(loaded), job.params.max_memory, progress);
+    const auto next = run.next();
+    if (!next) break;
+    loaded = fetcher.fetch(files, *next);
+  }
+  run.write(progress);
+}
+
 void run_single(const Job& job, RunProgress& progress) {
   const FrameFiles& files = job.frames.front();
   progress.frame(files.label(), 0, 1);
-  auto loaded = FrameFetcher(job, [&] { return progress.cancelled(); }).fetch(files);
-  if (loaded)
-    denoise_frame(job, files, std::move(*loaded), job.params.max_memory, progress);
+  FrameFetcher fetcher(job, [&] { return progress.cancelled(); });
+  if (auto loaded = fetcher.fetch(files))
+    denoise_file(job, files, std::move(*loaded), fetcher, progress);
   else if (!job.run.quiet)
     std::fputs(fmt::format("{}: finished already\n", files.outputs.picture).c_str(), stdout);
   progress.frame("", 1, 1);

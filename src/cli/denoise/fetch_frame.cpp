@@ -34,6 +34,8 @@ bool may_become_readable(const Error& error, const std::string& path) {
   return error.code() == ExitCode::BadInput || (error.code() == ExitCode::Missing && !fs::exists(path, ignored));
 }
 
+std::string key_of(const std::string& path, const PictureChoice& picture) { return path + '\n' + picture.name(); }
+
 /// Shows nothing; asks the fetcher's owner whether to stop.
 class Cancellable final : public Progress {
  public:
@@ -66,12 +68,18 @@ auto FrameFetcher::wait_for(const std::string& path, double seconds, const Attem
 }
 
 std::optional<LoadedFrame> FrameFetcher::fetch(const FrameFiles& files) {
-  return wait_for(files.input, job_.run.wait, [&] { return fetch_now(files); });
+  return wait_for(files.input, job_.run.wait, [&]() -> std::optional<LoadedFrame> {
+    if (job_.run.skip_existing && is_finished(job_, files)) return std::nullopt;
+    return load_with_neighbours(files, job_.read);
+  });
 }
 
-std::optional<LoadedFrame> FrameFetcher::fetch_now(const FrameFiles& files) {
-  if (job_.run.skip_existing && is_finished(job_, files)) return std::nullopt;
-  LoadedFrame loaded = load_frame(files.input, job_.read);
+LoadedFrame FrameFetcher::fetch(const FrameFiles& files, const PictureChoice& picture) {
+  return load_with_neighbours(files, with_picture(job_.read, picture));
+}
+
+LoadedFrame FrameFetcher::load_with_neighbours(const FrameFiles& files, const ReadOptions& options) {
+  LoadedFrame loaded = load_frame(files.input, options);
   if (!files.neighbours.empty()) add_neighbours(files, loaded);
   return loaded;
 }
@@ -82,25 +90,26 @@ void FrameFetcher::add_neighbours(const FrameFiles& files, LoadedFrame& loaded) 
   for (const NeighbourFile& file : files.neighbours)
     if (Prepared prepared = neighbour(file, loaded)) {
       loaded.neighbours.push_back({file.offset, prepared});
-      kept[file.path] = std::move(prepared);
+      kept[key_of(file.path, loaded.picture)] = std::move(prepared);
     }
   // The frame itself is a neighbour of the next one.
   Cancellable progress(cancelled_);
-  const auto known = prepared_.find(files.input);
-  kept[files.input] =
+  const std::string key = key_of(files.input, loaded.picture);
+  const auto known = prepared_.find(key);
+  kept[key] =
       known != prepared_.end() ? known->second : prepare_neighbour(loaded.in.frame, files.place, job_.params, progress);
   prepared_ = std::move(kept);
   loaded.read_seconds += std::chrono::duration<double>(Clock::now() - start).count();
 }
 
 FrameFetcher::Prepared FrameFetcher::neighbour(const NeighbourFile& file, LoadedFrame& loaded) {
-  const auto known = prepared_.find(file.path);
+  const auto known = prepared_.find(key_of(file.path, loaded.picture));
   if (known != prepared_.end()) return known->second;
   const double patience = file.is_denoised_too ? job_.run.wait : 0;
   Cancellable progress(cancelled_);
   try {
     return wait_for(file.path, patience, [&] {
-      const LoadedFrame frame = load_frame(file.path, job_.read);
+      const LoadedFrame frame = load_frame(file.path, with_picture(job_.read, loaded.picture));
       return prepare_neighbour(frame.in.frame, file.number, job_.params, progress);
     });
   } catch (const Error& error) {

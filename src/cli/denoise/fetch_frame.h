@@ -7,8 +7,8 @@
 #include <string>
 #include <utility>
 
-#include "cli/denoise/denoise_frame.h"
 #include "cli/denoise/job.h"
+#include "cli/denoise/load_frame.h"
 
 namespace polyrecon {
 
@@ -19,15 +19,18 @@ class FrameFetcher {
   /// `job` must outlive the fetcher.
   FrameFetcher(const Job& job, std::function<bool()> cancelled) : job_(job), cancelled_(std::move(cancelled)) {}
 
-  /// Reads a frame; returns nothing where --skip-existing finds its outputs finished. A file that is missing,
-  /// incomplete or unreadable is tried again until it has not changed for --wait seconds. A neighbour that cannot be
-  /// read is left out; a note says so if its file exists. Throws as read_frame does; Error{Interrupted} once
+  /// Reads the first picture of a frame; returns nothing where --skip-existing finds its outputs finished. A file that
+  /// is missing, incomplete or unreadable is tried again until it has not changed for --wait seconds. A neighbour that
+  /// cannot be read is left out; a note says so if its file exists. Throws as read_frame does; Error{Interrupted} once
   /// cancelled() is true.
   std::optional<LoadedFrame> fetch(const FrameFiles& files);
 
+  /// Reads another picture of a frame that was fetched. Throws as fetch.
+  LoadedFrame fetch(const FrameFiles& files, const PictureChoice& picture);
+
  private:
   using Prepared = std::shared_ptr<const Neighbour>;
-  std::optional<LoadedFrame> fetch_now(const FrameFiles& files);
+  LoadedFrame load_with_neighbours(const FrameFiles& files, const ReadOptions& options);
   Prepared neighbour(const NeighbourFile& file, LoadedFrame& loaded);
   void add_neighbours(const FrameFiles& files, LoadedFrame& loaded);
   /// Repeats attempt() while the file at path may become readable and has changed within the last `seconds`.
@@ -36,7 +39,8 @@ class FrameFetcher {
 
   const Job& job_;
   std::function<bool()> cancelled_;
-  std::map<std::string, Prepared> prepared_;  ///< Neighbours by path, kept for the next frame.
+  /// Neighbours by path and picture, kept for the next frame. A file of several pictures keeps those of one.
+  std::map<std::string, Prepared> prepared_;
 };
 
 }  // namespace polyrecon

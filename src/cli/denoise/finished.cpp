@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <system_error>
 
+#include "cli/denoise/load_frame.h"
 #include "io/decode_file.h"
 #include "io/exr/file.h"
 #include "io/file_identity.h"
@@ -38,14 +39,18 @@ bool is_finished(const Job& job, const FrameFiles& files) {
   for (const OutputOption& option : output_options())
     if (const std::string& path = outputs.*option.path; !path.empty() && !exists(path)) return false;
   const FrameSource source = read_frame_header(files.input, job.read).source;
+  std::vector<OutputPaths> of_pictures{outputs};
+  for (std::size_t p = 1; p < source.pictures.size(); ++p)
+    of_pictures.push_back(maps_of(outputs, {source.pictures[p], {}}));
   try {
     const FileInfo picture = describe_file(outputs.picture);
     if (!has_attribute(picture, "polyrecon/version", POLYRECON_VERSION) ||
         !has_attribute(picture, "polyrecon/settings", settings_of(job, files)) ||
         !has_attribute(picture, "polyrecon/input", input_identity(files, source)))
       return false;
-    for (const std::string* path : {&outputs.picture, &outputs.error_map, &outputs.order_map, &outputs.sample_map})
-      if (!path->empty()) decode_file(*path);
+    for (const OutputPaths& paths : of_pictures)
+      for (const std::string* path : {&paths.picture, &paths.error_map, &paths.order_map, &paths.sample_map})
+        if (!path->empty()) decode_file(*path);
   } catch (const Error&) {
     return false;  // a damaged output is written again
   }

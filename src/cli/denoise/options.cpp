@@ -42,7 +42,9 @@ CLI::Option* add_files(OptionSet& set, DenoiseOptions& o) {
 void add_input_options(OptionSet& set, DenoiseOptions& o) {
   set.begin_group("Input");
   set.add(Changes::Result, "-l,--aov", o.read.aovs,
-          "Denoise this colour layer too, with the windows of the beauty (repeatable)")
+          "Denoise this colour layer too: with the windows of the beauty, or with its own if it is no part of the "
+          "beauty "
+          "(repeatable)")
       ->type_name("LAYER")
       ->expected(1)
       ->take_all();
@@ -54,7 +56,10 @@ void add_input_options(OptionSet& set, DenoiseOptions& o) {
          "--prior", [&o](const std::string& layer) { o.roles.push_back("prior=" + layer); },
          "Denoised layer, or file, whose pixels are used where they are better; same as --map prior=LAYER")
       ->type_name("LAYER|FILE");
-  set.add(Changes::Result, "--view-layer", o.read.view_layer, "View layer to denoise, in place of the first one")
+  set.add(Changes::Result, "--view-layer", o.read.view_layer,
+          "View layer to denoise, in place of all that have a beauty")
+      ->type_name("NAME");
+  set.add(Changes::Result, "--view", o.read.view, "Stereo view to denoise, in place of all that have a beauty")
       ->type_name("NAME");
   set.add_choice(Changes::Result, "--variance-kind", o.read.variance_kind, variance_kinds,
                  "What variance layers hold: auto, mean (variance of the pixel), sample (variance of one sample), "

@@ -71,7 +71,8 @@ std::size_t peak_memory() {
 
 std::string report_text(const RunReport& run) {
   const Report& r = run.reconstruction;
-  std::string text = fmt::format("{} -> {}, {} x {}\n", run.input, run.output, r.width, r.height);
+  std::string text = fmt::format("{} -> {}, {} x {}{}\n", run.input, run.output, r.width, r.height,
+                                 run.title.empty() ? "" : ", " + run.title);
   text += line("read", fmt::format("{:.2f} s", run.read_seconds));
   for (const StageTime& stage : r.stages) text += line(stage.stage, fmt::format("{:.2f} s", stage.seconds));
   text += line("write", fmt::format("{:.2f} s", run.write_seconds));
@@ -109,6 +110,9 @@ Json report_json(const RunReport& run, const FrameSource& source) {
           {"input", run.input},
           {"output", run.output},
           {"settings", run.settings},
+          {"view_layer", run.picture.place.view_layer},
+          {"view", run.picture.place.view},
+          {"layer", run.picture.layer},
           {"width", r.width},
           {"height", r.height},
           {"roles", roles_json(source)},

@@ -6,14 +6,17 @@
 #include <string>
 #include <vector>
 
+#include "cli/denoise/load_frame.h"
 #include "cli/denoise/settings_choice.h"
 #include "polyrecon/read_frame.h"
 #include "polyrecon/report.h"
 
 namespace polyrecon {
 
-/// Everything that is reported about a denoised frame.
+/// Everything that is reported about a denoised picture.
 struct RunReport {
+  PictureChoice picture;
+  std::string title;  ///< Name of the picture where the file has several.
   std::string version, input, output, settings;
   std::vector<std::string> notes;  ///< From reading, writing and the sample map.
   double seconds = 0;              ///< From the start to the last file written.

@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <cstdio>
+#include <functional>
 #include <future>
 #include <optional>
 #include <set>
@@ -12,8 +13,8 @@
 #include <utility>
 
 #include "cli/common/frame_names.h"
-#include "cli/denoise/denoise_frame.h"
 #include "cli/denoise/fetch_frame.h"
+#include "cli/denoise/file_run.h"
 #include "cli/denoise/finished.h"
 #include "pipeline/memory.h"
 #include "polyrecon/error.h"
@@ -82,6 +83,8 @@ class Consistency {
       roles.insert(choice.companion == Companion::Mean
                        ? name_of(choice.role)
                        : fmt::format("{} {}", name_of(choice.role), name_of(choice.companion)));
+    for (const LayerView& place : loaded.in.source.pictures)
+      if (const std::string name = name_of(place); !name.empty()) roles.insert(name);
     const Rect& window = loaded.in.frame.data_window;
     if (first_.empty()) {
       first_ = files.label();
@@ -107,7 +110,7 @@ class Consistency {
   Rect window_;
 };
 
-/// Reads one frame while another is computed.
+/// Reads one picture while another is computed.
 class ReadAhead {
  public:
   ReadAhead(const Job& job, const Progress& progress)
@@ -115,12 +118,24 @@ class ReadAhead {
   ~ReadAhead() { stop_ = true; }
 
   void begin(const FrameFiles& files) {
+    wait();
     next_ = std::async(std::launch::async, [this, &files] { return fetcher_.fetch(files); });
   }
-  /// Waits for the frame that was begun last. Throws as FrameFetcher::fetch.
+  void begin(const FrameFiles& files, const PictureChoice& picture) {
+    wait();
+    next_ = std::async(std::launch::async, [this, &files, picture]() -> std::optional<LoadedFrame> {
+      return fetcher_.fetch(files, picture);
+    });
+  }
+  /// Waits for the picture that was begun last. Throws as FrameFetcher::fetch.
   std::optional<LoadedFrame> take() { return next_.get(); }
 
  private:
+  /// Waits for a picture that nobody took, as one of the same file failed.
+  void wait() {
+    if (next_.valid()) next_.wait();
+  }
+
   FrameFetcher fetcher_;
   std::atomic<bool> stop_{false};
   std::future<std::optional<LoadedFrame>> next_;  // last: its destructor waits for the thread
@@ -133,31 +148,47 @@ std::size_t memory_beside_next(const Frame& frame, const Params& params) {
   return params.max_memory > next ? params.max_memory - next : 0;
 }
 
+/// Denoises the pictures of frame k, of which the first is read already or being read. Each is computed while the next
+/// one is read; begin_next() starts reading the next frame.
+void denoise_frame(const Job& job, const FrameFiles& files, bool is_last, LoadedFrame loaded, ReadAhead& ahead,
+                   const std::function<void()>& begin_next, Progress& progress) {
+  FileRun run(job, files);
+  for (;;) {
+    run.plan(loaded);
+    const auto next = run.next();
+    next ? ahead.begin(files, *next) : begin_next();
+    const std::size_t memory =
+        is_last && !next ? job.params.max_memory : memory_beside_next(loaded.in.frame, job.params);
+    run.denoise(std::move(loaded), memory, progress);
+    if (!next) break;
+    loaded = *ahead.take();
+  }
+  run.write(progress);
+}
+
 /// Denoises frame k, which is read already or being read, and starts reading the next one.
 void run_frame(const Job& job, std::size_t k, ReadAhead& ahead, Consistency& consistency, Outcome& outcome,
                Progress& progress) {
   const FrameFiles& files = job.frames[k];
   const bool is_last = k + 1 == job.frames.size();
+  bool begun = is_last;
   const auto begin_next = [&] {
-    if (!is_last) ahead.begin(job.frames[k + 1]);
+    if (!begun) ahead.begin(job.frames[k + 1]);
+    begun = true;
   };
-  std::optional<LoadedFrame> loaded;
   try {
-    loaded = ahead.take();
+    auto loaded = ahead.take();
+    if (loaded) {
+      if (consistency.check(files, *loaded)) outcome.lacks_layers(files);
+      denoise_frame(job, files, is_last, std::move(*loaded), ahead, begin_next, progress);
+      outcome.written();
+    } else {
+      outcome.skipped();
+    }
   } catch (const Error& error) {
     outcome.failed(files, error);
-    return begin_next();
   }
   begin_next();
-  if (!loaded) return outcome.skipped();
-  try {
-    if (consistency.check(files, *loaded)) outcome.lacks_layers(files);
-    const std::size_t memory = is_last ? job.params.max_memory : memory_beside_next(loaded->in.frame, job.params);
-    denoise_frame(job, files, std::move(*loaded), memory, progress);
-    outcome.written();
-  } catch (const Error& error) {
-    outcome.failed(files, error);
-  }
 }
 
 }  // namespace

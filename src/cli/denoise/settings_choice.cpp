@@ -22,13 +22,14 @@ Json json_of(const Prediction& prediction) {
 
 }  // namespace
 
-ChosenSettings choose_settings_for(const Job& job, const Frame& frame, double read_seconds, Progress& progress) {
+ChosenSettings choose_settings_for(const Job& job, const FrameLimits& limits, const Frame& frame, double read_seconds,
+                                   Progress& progress) {
   ChosenSettings out;
   out.pilot = run_pilot(frame, progress);
-  if (job.limits->seconds > 0)
+  if (limits.seconds > 0)
     out.request.seconds =
-        std::max(job.limits->seconds - (1 + write_over_read) * read_seconds - out.pilot.spent, least_seconds);
-  out.request.relative_mse = job.limits->relative_mse;
+        std::max(limits.seconds - (1 + write_over_read) * read_seconds - out.pilot.spent, least_seconds);
+  out.request.relative_mse = limits.relative_mse;
   out.choice = choose_settings(out.pilot, out.request, measured_figures());
   out.params = with_overrides(out.choice.params, job.overrides);
   out.params.enough = skipped_noise * out.request.relative_mse;

@@ -17,9 +17,10 @@ struct ChosenSettings {
   Params params;  ///< Those of the choice, with what the other options set.
 };
 
-/// Runs a pilot on the frame and chooses settings within job.limits. read_seconds: the time that reading the frame
+/// Runs a pilot on the frame and chooses settings within the limits. read_seconds: the time that reading the frame
 /// took; writing it is expected to take four times as long. Throws as reconstruct.
-ChosenSettings choose_settings_for(const Job& job, const Frame& frame, double read_seconds, Progress& progress);
+ChosenSettings choose_settings_for(const Job& job, const FrameLimits& limits, const Frame& frame, double read_seconds,
+                                   Progress& progress);
 
 /// The choice, the predictions and the time that the reconstruction took, and what the next more accurate preset would
 /// cost and gain: as a line of text, and as JSON (docs/reference/report.md).

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "cli/common/map_files.h"
 #include "cli/denoise/finished.h"
 #include "io/channel_names.h"
@@ -19,7 +21,9 @@ bool is_picture(const Layer& layer, Role role) {
 
 /// The layer that takes the result: the denoised one where the renderer's own denoiser wrote both, since people and
 /// compositors look for the result there; else the noisy one.
-std::string picture_layer(const ReadResult& in) {
+std::string picture_layer(const DonePicture& done) {
+  const ReadResult& in = done.in;
+  if (!done.report.picture.layer.empty()) return in.frame.beauty.name;
   for (const Role role : {Role::Prior, Role::Beauty})
     for (const RoleChoice& choice : in.source.chosen) {
       if (choice.role != role || choice.companion != Companion::Mean) continue;
@@ -54,15 +58,26 @@ std::string alpha_note(const ReadResult& in, const Result& result) {
   return {};
 }
 
-std::vector<Replacement> replacements(const ReadResult& in, const Result& result, const std::string& picture,
-                                      bool with_alpha) {
+void add_replacements(const DonePicture& done, bool with_alpha, std::vector<Replacement>& list) {
+  const ReadResult& in = done.in;
   const Rect& window = in.frame.data_window;
-  std::vector<Replacement> list{{picture, result.beauty, false, window}};
-  for (std::size_t i = 0; i < result.aovs.size(); ++i)
-    list.push_back({in.frame.aovs[i].name, result.aovs[i], false, window});
-  if (with_alpha && alpha_note(in, result).empty())
-    list.push_back({alpha_layer(in, picture), result.alpha, true, window});
-  return list;
+  const std::string picture = picture_layer(done);
+  list.push_back({picture, done.result.beauty, false, window});
+  for (std::size_t i = 0; i < done.result.aovs.size(); ++i)
+    list.push_back({in.frame.aovs[i].name, done.result.aovs[i], false, window});
+  if (with_alpha && alpha_note(in, done.result).empty())
+    list.push_back({alpha_layer(in, picture), done.result.alpha, true, window});
+}
+
+/// The source of the first picture with the layers that were added for the others.
+FrameSource joined_source(const std::vector<DonePicture>& pictures) {
+  FrameSource source = pictures.front().in.source;
+  for (const DonePicture& done : pictures)
+    for (const Layer& layer : done.in.source.layers)
+      if (layer.file == 0 && std::none_of(source.layers.begin(), source.layers.end(),
+                                          [&](const Layer& l) { return l.name == layer.name; }))
+        source.layers.push_back(layer);
+  return source;
 }
 
 /// Samples per pixel: from the file's layer, else the number from the command line or the metadata; empty where
@@ -72,7 +87,8 @@ Image sample_counts(const ReadOptions& options, const ReadResult& in) {
   const double everywhere = options.samples > 0
                                 ? options.samples
                                 : samples_in_metadata(in.source.files.front(), in.source.view_layer).value_or(0);
-  return everywhere > 0 ? Image(in.frame.width(), in.frame.height(), 1, static_cast<Real>(everywhere)) : Image();
+  const Rect& window = in.frame.data_window;
+  return everywhere > 0 ? Image(window.width(), window.height(), 1, static_cast<Real>(everywhere)) : Image();
 }
 
 SampleMapOptions with_frame_number(SampleMapOptions options, const FrameFiles& files) {
@@ -80,27 +96,43 @@ SampleMapOptions with_frame_number(SampleMapOptions options, const FrameFiles& f
   return options;
 }
 
+/// Writes the maps of one picture. Returns notes about them.
+std::vector<std::string> write_maps_of(const Job& job, const FrameFiles& files, const DonePicture& done,
+                                       const OutputPaths& outputs, Progress& progress) {
+  const MapWindows windows = windows_of(done.in, picture_layer(done));
+  const Result& result = done.result;
+  if (!outputs.order_map.empty()) write_order_map(outputs.order_map, result.order, windows);
+  if (outputs.error_map.empty() && !job.sample_map) return {};
+  const Image samples = sample_counts(job.read, done.in);
+  if (!outputs.error_map.empty()) write_error_map(outputs.error_map, result.error, samples, windows);
+  if (!job.sample_map) return {};
+  return {"sample map: " + make_and_write_sample_map(outputs.sample_map, result.error, samples, windows,
+                                                     with_frame_number(*job.sample_map, files), progress)};
+}
+
 }  // namespace
 
-std::vector<std::string> write_outputs(const Job& job, const FrameFiles& files, const ReadResult& in,
-                                       const Result& result, Progress& progress) {
-  const std::string picture = picture_layer(in);
+std::vector<std::string> write_outputs(const Job& job, const FrameFiles& files,
+                                       const std::vector<DonePicture>& pictures, Progress& progress) {
+  const DonePicture& first = pictures.front();
   WriteOptions options;
   options.keep_noisy = job.keep_noisy;
-  options.provenance = {settings_of(job, files), input_identity(files, in.source),
-                        result.report.estimated_relative_mse};
-  std::vector<std::string> notes = write_result(
-      in.source, replacements(in, result, picture, job.params.reconstruct_alpha), files.outputs.picture, options);
+  options.provenance = {settings_of(job, files), input_identity(files, first.in.source),
+                        first.result.report.estimated_relative_mse};
+  std::vector<Replacement> replacements;
+  for (const DonePicture& done : pictures)
+    add_replacements(done, job.params.reconstruct_alpha && done.report.picture.layer.empty(), replacements);
+  std::vector<std::string> notes = write_result(joined_source(pictures), replacements, files.outputs.picture, options);
   if (job.params.reconstruct_alpha)
-    if (const std::string note = alpha_note(in, result); !note.empty()) notes.push_back(note);
-  const MapWindows windows = windows_of(in, picture);
-  const Image samples = sample_counts(job.read, in);
-  const OutputPaths& outputs = files.outputs;
-  if (!outputs.error_map.empty()) write_error_map(outputs.error_map, result.error, samples, windows);
-  if (!outputs.order_map.empty()) write_order_map(outputs.order_map, result.order, windows);
-  if (job.sample_map)
-    notes.push_back("sample map: " + make_and_write_sample_map(outputs.sample_map, result.error, samples, windows,
-                                                               with_frame_number(*job.sample_map, files), progress));
+    if (const std::string note = alpha_note(first.in, first.result); !note.empty()) notes.push_back(note);
+  for (const DonePicture& done : pictures) {
+    const bool is_first = &done == &first;
+    const OutputPaths outputs = is_first ? files.outputs : maps_of(files.outputs, done.report.picture);
+    for (const std::string& note : write_maps_of(job, files, done, outputs, progress)) notes.push_back(note);
+    if (!is_first)
+      for (const std::string* map : {&outputs.error_map, &outputs.order_map, &outputs.sample_map})
+        if (!map->empty()) notes.push_back(fmt::format("map of {}: {}", done.report.picture.name(), *map));
+  }
   return notes;
 }
 

@@ -54,6 +54,8 @@ void setup_inspect(CLI::App& app, Command& chosen) {
   sub->add_flag("--json", o->json, "Print JSON");
   sub->add_option("--view-layer", o->read.view_layer, "View layer whose layers get roles, in place of the first one")
       ->type_name("NAME");
+  sub->add_option("--view", o->read.view, "Stereo view whose layers get roles, in place of the first one")
+      ->type_name("NAME");
   OptionSet set(*sub);
   add_read_limits(set, o->read.limits);
   sub->footer(

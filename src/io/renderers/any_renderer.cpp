@@ -7,8 +7,8 @@ Renderer any_renderer() {
   Renderer r;
   r.name = "any renderer";
   r.passes = {
-      {"Alpha", Role::Alpha, 1},
-      {"Position", Role::Other, 1},
+      {"base_color", Role::Albedo, 4}, {"world_normal", Role::Normal, 3},
+      {"Alpha", Role::Alpha, 1},       {"Position", Role::Other, 1},
       {"UV", Role::Other, 1},
   };
   r.data_prefixes = {"crypto"};  // Cryptomatte

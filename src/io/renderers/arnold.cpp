@@ -8,13 +8,11 @@ Renderer arnold() {
   r.name = "Arnold";
   r.versions = "AOVs for noice";
   r.passes = {
-      {"RGBA", Role::Beauty, 2},
-      {"denoise_albedo", Role::Albedo, 1},
-      {"diffuse_albedo", Role::Albedo, 3},
-      {"N", Role::Normal, 3},
-      {"Z", Role::Depth, 2},
-      {"AO", Role::Visibility, 3},
-      {"P", Role::Other, 1},
+      {"RGBA", Role::Beauty, 2},           {"denoise_albedo", Role::Albedo, 1},
+      {"diffuse_albedo", Role::Albedo, 3}, {"albedo", Role::Albedo, 2},
+      {"N_noice", Role::Normal, 1},        {"N", Role::Normal, 3},
+      {"Z_noice", Role::Depth, 1},         {"Z", Role::Depth, 2},
+      {"AO", Role::Visibility, 3},         {"P", Role::Other, 1},
       {"motionvector", Role::Other, 1},
   };
   r.beauty_companions = {{"variance", Companion::VarianceOfMean}};

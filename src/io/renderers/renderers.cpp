@@ -4,7 +4,7 @@
 #define POLYRECON_RENDERERS(renderer)                                                                          \
   renderer(polyrecon_itself) renderer(any_renderer) renderer(blender) renderer(arnold) renderer(renderman)     \
       renderer(vray) renderer(pbrt) renderer(mitsuba) renderer(tungsten) renderer(appleseed) renderer(luxcore) \
-          renderer(povray)
+          renderer(povray) renderer(karma) renderer(redshift) renderer(octane) renderer(unreal)
 
 namespace polyrecon {
 

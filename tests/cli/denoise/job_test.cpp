@@ -70,6 +70,7 @@ const std::vector<OptionCase> cases{
     {Changes::Result, {"--map", "albedo=Colour"}},
     {Changes::Result, {"--prior", "Denoised"}},
     {Changes::Result, {"--view-layer", "Other"}},
+    {Changes::Result, {"--view", "right"}},
     {Changes::Result, {"--variance-kind", "sample"}},
     {Changes::Result, {"--samples", "16"}},
     {Changes::Run, {"--frames", "1-3"}, {"--frames", "2"}, {"-i", "shot.####.exr", "-o", "out.####.exr"}},

@@ -1,0 +1,171 @@
+#include "cli/denoise/file_run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <utility>
+
+#include "cli/common/roles_output.h"
+#include "cli/denoise/write_outputs.h"
+#include "io/atomic_file.h"
+#include "pipeline/part_of_beauty.h"
+
+namespace polyrecon {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr double least_seconds = 1e-3;  // a budget that is spent still selects the fastest settings
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+void print(bool quiet, const std::string& text) {
+  if (quiet) return;
+  std::fputs(text.c_str(), stdout);
+  std::fflush(stdout);
+}
+
+std::string input_text(const LoadedFrame& loaded) {
+  const ReadResult& in = loaded.in;
+  const std::string picture = loaded.picture.name();
+  std::string text = fmt::format("{}: {} x {}{}\n", in.source.path, in.frame.width(), in.frame.height(),
+                                 picture.empty() ? "" : ", " + picture);
+  return text + roles_text(in.source);
+}
+
+std::vector<TimedNeighbour> neighbours_of(const LoadedFrame& loaded) {
+  std::vector<TimedNeighbour> neighbours;
+  for (const LoadedNeighbour& neighbour : loaded.neighbours)
+    neighbours.push_back({neighbour.offset, neighbour.frame.get()});
+  return neighbours;
+}
+
+std::size_t bytes_of(const DonePicture& done) {
+  const ErrorMap& error = done.result.error;
+  std::size_t samples = 0;
+  for (const Image* image :
+       {&done.result.beauty, &done.result.alpha, &done.result.order, &error.mse, &error.relative_mse,
+        &error.relative_variance, &error.relative_noise, &done.in.frame.sample_count})
+    samples += image->pixels() * static_cast<std::size_t>(image->channels());
+  for (const Image& aov : done.result.aovs) samples += aov.pixels() * static_cast<std::size_t>(aov.channels());
+  return samples * sizeof(Real);
+}
+
+void keep_name(Pass& pass) {
+  Pass named;
+  named.name = std::move(pass.name);
+  pass = std::move(named);
+}
+
+/// Takes the layers that are no part of the beauty out of the frame. Returns their names.
+std::vector<std::string> take_own_windows(Frame& frame) {
+  std::vector<std::string> names;
+  for (const Pass& aov : frame.aovs)
+    if (!is_part_of_beauty(frame, aov)) names.push_back(aov.name);
+  frame.aovs.erase(
+      std::remove_if(frame.aovs.begin(), frame.aovs.end(),
+                     [&](const Pass& aov) { return std::find(names.begin(), names.end(), aov.name) != names.end(); }),
+      frame.aovs.end());
+  return names;
+}
+
+}  // namespace
+
+void FileRun::plan(LoadedFrame& loaded) {
+  if (count_ == 0) {
+    count_ = 1;
+    for (const LayerView& place : loaded.in.source.pictures)
+      if (!(place == loaded.picture.place)) add({place, {}});
+  }
+  for (const std::string& layer : take_own_windows(loaded.in.frame)) {
+    add({loaded.picture.place, layer});
+    loaded.in.notes.push_back(fmt::format(
+        "{} gets windows of its own: it is noisy where the beauty has no noise, so it is no part of it", layer));
+  }
+}
+
+void FileRun::add(PictureChoice picture) {
+  left_.push_back(std::move(picture));
+  ++count_;
+}
+
+std::optional<PictureChoice> FileRun::next() {
+  if (left_.empty()) return std::nullopt;
+  const PictureChoice picture = left_.front();
+  left_.pop_front();
+  return picture;
+}
+
+void FileRun::denoise(LoadedFrame loaded, std::size_t max_memory, Progress& progress) {
+  const auto start = Clock::now();
+  print(job_.run.quiet, input_text(loaded));
+  DonePicture done{std::move(loaded.in), {}, {}};
+  RunReport& report = done.report;
+  if (job_.limits)
+    report.chosen = choose_settings_for(job_, limits_left(), done.in.frame, loaded.read_seconds, progress);
+  Params params = report.chosen ? report.chosen->params : job_.params;
+  params.max_memory = max_memory;
+  for (const DonePicture& before : done_) params.max_memory -= std::min(params.max_memory, bytes_of(before));
+  done.result = reconstruct(done.in.frame, neighbours_of(loaded), params, progress);
+  release_images(done);
+  report.picture = loaded.picture;
+  report.notes = done.in.notes;
+  report.read_seconds = loaded.read_seconds;
+  report.seconds = loaded.read_seconds + seconds_since(start);
+  report.reconstruction = done.result.report;
+  spent_ += report.seconds;
+  done_.push_back(std::move(done));
+}
+
+FrameLimits FileRun::limits_left() const {
+  FrameLimits limits = *job_.limits;
+  if (limits.seconds > 0)
+    limits.seconds = std::max(limits.seconds - spent_, least_seconds) / static_cast<double>(count_ - done_.size());
+  return limits;
+}
+
+void FileRun::release_images(DonePicture& done) const {
+  Frame& frame = done.in.frame;
+  keep_name(frame.beauty);
+  keep_name(frame.prior);
+  for (Pass& aov : frame.aovs) keep_name(aov);
+  frame.features.clear();
+  frame.alpha = frame.motion = {};
+  if (!job_.params.reconstruct_alpha) done.result.alpha = {};
+  if (files_.outputs.order_map.empty()) done.result.order = {};
+  if (files_.outputs.error_map.empty() && files_.outputs.sample_map.empty()) {
+    ErrorMap& error = done.result.error;
+    error.mse = error.relative_mse = error.relative_variance = error.relative_noise = {};
+    frame.sample_count = {};
+  }
+}
+
+void FileRun::write(Progress& progress) {
+  const auto start = Clock::now();
+  RunReport& first = done_.front().report;
+  for (const std::string& note : write_outputs(job_, files_, done_, progress)) first.notes.push_back(note);
+  first.write_seconds = seconds_since(start);
+  first.seconds += first.write_seconds;
+  std::string text;
+  std::vector<nlohmann::ordered_json> reports;
+  for (DonePicture& done : done_) {
+    RunReport& one = done.report;
+    one.version = POLYRECON_VERSION;
+    one.input = files_.input;
+    one.output = files_.outputs.picture;
+    one.settings = settings_of(job_, files_);
+    one.peak_memory = peak_memory();
+    if (done_.size() > 1) one.title = one.picture.name();
+    reports.push_back(report_json(one, done.in.source));
+    text += report_text(one);
+  }
+  if (!files_.outputs.report.empty()) {
+    reports.front()["others"] = std::vector<nlohmann::ordered_json>(reports.begin() + 1, reports.end());
+    write_bytes(files_.outputs.report, reports.front().dump(2) + "\n");
+  }
+  print(job_.run.quiet, text);
+}
+
+}  // namespace polyrecon

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cstddef>
+#include <deque>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/denoise/job.h"
+#include "cli/denoise/load_frame.h"
+#include "cli/denoise/report.h"
+#include "polyrecon/progress.h"
+#include "polyrecon/reconstruct.h"
+
+namespace polyrecon {
+
+/// A picture of a file that was denoised.
+struct DonePicture {
+  ReadResult in;  ///< Without the images that are not written.
+  Result result;
+  RunReport report;
+};
+
+/// Denoises the pictures of one file, one after the other, and writes them together: one for each view layer and view
+/// with a beauty, and one for each layer of --aov that is no part of the beauty and gets windows of its own. The
+/// results wait in memory, the inputs do not.
+class FileRun {
+ public:
+  /// The job and the files must outlive the run.
+  FileRun(const Job& job, const FrameFiles& files) : job_(job), files_(files) {}
+
+  /// Looks which other pictures of the file are to be denoised, and takes layers that are none of the beauty's out of
+  /// the frame. Call it with each picture as it was loaded, before denoise.
+  void plan(LoadedFrame& loaded);
+
+  /// The picture to load after those that were planned; nothing when there is none left.
+  std::optional<PictureChoice> next();
+
+  /// Reconstructs a picture within max_memory bytes, of which the results of those before take their part. Prints the
+  /// roles of its layers unless the job is quiet. Throws as reconstruct does.
+  void denoise(LoadedFrame loaded, std::size_t max_memory, Progress& progress);
+
+  /// Writes the file of all pictures, their maps and the report, and prints the report unless the job is quiet. Throws
+  /// as write_result does.
+  void write(Progress& progress);
+
+ private:
+  void add(PictureChoice picture);
+  /// The limits for the next picture: its share of what the pictures before left.
+  FrameLimits limits_left() const;
+  void release_images(DonePicture& done) const;
+
+  const Job& job_;
+  const FrameFiles& files_;
+  std::size_t count_ = 0;  ///< Pictures of the file, as far as is known.
+  std::deque<PictureChoice> left_;
+  std::vector<DonePicture> done_;
+  double spent_ = 0;  ///< Seconds for the pictures before, of --time-budget.
+};
+
+}  // namespace polyrecon

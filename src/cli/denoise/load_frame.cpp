@@ -1,0 +1,43 @@
+#include "cli/denoise/load_frame.h"
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+
+namespace polyrecon {
+
+std::string PictureChoice::name() const {
+  std::string text = name_of(place);
+  if (layer.empty()) return text;
+  return text + (text.empty() ? "" : ", ") + "layer " + layer;
+}
+
+OutputPaths maps_of(OutputPaths outputs, const PictureChoice& picture) {
+  std::string label;
+  for (const std::string& word : {picture.place.view_layer, picture.place.view, picture.layer})
+    if (!word.empty()) label += "." + word;
+  std::replace(label.begin(), label.end(), '/', '_');
+  for (std::string* path : {&outputs.error_map, &outputs.order_map, &outputs.sample_map})
+    if (!path->empty()) {
+      const std::filesystem::path file(*path);
+      *path = (file.parent_path() / (file.stem().string() + label + file.extension().string())).string();
+    }
+  return outputs;
+}
+
+ReadOptions with_picture(ReadOptions options, const PictureChoice& picture) {
+  options.picture = picture.place;
+  options.own_windows = picture.layer;
+  if (!picture.layer.empty()) options.aovs.clear();
+  return options;
+}
+
+LoadedFrame load_frame(const std::string& path, const ReadOptions& options) {
+  const auto start = std::chrono::steady_clock::now();
+  LoadedFrame loaded{read_frame(path, options), 0, {}, {}};
+  loaded.read_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  loaded.picture = {{loaded.in.source.view_layer, loaded.in.source.view}, options.own_windows};
+  return loaded;
+}
+
+}  // namespace polyrecon

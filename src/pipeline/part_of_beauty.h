@@ -1,0 +1,12 @@
+#pragma once
+
+#include "polyrecon/frame.h"
+
+namespace polyrecon {
+
+/// Whether a colour layer can be a part of the beauty: it is not noisy where the beauty has no noise. The windows of
+/// the beauty do nothing there, so a layer that is no part of it (a shadow catcher, ambient occlusion) needs its own.
+/// The pass must have the size of the beauty, with 3 channels.
+bool is_part_of_beauty(const Frame& frame, const Pass& layer);
+
+}  // namespace polyrecon
