@@ -21,7 +21,7 @@ GRAPHICS_CACHES = ("~/.cache/cycles", "~/.cache/nvidia", "~/.cache/comgr", "~/.c
 
 def why_not(program):
     """The reason why a program cannot be confined; '' where it can."""
-    if _version() < 1:
+    if sys.platform != "linux" or _version() < 1:
         return "this kernel has no Landlock"
     if os.path.basename(os.path.realpath(program)) == "snap":
         return "snap needs privileges to start it"

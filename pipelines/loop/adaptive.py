@@ -12,6 +12,7 @@ import pathlib
 import time
 from typing import Optional
 
+from ..common.digests import digest
 from .budget import RESULT_OVER_DECISION, Budget, reason_to_stop, samples_left, samples_of_next_round, uniform_share
 from .decision import (
     UNIFORM_STEPS,
@@ -45,6 +46,7 @@ class Settings:
     quality: str = "standard"  # Of the last reconstruction: one of QUALITIES
     resume: bool = False
     identity: dict = dataclasses.field(default_factory=dict)  # Of the scene: see journal.State
+    scene: Optional[pathlib.Path] = None  # The input that is compared where the renderer lists none
 
 
 @dataclasses.dataclass(frozen=True)
@@ -83,7 +85,8 @@ class _Loop:
 
     def run(self):
         audit = self.renderer.begin(self.settings.frame)
-        self.journal.compare_inputs(audit.inputs)
+        scene = self.settings.scene
+        self.journal.compare_inputs(audit.inputs or ({str(scene): digest(scene)} if scene else {}))
         self.reconstruction = Reconstruction(self.polyrecon, self.renderer, self.folder, self.state, audit.beauty)
         self.rendering.render_first_pass(self.settings.first_pass)
         if self.budget.seconds:

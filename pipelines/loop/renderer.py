@@ -45,7 +45,9 @@ class Audit:
     passes: dict[str, str] = dataclasses.field(default_factory=dict)  # Name of each pass, and why it is rendered
     notes: list[str] = dataclasses.field(default_factory=list)  # Lines for the user
     method: str = ""  # How extra samples are rendered, in a few words
-    inputs: dict[str, str] = dataclasses.field(default_factory=dict)  # SHA-256 of each file that the picture shows
+    inputs: dict[str, str] = dataclasses.field(
+        default_factory=dict
+    )  # SHA-256 of each file that the picture shows; none: that of the scene is compared
 
 
 class Renderer(abc.ABC):

@@ -55,10 +55,16 @@ class SyntheticRenderer(Renderer):
         exr.write(target, part)
 
 
-def loop(folder, budget, resume=False, seed=1, quality="draft", renderer=None, max_rounds=8, **size):
+def loop(folder, budget, resume=False, seed=1, quality="draft", renderer=None, max_rounds=8, scene=None, **size):
     folder = pathlib.Path(folder)
     settings = adaptive.Settings(
-        folder / "out.exr", folder / "passes", budget, resume=resume, quality=quality, max_rounds=max_rounds
+        folder / "out.exr",
+        folder / "passes",
+        budget,
+        resume=resume,
+        quality=quality,
+        max_rounds=max_rounds,
+        scene=scene,
     )
     renderer = renderer or SyntheticRenderer(seed=seed, **size)
     return renderer, adaptive.run(renderer, Polyrecon(), settings, Progress("none"))

@@ -1,3 +1,4 @@
+import dataclasses
 import json
 import math
 import os
@@ -17,6 +18,7 @@ from pipelines.common import exr
 from pipelines.common.errors import DriverError, ExitCode
 from pipelines.loop import budget
 from pipelines.loop.budget import Budget
+from pipelines.loop.folder import PassFolder
 from pipelines.loop.reconstruction import Reconstruction
 from pipelines.loop.renderer import SAMPLE_COUNT
 from tests.pipelines.loop.synthetic import SyntheticRenderer, loop
@@ -178,6 +180,11 @@ class Greedy(SyntheticRenderer):
         super().extra(first, counts + (self.method == "extra"), target)
 
 
+class NoInputs(SyntheticRenderer):
+    def begin(self, frame):
+        return dataclasses.replace(super().begin(frame), inputs={})
+
+
 class Failing(SyntheticRenderer):
     def extra(self, first, counts, target):
         raise DriverError(ExitCode.RENDERER, "it died")
@@ -269,6 +276,25 @@ class Resuming(Folder):
         with self.assertRaisesRegex(DriverError, "it died"):
             loop(self.folder, Budget(samples=24), resume=True, renderer=Failing())
         self.assertEqual(before, {name: (self.folder / name).read_bytes() for name in before})
+
+    def test_a_scene_that_changed_is_not_continued(self):
+        """Of a renderer that lists no inputs, the scene's file is compared."""
+        scene = self.folder / "scene"
+        scene.write_text("one")
+        loop(self.folder, Budget(samples=8), renderer=NoInputs(), scene=scene)
+        scene.write_text("two")
+        with self.assertRaisesRegex(DriverError, "scene is not what it was") as caught:
+            loop(self.folder, Budget(samples=8), resume=True, renderer=NoInputs(), scene=scene)
+        self.assertEqual(caught.exception.code, ExitCode.USAGE)
+        scene.write_text("one")
+        loop(self.folder, Budget(samples=8), resume=True, renderer=NoInputs(), scene=scene)
+
+    def test_two_drivers_in_one_folder(self):
+        refused = self.assertRaisesRegex(DriverError, f"process {os.getpid()} on .* works in it")
+        with PassFolder(self.folder / "passes").claimed(), refused as caught:
+            loop(self.folder, Budget(samples=8))
+        self.assertEqual(caught.exception.code, ExitCode.USAGE)
+        self.assertEqual(os.listdir(self.folder / "passes"), ["polyrecon.lock"])
 
     def test_passes_are_not_overwritten_unasked(self):
         loop(self.folder, Budget(samples=8))
