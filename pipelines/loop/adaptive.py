@@ -46,7 +46,7 @@ class Settings:
     quality: str = "standard"  # Of the last reconstruction: one of QUALITIES
     resume: bool = False
     identity: dict = dataclasses.field(default_factory=dict)  # Of the scene: see journal.State
-    scene: Optional[pathlib.Path] = None  # The input that is compared where the renderer lists none
+    scene: Optional[str] = None  # Path of the input that is compared where the renderer lists none
 
 
 @dataclasses.dataclass(frozen=True)
@@ -86,7 +86,7 @@ class _Loop:
     def run(self):
         audit = self.renderer.begin(self.settings.frame)
         scene = self.settings.scene
-        self.journal.compare_inputs(audit.inputs or ({str(scene): digest(scene)} if scene else {}))
+        self.journal.compare_inputs(audit.inputs or ({scene: digest(scene)} if scene else {}))
         self.reconstruction = Reconstruction(self.polyrecon, self.renderer, self.folder, self.state, audit.beauty)
         self.rendering.render_first_pass(self.settings.first_pass)
         if self.budget.seconds:

@@ -57,7 +57,7 @@ def run_frames(options, renderer, identity):
             quality=options.quality,
             resume=options.resume,
             identity=identity,
-            scene=pathlib.Path(identity["scene"]),
+            scene=identity.get("scene"),
         )
         result = adaptive.run(renderer, polyrecon, settings, progress)
         page = report.write(result, settings, polyrecon)

@@ -64,7 +64,7 @@ def loop(folder, budget, resume=False, seed=1, quality="draft", renderer=None, m
         resume=resume,
         quality=quality,
         max_rounds=max_rounds,
-        scene=scene,
+        scene=str(scene) if scene else None,
     )
     renderer = renderer or SyntheticRenderer(seed=seed, **size)
     return renderer, adaptive.run(renderer, Polyrecon(), settings, Progress("none"))
