@@ -39,6 +39,7 @@ struct Frame {
   Pass prior;                     ///< A denoised beauty from elsewhere, 3 channels; prior.mean is empty if unknown.
   Image alpha;                    ///< 1 channel; empty if the render has none.
   Image sample_count;             ///< Samples per pixel, 1 channel; empty if unknown.
+  bool wraps = false;             ///< A panorama: the last column is next to the first.
   double sky_depth = 1e9;         ///< Depths from here on mean that rays hit nothing.
   Image motion;                   ///< Pixels from a point's place in this frame to its place in the frame before
                                   ///< (channel 0: columns, 1: rows) and after (2: columns, 3: rows); empty if unknown.
@@ -54,6 +55,7 @@ struct FrameShape {
   int color_channels = 3;    ///< Beauty and AOVs.
   int feature_channels = 0;  ///< Means of the features.
   int prior_channels = 0;    ///< The prior, with halves and variance; it stays in memory during the fits.
+  int wrapped_rows = 0;      ///< Rows of a frame that wraps, else 0: columns are repeated beyond both ends.
   int other_channels = 0;    ///< Other frames in memory at the same time: neighbours in time, the next of a sequence.
 };
 

@@ -20,6 +20,13 @@ enum class VarianceKind {
   SecondMoment  ///< Mean of the squared samples m2; the variance of the mean is (m2 - mean^2) / (n - 1).
 };
 
+/// Whether the columns of the picture go on around it.
+enum class Wrap {
+  Auto,  ///< If the file says that it is a panorama: OpenEXR's attribute envmap is latlong.
+  None,
+  X  ///< The last column is next to the first.
+};
+
 /// A layer whose role the user gives.
 struct RoleMapping {
   Role role = Role::Other;
@@ -43,6 +50,7 @@ struct ReadOptions {
   /// A layer to read in place of the beauty, with the features of its view layer and without a prior; empty: none.
   std::string own_windows;
   VarianceKind variance_kind = VarianceKind::Auto;
+  Wrap wrap = Wrap::Auto;
   double samples = 0;   ///< Samples per pixel of a file that does not say; 0: unknown.
   bool motion = false;  ///< Whether to read the motion vectors.
   ReadLimits limits;

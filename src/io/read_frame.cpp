@@ -221,6 +221,7 @@ class FrameBuilder {
 
   ReadResult build(const BandObserver& observer) {
     choose_window();
+    result_.frame.wraps = wraps();
     want_images();
     if (options_.accept) options_.accept(result_.source.path, shape());
     reader_.read(observer);
@@ -243,6 +244,23 @@ class FrameBuilder {
     reader_.cover(window_);
   }
 
+  /// Whether the frame is a whole panorama. With margins beyond the picture, or without some columns, it has no seam.
+  bool wraps() {
+    if (options_.wrap == Wrap::None) return false;
+    const Layer& beauty = layer(passes_.front().mean);
+    const PartInfo& part =
+        result_.source.files[static_cast<std::size_t>(beauty.file)].parts[static_cast<std::size_t>(beauty.part)];
+    const AttributeInfo* map = find_attribute(part, "envmap");
+    if (options_.wrap == Wrap::Auto && !(map && map->value == "latlong")) return false;
+    const bool whole = window_.x0 == part.display_window.x0 && window_.x1 == part.display_window.x1;
+    if (!whole)
+      result_.notes.push_back(fmt::format(
+          "{}: columns do not wrap around: the data window is not as wide as the picture", result_.source.path));
+    else if (options_.wrap == Wrap::Auto)
+      result_.notes.push_back("a panorama (envmap latlong): columns wrap around; --wrap none if they should not");
+    return whole;
+  }
+
   void want_images() {
     const auto image = [&](int index) {
       return index < 0 ? nullptr : reader_.want(layer(index), layer(index).channels);
@@ -255,6 +273,7 @@ class FrameBuilder {
 
   FrameShape shape() const {
     FrameShape shape{window_.area(), static_cast<int>(reader_.samples() / window_.area()), 3};
+    shape.wrapped_rows = result_.frame.wraps ? window_.height() : 0;
     for (const PassChoice& pass : passes_) {
       const RoleInfo& info = info_of(pass.role);
       if (pass.role == Role::Color) shape.color_channels += info.channels;

@@ -47,6 +47,8 @@ ChannelErrors errors_of_channel(const HalfPair& pair, const Image& variance, con
   return out;
 }
 
+}  // namespace
+
 double mean_of(const Image& image) {
   const double sum = ordered_sum(static_cast<std::size_t>(image.height()), [&](std::size_t y) {
     double row = 0;
@@ -55,8 +57,6 @@ double mean_of(const Image& image) {
   });
   return sum / static_cast<double>(image.pixels());
 }
-
-}  // namespace
 
 ErrorMap make_error_map(const HalfPair& pair, const Image& variance, const Candidate& result, const Image& picture) {
   ErrorMap map;

@@ -23,4 +23,7 @@ constexpr std::size_t error_map_channels = 3 + 1 + 1 + 1;
 ErrorMap make_error_map(const HalfPair& pair, const Image& variance, const Candidate& result,
                         const Image& picture = {});
 
+/// Mean of an image of 1 channel.
+double mean_of(const Image& image);
+
 }  // namespace polyrecon

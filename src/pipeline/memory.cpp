@@ -5,6 +5,7 @@
 #include "blend/prior.h"
 #include "core/candidate.h"
 #include "core/color_layout.h"
+#include "core/wrap.h"
 #include "features/prepare.h"
 #include "maps/error_map.h"
 #include "outliers/restore.h"
@@ -59,6 +60,7 @@ std::size_t finishing_channels(const FrameShape& shape) {
 
 FrameShape shape_of(const Frame& frame) {
   FrameShape shape{frame.beauty.mean.pixels(), 0, ColorLayout(static_cast<int>(frame.aovs.size()), false).channels()};
+  shape.wrapped_rows = frame.wraps ? frame.height() : 0;
   const auto add = [&](const Pass& pass) {
     for (const Image* image : {&pass.mean, &pass.variance, &pass.half_a, &pass.half_b})
       shape.channels += image->channels();
@@ -88,6 +90,7 @@ int channels_ahead(const FrameShape& shape, const Params& params) {
 MemoryNeeds memory_needs(const FrameShape& passes, const Params& params) {
   constexpr std::size_t noise_variance = 3;
   FrameShape shape = passes;
+  shape.pixels += static_cast<std::size_t>(shape.wrapped_rows) * 2 * wrap_margin;
   shape.color_channels = reconstructed_channels(passes, params);
   const auto with_gaps = [](std::size_t bytes) {
     return static_cast<std::size_t>(allocator * static_cast<double>(bytes));

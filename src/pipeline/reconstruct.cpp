@@ -12,6 +12,7 @@
 #include "core/parallel.h"
 #include "core/picture.h"
 #include "core/rect.h"
+#include "core/wrap.h"
 #include "features/prepare.h"
 #include "maps/error_map.h"
 #include "noise/variance.h"
@@ -181,10 +182,35 @@ void put_layers(const Image& image, const Image& input_alpha, Result& result) {
       layout.has_alpha() ? within_coverage(crop(image, image.bounds(), layout.alpha_channel(), 1)) : input_alpha;
 }
 
+/// Reconstructs a panorama with columns of its other end beyond both ends, and takes them away again.
+Result reconstruct_panorama(Frame& frame, const std::vector<TimedNeighbour>& neighbours, const Params& params,
+                            Progress& progress) {
+  Report report;
+  note_input(frame, report);
+  wrap(frame);
+  Result result = reconstruct(frame, neighbours, params, progress);
+  for (Image* image :
+       {&result.beauty, &result.alpha, &result.order, &result.error.mse, &result.error.relative_mse,
+        &result.error.relative_variance, &result.error.relative_noise, &frame.alpha, &frame.sample_count})
+    *image = unwrapped(*image);
+  for (Image& aov : result.aovs) aov = unwrapped(aov);
+  frame.wraps = true;
+  result.error.mean_relative_mse = mean_of(result.error.relative_mse);
+  result.report.width = report.width;
+  result.report.energy_before = report.energy_before;
+  note_result(result);
+  return result;
+}
+
 }  // namespace
 
 std::shared_ptr<const Neighbour> prepare_neighbour(const Frame& frame, int number, const Params& params,
                                                    Progress& progress) {
+  if (frame.wraps) {
+    Frame wide = frame;
+    wrap(wide);
+    return prepare_neighbour(wide, number, params, progress);
+  }
   require_usable(frame);
   Report not_kept;
   Stages stages(progress, not_kept);
@@ -208,6 +234,7 @@ Result reconstruct(Frame& frame, const Params& params, Progress& progress) {
 
 Result reconstruct(Frame& frame, const std::vector<TimedNeighbour>& neighbours, const Params& requested,
                    Progress& progress) {
+  if (frame.wraps) return reconstruct_panorama(frame, neighbours, requested, progress);
   const Params params = params_for_frame(frame, requested);
   FrameShape shape = shape_of(frame);
   shape.other_channels += neighbours_channels(shape, static_cast<int>(neighbours.size()), params);

@@ -12,6 +12,7 @@ const std::map<std::string, VarianceKind> variance_kinds{{"auto", VarianceKind::
                                                          {"mean", VarianceKind::Mean},
                                                          {"sample", VarianceKind::Sample},
                                                          {"moment", VarianceKind::SecondMoment}};
+const std::map<std::string, Wrap> wraps{{"auto", Wrap::Auto}, {"none", Wrap::None}, {"x", Wrap::X}};
 const std::map<std::string, ProgressStyle> progress_styles{{"none", ProgressStyle::None},
                                                            {"bar", ProgressStyle::Bar},
                                                            {"json", ProgressStyle::Json},
@@ -64,6 +65,8 @@ void add_input_options(OptionSet& set, DenoiseOptions& o) {
   set.add_choice(Changes::Result, "--variance-kind", o.read.variance_kind, variance_kinds,
                  "What variance layers hold: auto, mean (variance of the pixel), sample (variance of one sample), "
                  "moment (mean of the squares)");
+  set.add_choice(Changes::Result, "--wrap", o.read.wrap, wraps,
+                 "Columns of a panorama go on around it: x; auto: if the file says so (envmap latlong); none");
   set.add(Changes::Result, "--samples", o.read.samples, "Samples per pixel, if the file does not contain them")
       ->check(CLI::PositiveNumber);
 }

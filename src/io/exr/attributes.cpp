@@ -2,6 +2,7 @@
 
 #include <OpenEXR/ImfBoxAttribute.h>
 #include <OpenEXR/ImfDoubleAttribute.h>
+#include <OpenEXR/ImfEnvmapAttribute.h>
 #include <OpenEXR/ImfFloatAttribute.h>
 #include <OpenEXR/ImfIntAttribute.h>
 #include <OpenEXR/ImfRationalAttribute.h>
@@ -34,6 +35,7 @@ std::string attribute_text(const Imf::Attribute& attribute) {
   if (const auto* v = value_of<Imath::V3f>(attribute)) return fmt::format("{} {} {}", v->x, v->y, v->z);
   if (const auto* b = value_of<Imath::Box2i>(attribute))
     return fmt::format("{} {} {} {}", b->min.x, b->min.y, b->max.x, b->max.y);
+  if (const auto* map = value_of<Imf::Envmap>(attribute)) return *map == Imf::ENVMAP_LATLONG ? "latlong" : "cube";
   if (const auto* list = value_of<Imf::StringVector>(attribute)) return fmt::format("{}", fmt::join(*list, ", "));
   return {};
 }
