@@ -13,7 +13,16 @@ import time
 from typing import Optional
 
 from ..common.digests import digest
-from .budget import RESULT_OVER_DECISION, Budget, reason_to_stop, samples_left, samples_of_next_round, uniform_share
+from .budget import (
+    RESULT_OVER_DECISION,
+    SAMPLES_SPENT,
+    SECONDS_SPENT,
+    Budget,
+    reason_to_stop,
+    samples_left,
+    samples_of_next_round,
+    uniform_share,
+)
 from .decision import (
     UNIFORM_STEPS,
     first_pass_parts,
@@ -91,23 +100,31 @@ class _Loop:
         self.rendering.render_first_pass(self.settings.first_pass)
         if self.budget.seconds:
             self.decision_seconds = self.reconstruction.estimate_decision_seconds()
-            self.continue_first_pass()
+        self.continue_first_pass()
         while plan := self.state.next_round or self.decide():
             self.rendering.render_round(plan)
         return self.finish(audit)
 
     def continue_first_pass(self):
-        """More uniform samples before the first decision, where seconds are the budget."""
-        state = self.state
-        if not state.rounds and not state.next_round and len(state.parts) <= state.first_pass_parts:
+        """More uniform samples before the first decision: a share of a budget of seconds. Where that is none, a half of
+        one part gets as many as the first pass took, if they are left: variance is measured between parts."""
+        state, plan = self.state, None
+        if state.rounds or state.next_round or len(state.parts) > state.first_pass_parts:
+            return
+        if self.budget.seconds:
             plan = self.start_uniform_round(0, uniform_share(self.budget, self.spent()))
-            if plan:
-                self.rendering.render_round(plan)
+        if not plan and not self.variance_is_known():
+            plan = self.start_uniform_round(0, min(self.settings.first_pass, self.samples_left()))
+        if plan:
+            self.rendering.render_round(plan)
 
     def decide(self):
         """Reconstructs both halves and decides how many samples follow and where. Returns the plan of the next round;
         None where the loop ends, and sets why_ended then."""
         number = len(self.state.rounds)
+        if not self.variance_is_known():
+            self.why_ended = (SAMPLES_SPENT if self.budget.samples else SECONDS_SPENT) + NO_DECISION
+            return None
         if self.decision_seconds is not None:
             spent = self.spent()
             self.why_ended = reason_to_stop(self.budget, spent)
@@ -176,6 +193,15 @@ class _Loop:
             seconds=self.journal.seconds(),
             why_ended=self.why_ended,
         )
+
+    def variance_is_known(self):
+        return all(len(self.state.files(half)) > 1 for half in HALVES)
+
+    def samples_left(self):
+        """Samples per pixel that the budget still allows."""
+        if self.budget.samples:
+            return self.budget.samples - self.state.samples
+        return samples_left(self.budget, self.spent()) if self.budget.seconds else math.inf
 
     def spent(self):
         return what_is_spent(

@@ -151,9 +151,39 @@ class Budgets(Folder):
             samples = sum(part.samples for part in result.state.parts if part.half == half)
             self.assertEqual(samples, result.samples / 2)
 
+    def test_a_first_pass_of_more_than_its_share_is_judged_all_the_same(self):
+        """Its halves have a part each, and between two parts alone variance is measured."""
+        with unittest.mock.patch.multiple(budget, MAX_DECISION_SHARE=100.0, UNIFORM_SHARE=0.0):
+            _, result = loop(self.folder, Budget(seconds=60), max_rounds=1)
+        self.assertEqual([part.round for part in result.state.parts][:4], [0, 0, 0, 0])
+        self.assertEqual(result.state.rounds[0].samples, sum(part.samples for part in result.state.parts[:4]))
+
+    def test_a_first_pass_that_takes_all_seconds_is_the_result(self):
+        _, result = loop(self.folder, Budget(seconds=1), renderer=SlowFirstPass(seconds=1))
+        self.assertEqual(result.samples, 8)
+        self.assertIn("too few of them to judge", result.why_ended)
+        self.assertTrue(np.isfinite(exr.read(self.folder / "out.exr")["L.Combined.R"]).all())
+
+    def test_a_budget_of_seconds_continues_as_one_of_samples(self):
+        loop(self.folder, Budget(seconds=1), renderer=SlowFirstPass(seconds=1))
+        _, result = loop(self.folder, Budget(samples=24), resume=True)
+        self.assertEqual(result.why_ended, "the samples are spent")
+        self.assertGreater(result.samples, 18)
+        self.assertGreater(len(result.state.rounds), 0)
+
     def test_features_that_are_rendered_once_do_not_count_as_decision_time(self):
         _, result = loop(self.folder, Budget(samples=16), renderer=SlowFeatures())
         self.assertLess(result.state.rounds[0].decision_seconds, SlowFeatures.seconds_once)
+
+
+class SlowFirstPass(SyntheticRenderer):
+    def __init__(self, seconds):
+        super().__init__()
+        self.seconds_of_part = seconds
+
+    def uniform(self, first, samples, target):
+        time.sleep(self.seconds_of_part)
+        super().uniform(first, samples, target)
 
 
 class SlowFeatures(SyntheticRenderer):
