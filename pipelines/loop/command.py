@@ -43,8 +43,8 @@ def check_budget(parser, options):
 def run_frames(options, renderer, identity):
     """Runs the loop for every frame of the options.
 
-    identity: every setting that changes a sample, with a name; `scene` is the path of a file. --resume continues only passes
-    of the same identity, frame and --first-pass, and of the same inputs (Audit.inputs)."""
+    identity: every setting that changes a sample, with a name; `scene` is the path of a file. --resume continues only
+    passes of the same identity, frame and --first-pass, and of the same inputs (Audit.inputs)."""
 
     def work(frame, output, passes, polyrecon, progress):
         settings = adaptive.Settings(
