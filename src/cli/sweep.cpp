@@ -79,10 +79,10 @@ Image read_color(const LayeredFile& file, const Image& reference) {
 
 Reference read_reference(const std::string& path) {
   const LayeredFile file = open_layers(path);
-  Reference reference{read_color(file, {}), {}};
-  const Layer* variance = variance_layer(file, require_color_layer(file));
-  if (variance) reference.variance = read_layer(file, *variance);
-  return reference;
+  Image mean = read_color(file, {});
+  KnownVariance known = read_variance(file, require_color_layer(file), mean);
+  if (!known.note.empty()) std::fputs(fmt::format("polyrecon: {}\n", known.note).c_str(), stderr);
+  return {std::move(mean), std::move(known.variance)};
 }
 
 SweepInput read_input(const std::string& path, const Image& reference) {

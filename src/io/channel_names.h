@@ -15,10 +15,7 @@ constexpr int rank_by_hand = -1000;  ///< The rank of a layer that the user name
 inline bool is_half(Companion c) { return c == Companion::HalfA || c == Companion::HalfB; }
 
 /// Whether the variance of the mean can be made of what such a companion holds.
-inline bool is_variance(Companion c) {
-  return c == Companion::VarianceOfMean || c == Companion::VarianceOfSample || c == Companion::SecondMoment ||
-         c == Companion::SecondMomentOfXyz;
-}
+inline bool is_variance(Companion c) { return c != Companion::Mean && !is_half(c); }
 
 /// Groups the channels of all parts into layers, in file order, and classifies them.
 std::vector<Layer> find_layers(const FileInfo& file);

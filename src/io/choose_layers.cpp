@@ -192,7 +192,9 @@ void apply_map(LayerChoice& choice, const ReadOptions& options) {
       Layer& layer = source.layers[static_cast<std::size_t>(index)];
       require_fitting(source, layer, mapping);
       layer.role = mapping.role;
-      layer.companion = mapping.companion;
+      // What kind of variance a layer holds is known from its name, not from --map.
+      if (mapping.companion != Companion::VarianceOfMean || !is_variance(layer.companion))
+        layer.companion = mapping.companion;
       layer.rank = rank_by_hand;
       layer.view = source.view;
       layer.view_layer = source.view_layer;

@@ -11,6 +11,7 @@
 #include "io/channel_names.h"
 #include "io/channel_reader.h"
 #include "io/observed_read.h"
+#include "io/renderers/known_names.h"
 #include "polyrecon/error.h"
 
 namespace polyrecon {
@@ -128,11 +129,21 @@ bool has_role(const Inspection& found, Role role) {
                      : std::any_of(layers.begin(), layers.end(), is_mean);
 }
 
-/// What denoise has to do without.
+/// The beauty's name within its view layer; empty in a file without beauty.
+std::string beauty_pass(const FrameSource& source) {
+  for (const RoleChoice& choice : source.chosen)
+    for (const Layer& layer : source.layers)
+      if (choice.role == Role::Beauty && layer.companion == Companion::Mean && layer.name == choice.layer)
+        return layer.pass;
+  return {};
+}
+
+/// What denoise has to do without, but for roles that the renderer has no name for.
 std::vector<std::string> missing_roles(const Inspection& found) {
+  const std::string beauty = beauty_pass(found.source);
   std::vector<std::string> missing;
   for (const RoleInfo& info : role_table())
-    if (info.expected && !has_role(found, info.role)) missing.emplace_back(info.name);
+    if (info.expected && !has_role(found, info.role) && can_have(beauty, info.role)) missing.emplace_back(info.name);
   if (!found.frame || found.frame->beauty.variance.empty()) missing.emplace_back("variance");
   if (!found.frame || !found.frame->beauty.has_halves()) missing.emplace_back("half buffers");
   return missing;

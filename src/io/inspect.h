@@ -21,9 +21,9 @@ struct LayerStatistics {
 struct Inspection {
   FrameSource source;
   std::vector<LayerStatistics> statistics;  ///< By file and part; layers of unreadable parts are left out.
-  std::vector<std::string> missing;         ///< Roles and companions without a layer: "albedo", "variance", ...
-  double samples = 0;                       ///< Samples per pixel; 0 if unknown.
-  double noise_level = -1;  ///< Mean over pixels of variance / (mean^2 + 0.01) of the beauty; -1 if unknown.
+  std::vector<std::string> missing;  ///< Roles that the renderer has a name for, and companions, without a layer.
+  double samples = 0;                ///< Samples per pixel; 0 if unknown.
+  double noise_level = -1;           ///< Mean over pixels of variance / (mean^2 + 0.01) of the beauty; -1 if unknown.
   std::vector<std::string> notes;
   std::optional<Frame> frame;  ///< As read_frame reads it; none in a file without beauty.
 

@@ -1,7 +1,9 @@
 #include "polyrecon/merge.h"
 
 #include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfDoubleAttribute.h>
 #include <OpenEXR/ImfFloatAttribute.h>
+#include <OpenEXR/ImfIntAttribute.h>
 #include <OpenEXR/ImfMultiPartInputFile.h>
 #include <OpenEXR/ImfPartType.h>
 #include <OpenEXR/ImfStandardAttributes.h>
@@ -261,6 +263,15 @@ void copy_metadata(const Imf::MultiPartInputFile& input, Imf::Header& header) {
       if (copied.insert(a.name()).second) header.insert(a.name(), a.attribute());
 }
 
+/// Writes a number into an attribute, whatever its type; nothing where the header has no such attribute.
+void replace_number(Imf::Header& header, const std::string& name, double value) {
+  if (auto* text = header.findTypedAttribute<Imf::StringAttribute>(name)) text->value() = fmt::format("{:.0f}", value);
+  if (auto* whole = header.findTypedAttribute<Imf::IntAttribute>(name))
+    whole->value() = static_cast<int>(std::min<double>(std::round(value), std::numeric_limits<int>::max()));
+  if (auto* real = header.findTypedAttribute<Imf::FloatAttribute>(name)) real->value() = static_cast<float>(value);
+  if (auto* real = header.findTypedAttribute<Imf::DoubleAttribute>(name)) real->value() = value;
+}
+
 /// A channel that is merged: the index of its layer, and its index in all_channels.
 struct Slot {
   std::size_t layer, channel;
@@ -329,10 +340,9 @@ class Merger {
     header.channels() = output_channels();
     if (const auto views = stereo_views(); !views.empty()) Imf::addMultiView(header, views);
     for (const auto& [view_layer, samples] : metadata_samples_) {
-      header.insert(with_view_layer(samples_attribute, view_layer), Imf::FloatAttribute(static_cast<float>(samples)));
       for (const SamplesAttribute& copied : samples_attributes(view_layer))
-        if (header.findTypedAttribute<Imf::StringAttribute>(copied.name) != nullptr)
-          header.insert(copied.name, Imf::StringAttribute(fmt::format("{:.0f}", samples)));
+        replace_number(header, copied.name, samples);
+      header.insert(with_view_layer(samples_attribute, view_layer), Imf::FloatAttribute(static_cast<float>(samples)));
     }
     header.insert("polyrecon/version", Imf::StringAttribute(POLYRECON_VERSION));
     return header;

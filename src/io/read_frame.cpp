@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <map>
 #include <memory>
 #include <utility>
@@ -13,9 +12,9 @@
 #include "io/beyond_range.h"
 #include "io/channel_names.h"
 #include "io/choose_layers.h"
-#include "io/cie_xyz.h"
 #include "io/exr/file.h"
 #include "io/observed_read.h"
+#include "io/pass_values.h"
 #include "io/renderers/known_names.h"
 #include "polyrecon/error.h"
 
@@ -114,42 +113,6 @@ class PartReader {
   std::map<std::pair<int, int>, std::vector<Wanted>> parts_;
 };
 
-Image repeated(const Image& gray, int channels) {
-  Image out(gray.width(), gray.height(), channels);
-  for (int c = 0; c < channels; ++c) std::copy_n(gray.plane(0), gray.pixels(), out.plane(c));
-  return out;
-}
-
-/// Mean of the channels. The noise of the channels is taken to be fully correlated, as it is in grey shadows: a
-/// variance becomes the square of the mean standard deviation.
-Image averaged(const Image& image, bool is_variance) {
-  Image out(image.width(), image.height(), 1);
-  for (std::size_t i = 0; i < image.pixels(); ++i) {
-    double sum = 0;
-    for (int c = 0; c < image.channels(); ++c) {
-      const double value = image.plane(c)[i];
-      sum += is_variance ? std::sqrt(value) : value;
-    }
-    const double mean = sum / image.channels();
-    out.plane(0)[i] = static_cast<Real>(is_variance ? mean * mean : mean);
-  }
-  return out;
-}
-
-Image with_channels(Image image, int channels, bool is_variance = false) {
-  if (image.empty() || image.channels() == channels) return image;
-  return channels == 1 ? averaged(image, is_variance) : repeated(image, channels);
-}
-
-/// The samples of each pixel: an image, one number for all pixels, or unknown.
-struct SampleCounts {
-  const Image* per_pixel = nullptr;
-  double everywhere = 0;
-
-  bool known() const { return per_pixel != nullptr || everywhere > 0; }
-  double at(std::size_t i) const { return per_pixel ? static_cast<double>(per_pixel->plane(0)[i]) : everywhere; }
-};
-
 /// What a variance layer holds: by its name, unless the user says so.
 Companion kind_of(const Layer& layer, VarianceKind by_user) {
   switch (by_user) {
@@ -163,39 +126,6 @@ Companion kind_of(const Layer& layer, VarianceKind by_user) {
       break;
   }
   return layer.companion;
-}
-
-/// The unbiased variance of the mean of n samples, (m2 - mean^2) / (n - 1), at least 0; m2 is their mean square.
-double variance_from_moment(double m2, double mean, double n) {
-  const double spread = m2 - mean * mean;
-  return spread < 0 ? 0 : spread / std::max(n - 1, 1.0);
-}
-
-/// Turns the variance v of one sample, or the mean square of n samples, into the variance of the mean. v becomes v / n.
-void to_variance_of_mean(Image& variance, const Image& mean, Companion kind, const SampleCounts& counts) {
-  for (int c = 0; c < variance.channels(); ++c)
-    for (std::size_t i = 0; i < variance.pixels(); ++i) {
-      Real& v = variance.plane(c)[i];
-      const double n = counts.at(i);
-      if (kind == Companion::VarianceOfSample) {
-        v = static_cast<Real>(v / std::max(n, 1.0));
-      } else {
-        v = static_cast<Real>(variance_from_moment(v, mean.plane(std::min(c, mean.channels() - 1))[i], n));
-      }
-    }
-}
-
-/// Turns the mean squares of a colour's XYZ values into the variances of its mean RGB. The noise of the channels is
-/// taken to be fully correlated, as it is where the light's colour does not change.
-void xyz_to_variance_of_mean(Image& moments, const Image& mean, const SampleCounts& counts) {
-  for (std::size_t i = 0; i < moments.pixels(); ++i) {
-    const Triple xyz = product(rgb_to_xyz, {mean.plane(0)[i], mean.plane(1)[i], mean.plane(2)[i]});
-    Triple deviation{};
-    for (std::size_t c = 0; c < 3; ++c)
-      deviation[c] = std::sqrt(variance_from_moment(moments.plane(static_cast<int>(c))[i], xyz[c], counts.at(i)));
-    const Triple rgb = product(xyz_to_rgb, deviation);
-    for (std::size_t c = 0; c < 3; ++c) moments.plane(static_cast<int>(c))[i] = static_cast<Real>(rgb[c] * rgb[c]);
-  }
 }
 
 Image times(Image image, const std::array<Real, 4>& factors) {
@@ -306,15 +236,10 @@ class FrameBuilder {
   Image take_counts(WantedPass& wanted) {
     const Layer& from = layer(wanted.choice.mean);
     Image counts = take(wanted.mean, Role::SampleCount, wanted.choice.mean, 1);
-    if (!is_sample_fraction(from.pass)) return counts;
-    if (counts_.everywhere <= 0) {
-      result_.notes.push_back(
-          fmt::format("{} is not used: it holds fractions of an unknown sample count; give --samples", from.name));
-      return {};
-    }
-    for (std::size_t i = 0; i < counts.pixels(); ++i)
-      counts.plane(0)[i] = static_cast<Real>(counts.plane(0)[i] * counts_.everywhere);
-    return counts;
+    if (to_sample_counts(counts, from.pass, counts_.everywhere)) return counts;
+    result_.notes.push_back(
+        fmt::format("{} is not used: it holds fractions of an unknown sample count; give --samples", from.name));
+    return {};
   }
 
   /// Finds the samples per pixel, which variances need: of the sample-count layer, else by --samples or the metadata.
@@ -333,16 +258,12 @@ class FrameBuilder {
     const Companion kind = kind_of(from, options_.variance_kind);
     Image variance = take(wanted.variance, wanted.choice.role, wanted.choice.variance, mean.channels(),
                           kind != Companion::SecondMoment);
-    if (kind == Companion::VarianceOfMean) return variance;
-    if (!counts_.known()) {
+    if (kind != Companion::VarianceOfMean && !counts_.known()) {
       result_.notes.push_back(fmt::format(
           "{} is not used: it is the {} and the sample count is unknown; give --samples", from.name, name_of(kind)));
       return {};
     }
-    if (kind == Companion::SecondMomentOfXyz)
-      xyz_to_variance_of_mean(variance, mean, counts_);
-    else
-      to_variance_of_mean(variance, mean, kind, counts_);
+    to_variance_of_mean(variance, kind, mean, counts_);
     return variance;
   }
 

@@ -106,6 +106,32 @@ TEST_F(Compare, PrintsTheFiguresWorkedOutByHand) {
   EXPECT_NE(text.out.find("relMSE 0.00990  trimmed 0.00988  energy +0.10000  FLIP 0."), std::string::npos) << text.out;
 }
 
+TEST_F(Compare, TheReferencesNoiseIsTakenOffWhateverItsVarianceLayerHolds) {
+  // Reference 1 of 4 samples, with variance 0.01 of its mean: 0.04 of one sample, mean square 1 + 3 * 0.01.
+  const auto reference = [&](const std::string& beauty, const std::string& companion, double value, bool counted) {
+    std::vector<std::string> channels;
+    for (const std::string& name : {beauty, companion})
+      for (const char* letter : {".R", ".G", ".B"}) channels.push_back(name + letter);
+    if (counted) channels.emplace_back("sampleCount.Y");
+    write_exr(path("ref.exr"), 2, 1, channels, [&](int, int, int c) { return c < 3 ? 1.0 : c < 6 ? value : 4.0; });
+    return run({"compare", "a.exr", "ref.exr", "--json"});
+  };
+  write_exr(path("a.exr"), 2, 1, rgb, [](int x, int, int) { return x < 1 ? 1.2 : 1.0; });
+  const auto figures = [](const Outcome& o) { return nlohmann::json::parse(o.out); };
+  const auto of_mean = figures(reference("Ci", "Ci_mse", 0.01, true));
+  EXPECT_NEAR(of_mean["results"][0]["relMSE"], 0.0099010, 1e-6);
+  EXPECT_TRUE(of_mean["notes"].empty());
+  EXPECT_NEAR(figures(reference("Ci", "Ci_var", 0.04, true))["results"][0]["relMSE"], 0.0099010, 1e-6);
+  EXPECT_NEAR(figures(reference("RGB", "m2_RGB", 1.03, true))["results"][0]["relMSE"], 0.0099010, 1e-6);
+  const auto unknown = figures(reference("Ci", "Ci_var", 0.04, false));
+  EXPECT_NEAR(unknown["results"][0]["relMSE"], 0.02 / 1.01, 1e-6);  // with the reference's noise
+  ASSERT_EQ(unknown["notes"].size(), 1u);
+  EXPECT_EQ(
+      unknown["notes"][0],
+      "ref.exr: Ci_var is not used: it is the variance of one sample and the file does not say how many samples a "
+      "pixel has; the noise of Ci counts as error");
+}
+
 TEST_F(Compare, CountsBadPixels) {
   write_exr(path("a.exr"), 4, 4, rgb,
             [](int x, int y, int) { return x == 1 && y == 2 ? std::numeric_limits<double>::quiet_NaN() : 1.0; });

@@ -55,6 +55,18 @@ TEST(InspectFile, CountsWhatIsWrongWithALayer) {
               ElementsAre("normal", "albedo", "depth", "visibility", "sample-count", "variance", "half buffers"));
 }
 
+TEST(InspectFile, RolesThatTheRendererHasNoNameForAreNotMissing) {
+  const TemporaryFolder folder;
+  TestPart part;
+  part.channels = flat_layer("Ci", "RGB", 1);  // RenderMan has no visibility
+  EXPECT_THAT(inspect(write_exr(folder / "a.exr", {part})).missing,
+              ElementsAre("normal", "albedo", "depth", "sample-count", "variance", "half buffers"));
+  ReadOptions options;
+  options.map = {parse_mapping("beauty=colours")};
+  part.channels = flat_layer("colours", "RGB", 1);
+  EXPECT_THAT(inspect(write_exr(folder / "b.exr", {part}), options).missing, Contains("visibility"));
+}
+
 TEST(InspectFile, NoiseLevelFromVarianceOrHalves) {
   // 0.5 / (0.3^2 + 0.01) = 5. Halves 1 and 3 alone: mean 0.3 stays, (2^2 / 4) / 0.1 = 10.
   const TemporaryFolder folder;

@@ -1,11 +1,17 @@
 #include "polyrecon/merge.h"
 
+#include <OpenEXR/ImfDoubleAttribute.h>
+#include <OpenEXR/ImfFloatAttribute.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfInputFile.h>
+#include <OpenEXR/ImfIntAttribute.h>
 #include <OpenEXR/ImfStandardAttributes.h>
 #include <OpenEXR/ImfStringAttribute.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <initializer_list>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -126,6 +132,29 @@ TEST(MergeRenders, MetadataWeighTheRenders) {
   EXPECT_THAT(stored_floats(out, 0, "V.Combined B.R"), Each(5.f));
   EXPECT_THAT(stored_floats(out, 0, "V.Sample Count.X"), Each(16.f));
   EXPECT_EQ(find_attribute(describe_file(out).parts[0], "cycles.V.samples")->value, "16");
+}
+
+TEST(MergeRenders, TheSamplesInTheMetadataAddUpWhateverTheTypeOfTheAttribute) {
+  const TemporaryFolder folder;
+  const std::string out = folder / "out.exr";
+  const auto pbrt = [](double value, const Imf::Attribute& samples) {
+    TestPart part;
+    part.channels = flat_layer("", "RGB", value);
+    part.edit = [&samples](Imf::Header& header) { header.insert("samplesPerPixel", samples); };
+    return part;
+  };
+  const Imf::IntAttribute whole(16);
+  const Imf::FloatAttribute real(16);
+  const Imf::DoubleAttribute precise(16);
+  const Imf::StringAttribute text("16");
+  for (const Imf::Attribute* samples : std::initializer_list<const Imf::Attribute*>{&whole, &real, &precise, &text}) {
+    merge(write_all(folder, {pbrt(0, *samples), pbrt(4, *samples)}), out);
+    const AttributeInfo* merged = find_attribute(describe_file(out).parts[0], "samplesPerPixel");
+    ASSERT_NE(merged, nullptr);
+    EXPECT_EQ(std::stod(merged->value), 32) << samples->typeName();
+    const Imf::InputFile file(out.c_str());
+    EXPECT_STREQ(file.header()["samplesPerPixel"].typeName(), samples->typeName());
+  }
 }
 
 TEST(MergeRenders, LongRendersWeighMoreInTheVarianceThanShortOnes) {

@@ -181,6 +181,23 @@ TEST(ReadFrame, ASecondMomentBecomesAVariance) {
   EXPECT_EQ(everywhere(frame.features[1].pass.variance), 3);
 }
 
+TEST(ReadFrame, AVarianceThatIsNamedByHandKeepsTheKindOfItsName) {
+  // RenderMan's _var is the variance of one sample, 12 / 4; of a layer whose name says nothing it is that of the mean.
+  const TemporaryFolder folder;
+  const std::string path = write_exr(
+      folder / "a.exr",
+      {part_of(join({flat_layer("light", "RGB", 2), flat_layer("light_var", "RGB", 12), flat_layer("v", "RGB", 5)}))});
+  ReadOptions options;
+  options.samples = 4;
+  options.map = {parse_mapping("beauty=light"), parse_mapping("variance=light_var")};
+  EXPECT_EQ(everywhere(read_frame(path, options).frame.beauty.variance), 3);
+  options.map.back() = parse_mapping("variance=v");
+  EXPECT_EQ(everywhere(read_frame(path, options).frame.beauty.variance), 5);
+  options.map.back() = parse_mapping("variance=light_var");
+  options.variance_kind = VarianceKind::Mean;
+  EXPECT_EQ(everywhere(read_frame(path, options).frame.beauty.variance), 12);
+}
+
 TEST(ReadFrame, VarianceKindOverridesTheNames) {
   const TemporaryFolder folder;
   const std::string path =

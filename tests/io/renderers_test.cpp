@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <set>
 
 #include "io/channel_names.h"
@@ -130,6 +131,22 @@ TEST(Renderers, HaveDistinctNamesAndBeauties) {
       EXPECT_NE(known->renderers.find(renderer.name), std::string::npos) << renderer.name << ": " << pass.name;
     }
   }
+}
+
+TEST(Renderers, EachFileIsInTheList) {
+  const std::set<std::string> others{"known_names", "renderers"};
+  std::size_t files = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(POLYRECON_SOURCE_DIR "/src/io/renderers"))
+    files += entry.path().extension() == ".cpp" && others.count(entry.path().stem().string()) == 0;
+  EXPECT_EQ(renderers().size(), files) << "src/io/renderers/renderers.cpp lists each file of its folder";
+}
+
+TEST(Renderers, HaveRolesThatTheirBeautyTells) {
+  EXPECT_TRUE(can_have("Combined", Role::Visibility));  // Blender
+  EXPECT_TRUE(can_have("ci", Role::SampleCount));       // RenderMan
+  EXPECT_FALSE(can_have("Ci", Role::Visibility));
+  EXPECT_TRUE(can_have("RGB", Role::Depth));  // Mitsuba, though not pbrt
+  EXPECT_TRUE(can_have("my colours", Role::Visibility) && can_have("", Role::Beauty));
 }
 
 TEST(Renderers, NamesAreComparedWithoutCaseAndSeparators) {

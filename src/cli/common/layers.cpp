@@ -1,7 +1,12 @@
 #include "cli/common/layers.h"
 
+#include <fmt/format.h>
+
+#include <utility>
+
 #include "io/channel_names.h"
 #include "io/exr/file.h"
+#include "io/pass_values.h"
 #include "io/renderers/known_names.h"
 #include "polyrecon/error.h"
 
@@ -12,6 +17,30 @@ namespace {
 std::string without_last(const std::string& channel) {
   const std::size_t dot = channel.rfind('.');
   return dot == std::string::npos ? std::string() : channel.substr(0, dot);
+}
+
+/// The layer with the variance, preferably that of the mean; nullptr without one.
+const Layer* variance_layer(const LayeredFile& file, const Layer& layer) {
+  const Layer* first = nullptr;
+  for (const Layer& other : file.layers) {
+    if (!is_variance(other.companion) || other.of != layer.name) continue;
+    if (other.companion == Companion::VarianceOfMean) return &other;
+    if (!first) first = &other;
+  }
+  return first;
+}
+
+const Layer* sample_count_layer(const LayeredFile& file, const Layer& of) {
+  const Layer* best = nullptr;
+  for (const Layer& layer : file.layers)
+    if (layer.role == Role::SampleCount && layer.view_layer == of.view_layer && layer.view == of.view &&
+        (!best || layer.rank < best->rank))
+      best = &layer;
+  return best;
+}
+
+std::string unused(const LayeredFile& file, const Layer& layer, const std::string& why) {
+  return fmt::format("{}: {} is not used: {}", file.info.path, layer.name, why);
 }
 
 }  // namespace
@@ -42,16 +71,30 @@ const Layer& require_color_layer(const LayeredFile& file) {
                                      "lists the layers");
 }
 
-const Layer* variance_layer(const LayeredFile& file, const Layer& layer) {
-  for (const Layer& other : file.layers)
-    if (other.companion == Companion::VarianceOfMean && other.of == layer.name &&
-        other.channels.size() == layer.channels.size())
-      return &other;
-  return nullptr;
-}
-
 Image read_layer(const LayeredFile& file, const Layer& layer) {
   return read_channels(file.info, layer.part, layer.channels);
+}
+
+KnownVariance read_variance(const LayeredFile& file, const Layer& layer, const Image& mean) {
+  const Layer* found = variance_layer(file, layer);
+  if (!found) return {};
+  Image values = with_channels(read_layer(file, *found), mean.channels());
+  if (!values.same_shape(mean)) return {{}, unused(file, *found, "its data window is not the layer's")};
+  Image counted;
+  SampleCounts counts{nullptr, samples_in_metadata(file.info, layer.view_layer).value_or(0)};
+  if (const Layer* samples = sample_count_layer(file, layer)) {
+    counted = read_layer(file, *samples);
+    if (counted.pixels() == mean.pixels() && to_sample_counts(counted, samples->pass, counts.everywhere))
+      counts.per_pixel = &counted;
+  }
+  if (found->companion != Companion::VarianceOfMean && !counts.known())
+    return {{},
+            unused(file, *found,
+                   fmt::format("it is the {} and the file does not say how many samples a pixel has; the noise of "
+                               "{} counts as error",
+                               name_of(found->companion), layer.name))};
+  to_variance_of_mean(values, found->companion, mean, counts);
+  return {std::move(values), {}};
 }
 
 Image read_cost(const std::string& path) {

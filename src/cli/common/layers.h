@@ -27,11 +27,17 @@ const Layer* color_layer(const LayeredFile& file);
 /// The same; throws Error{Missing} where there is none.
 const Layer& require_color_layer(const LayeredFile& file);
 
-/// The variance of the layer's mean with as many channels, or nullptr.
-const Layer* variance_layer(const LayeredFile& file, const Layer& layer);
-
 /// All channels of a layer.
 Image read_layer(const LayeredFile& file, const Layer& layer);
+
+/// The variance of a layer's mean as far as its file tells it.
+struct KnownVariance {
+  Image variance;    ///< Empty where it is unknown.
+  std::string note;  ///< Why a layer with it is not used; empty otherwise.
+};
+
+/// The variance of the mean of a layer, whose values are `mean`, with as many channels.
+KnownVariance read_variance(const LayeredFile& file, const Layer& layer, const Image& mean);
 
 /// The cost of a sample in each pixel, 1 channel: a render-time pass, or the only channel of the file.
 /// Throws Error{Missing} where there is neither.

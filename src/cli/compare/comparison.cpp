@@ -16,12 +16,6 @@ bool is_color(const Layer& layer) {
          info_of(layer.role).values == Values::Radiance;
 }
 
-/// The variance of the reference's mean; empty where the file has none.
-Image variance_of(const LayeredFile& reference, const Layer& layer) {
-  const Layer* variance = variance_layer(reference, layer);
-  return variance ? read_layer(reference, *variance) : Image();
-}
-
 Comparison compare_layers(const LayeredFile& image, const Layer& layer, const LayeredFile& reference,
                           const Layer& reference_layer, bool with_images, Progress& progress) {
   Image x = read_layer(image, layer), r = read_layer(reference, reference_layer);
@@ -29,8 +23,8 @@ Comparison compare_layers(const LayeredFile& image, const Layer& layer, const La
     throw Error(ExitCode::BadInput,
                 fmt::format("{}: layer '{}' has {} x {} pixels, the reference has {} x {}", image.info.path, layer.name,
                             x.width(), x.height(), r.width(), r.height()));
-  Comparison found{
-      image.info.path, layer.name, score(x, r, variance_of(reference, reference_layer)), 0, {}, {}, {}, {}};
+  KnownVariance known = read_variance(reference, reference_layer, r);
+  Comparison found{image.info.path, layer.name, score(x, r, known.variance), 0, std::move(known.note), {}, {}, {}, {}};
   Image map = flip(x, r, progress);
   found.flip = std::accumulate(map.plane(0), map.plane(0) + map.pixels(), 0.0) / static_cast<double>(map.pixels());
   if (with_images) {

@@ -13,7 +13,8 @@ namespace polyrecon {
 struct Comparison {
   std::string image, layer;  ///< Path of the image, whole name of the layer.
   Score score;
-  double flip = 0;  ///< Mean of HDR-FLIP.
+  double flip = 0;   ///< Mean of HDR-FLIP.
+  std::string note;  ///< Why the reference's variance is not used; empty where it is, or where there is none.
   /// Radiance of both (3 channels), FLIP and relative error of each pixel (1 channel). Empty unless compare_files was
   /// called with with_images.
   Image picture, reference, flip_map, error;

@@ -15,6 +15,14 @@ using Json = nlohmann::ordered_json;
 
 Json number(double v) { return std::isfinite(v) ? Json(v) : Json(); }
 
+/// Each note once.
+std::vector<std::string> notes_of(const std::vector<Comparison>& comparisons) {
+  std::vector<std::string> notes;
+  for (const Comparison& c : comparisons)
+    if (!c.note.empty() && std::find(notes.begin(), notes.end(), c.note) == notes.end()) notes.push_back(c.note);
+  return notes;
+}
+
 std::string file_name(const std::string& path) { return std::filesystem::path(path).filename().string(); }
 
 }  // namespace
@@ -24,6 +32,7 @@ std::string comparison_text(const std::vector<Comparison>& comparisons) {
   for (const Comparison& c : comparisons)
     text += fmt::format("{}: {}  relMSE {:.5f}  trimmed {:.5f}  energy {:+.5f}  FLIP {:.4f}  bad {}\n", c.image,
                         shown_layer(c), c.score.relative_mse, c.score.trimmed, c.score.energy, c.flip, c.score.bad);
+  for (const std::string& note : notes_of(comparisons)) text += fmt::format("note: {}\n", note);
   return text;
 }
 
@@ -37,7 +46,7 @@ Json comparison_json(const std::string& reference, const std::vector<Comparison>
                        {"energy", number(c.score.energy)},
                        {"FLIP", number(c.flip)},
                        {"bad", c.score.bad}});
-  return {{"reference", reference}, {"results", results}};
+  return {{"reference", reference}, {"results", results}, {"notes", notes_of(comparisons)}};
 }
 
 std::vector<std::string> layers_of(const std::vector<Comparison>& comparisons) {

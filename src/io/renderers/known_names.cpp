@@ -39,6 +39,15 @@ bool any_renderer_with(const Condition& condition) {
   return std::any_of(renderers().begin(), renderers().end(), condition);
 }
 
+bool has_role(const std::vector<PassName>& names, Role role) {
+  return std::any_of(names.begin(), names.end(), [&](const PassName& known) { return known.role == role; });
+}
+
+bool has_name(const std::vector<PassName>& names, Role role, const std::string& name) {
+  return std::any_of(names.begin(), names.end(),
+                     [&](const PassName& known) { return known.role == role && same_name(known.name, name); });
+}
+
 }  // namespace
 
 std::optional<PassClass> classify_pass(const std::string& pass) {
@@ -52,6 +61,16 @@ std::optional<PassClass> classify_letter(const std::string& letter) {
     for (const PassName& known : renderer.letters)
       if (known.name == letter) return PassClass{known.role, known.rank, renderer.name};
   return std::nullopt;
+}
+
+bool can_have(const std::string& beauty, Role role) {
+  bool is_known = false;
+  for (const Renderer& renderer : renderers()) {
+    if (!has_name(renderer.passes, Role::Beauty, beauty)) continue;
+    is_known = true;
+    if (has_role(renderer.passes, role) || has_role(renderer.letters, role)) return true;
+  }
+  return !is_known;
 }
 
 bool same_name(std::string_view a, std::string_view b) { return normalised(a) == normalised(b); }

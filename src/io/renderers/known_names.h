@@ -24,6 +24,9 @@ std::optional<PassClass> classify_pass(const std::string& pass);
 /// The same for the only channel of a layer, by its letter.
 std::optional<PassClass> classify_letter(const std::string& letter);
 
+/// Whether a renderer that gives its beauty this name has a name for the role. True if no renderer is known to.
+bool can_have(const std::string& beauty, Role role);
+
 /// Whether a and b are one name: they are compared without case, blanks, '_' and '-'.
 bool same_name(std::string_view a, std::string_view b);
 

@@ -1,0 +1,96 @@
+#include "io/pass_values.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "io/cie_xyz.h"
+#include "io/renderers/known_names.h"
+
+namespace polyrecon {
+namespace {
+
+Image repeated(const Image& gray, int channels) {
+  Image out(gray.width(), gray.height(), channels);
+  for (int c = 0; c < channels; ++c) std::copy_n(gray.plane(0), gray.pixels(), out.plane(c));
+  return out;
+}
+
+Image averaged(const Image& image, bool is_variance) {
+  Image out(image.width(), image.height(), 1);
+  for (std::size_t i = 0; i < image.pixels(); ++i) {
+    double sum = 0;
+    for (int c = 0; c < image.channels(); ++c) {
+      const double value = image.plane(c)[i];
+      sum += is_variance ? std::sqrt(value) : value;
+    }
+    const double mean = sum / image.channels();
+    out.plane(0)[i] = static_cast<Real>(is_variance ? mean * mean : mean);
+  }
+  return out;
+}
+
+/// The unbiased variance of the mean of n samples, (m2 - mean^2) / (n - 1), at least 0; m2 is their mean square.
+double variance_from_moment(double m2, double mean, double n) {
+  const double spread = m2 - mean * mean;
+  return spread < 0 ? 0 : spread / std::max(n - 1, 1.0);
+}
+
+void from_sample_variance(Image& values, const SampleCounts& counts) {
+  for (int c = 0; c < values.channels(); ++c)
+    for (std::size_t i = 0; i < values.pixels(); ++i) {
+      Real& v = values.plane(c)[i];
+      v = static_cast<Real>(v / std::max(counts.at(i), 1.0));
+    }
+}
+
+void from_moment(Image& values, const Image& mean, const SampleCounts& counts) {
+  for (int c = 0; c < values.channels(); ++c)
+    for (std::size_t i = 0; i < values.pixels(); ++i) {
+      Real& v = values.plane(c)[i];
+      v = static_cast<Real>(variance_from_moment(v, mean.plane(std::min(c, mean.channels() - 1))[i], counts.at(i)));
+    }
+}
+
+void from_moment_of_xyz(Image& values, const Image& mean, const SampleCounts& counts) {
+  for (std::size_t i = 0; i < values.pixels(); ++i) {
+    const Triple xyz = product(rgb_to_xyz, {mean.plane(0)[i], mean.plane(1)[i], mean.plane(2)[i]});
+    Triple deviation{};
+    for (std::size_t c = 0; c < 3; ++c)
+      deviation[c] = std::sqrt(variance_from_moment(values.plane(static_cast<int>(c))[i], xyz[c], counts.at(i)));
+    const Triple rgb = product(xyz_to_rgb, deviation);
+    for (std::size_t c = 0; c < 3; ++c) values.plane(static_cast<int>(c))[i] = static_cast<Real>(rgb[c] * rgb[c]);
+  }
+}
+
+}  // namespace
+
+Image with_channels(Image image, int channels, bool is_variance) {
+  if (image.empty() || image.channels() == channels) return image;
+  return channels == 1 ? averaged(image, is_variance) : repeated(image, channels);
+}
+
+bool to_sample_counts(Image& values, const std::string& pass, double everywhere) {
+  if (!is_sample_fraction(pass)) return true;
+  if (everywhere <= 0) return false;
+  for (std::size_t i = 0; i < values.pixels(); ++i)
+    values.plane(0)[i] = static_cast<Real>(values.plane(0)[i] * everywhere);
+  return true;
+}
+
+void to_variance_of_mean(Image& values, Companion kind, const Image& mean, const SampleCounts& counts) {
+  switch (kind) {  // without a default, so that the compiler names a kind that is missing
+    case Companion::VarianceOfSample:
+      return from_sample_variance(values, counts);
+    case Companion::SecondMoment:
+      return from_moment(values, mean, counts);
+    case Companion::SecondMomentOfXyz:
+      return from_moment_of_xyz(values, mean, counts);
+    case Companion::VarianceOfMean:
+    case Companion::Mean:
+    case Companion::HalfA:
+    case Companion::HalfB:
+      return;
+  }
+}
+
+}  // namespace polyrecon
