@@ -72,6 +72,7 @@ const std::vector<OptionCase> cases{
     {Changes::Result, {"--view-layer", "Other"}},
     {Changes::Result, {"--view", "right"}},
     {Changes::Result, {"--variance-kind", "sample"}},
+    {Changes::Result, {"--wrap", "x"}},
     {Changes::Result, {"--samples", "16"}},
     {Changes::Run, {"--frames", "1-3"}, {"--frames", "2"}, {"-i", "shot.####.exr", "-o", "out.####.exr"}},
     {Changes::Result, {"--frame-radius", "1"}, {}, sequence},
