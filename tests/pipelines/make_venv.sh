@@ -17,7 +17,13 @@ fi
 "$python" -c 'import importlib.util as u, sys; sys.exit(not (u.find_spec("mitsuba") and u.find_spec("pyluxcore")))' ||
   "$python" -m pip install --quiet --disable-pip-version-check --no-deps mitsuba==3.9.1 drjit==1.5.0 pyluxcore==2.11.2
 blender_5_2=build/venv_blender_5_2
-python_3_13=$(command -v python3.13 || ls -d "${PYENV_ROOT:-$HOME/.pyenv}"/versions/3.13.*/bin/python3 2>/dev/null | tail -1 || true)
+python_3_13=
+for candidate in python3.13 "${PYENV_ROOT:-$HOME/.pyenv}"/versions/3.13.*/bin/python3; do
+  if "$candidate" -c 'import ensurepip' 2>/dev/null; then  # pyenv's python3.13 may be one that does not run
+    python_3_13=$candidate
+    break
+  fi
+done
 if [ -n "$python_3_13" ]; then
   [ -x "$blender_5_2/bin/python3" ] || "$python_3_13" -m venv "$blender_5_2"
   "$blender_5_2/bin/python3" -c 'import importlib.util as u, sys; sys.exit(not u.find_spec("bpy"))' ||
