@@ -8,7 +8,7 @@
 
 namespace polyrecon {
 
-/// The prior, a denoised layer of the file, after its correction; 3 channels each.
+/// The prior, a picture that another denoiser made, after its correction; 3 channels each.
 struct CorrectedPrior {
   Image value;
   Image sharpening;  ///< The part of value that sharpen_to added.

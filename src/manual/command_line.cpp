@@ -1,6 +1,7 @@
 #include "manual/command_line.h"
 
 #include <algorithm>
+#include <cctype>
 #include <sstream>
 
 namespace polyrecon {
@@ -34,13 +35,22 @@ void split_footer(const std::string& footer, CommandInfo& info) {
   }
 }
 
+/// Whether a word of an option's type stands for something to type: "FILE" in "LAYER|FILE".
+bool is_placeholder(const std::string& word) {
+  const auto is = [&](int (*kind)(int)) {
+    return std::any_of(word.begin(), word.end(), [&](unsigned char c) { return kind(c) != 0; });
+  };
+  return is(std::isupper) && !is(std::islower);
+}
+
 }  // namespace
 
 std::vector<std::string> OptionInfo::choices() const {
   std::vector<std::string> found;
   if (value.find('|') == std::string::npos) return found;
   std::istringstream text(value);
-  for (std::string name; std::getline(text, name, '|');) found.push_back(name);
+  for (std::string name; std::getline(text, name, '|');)
+    if (!is_placeholder(name)) found.push_back(name);
   return found;
 }
 

@@ -130,15 +130,15 @@ Image average(const HalfPair& pair, const Candidate& solved) {
   return out;
 }
 
-/// Adds the denoised layer of the file as a candidate, unless it is the noisy input itself.
+/// Adds the prior as a candidate, unless it is the noisy input itself.
 Candidate use_prior(Pass pass, const HalfPair& pair, const ErrorMap& error, const SelectParams& params,
                     std::size_t max_bytes, Candidate solved, std::vector<Decision>& decisions) {
-  const std::string layer = "layer '" + pass.name;
+  const std::string name = "prior '" + pass.name + "'";
   Image reconstruction = average(pair, solved);
   const CorrectedPrior prior = correct_prior(std::move(pass), pair, reconstruction);
   const bool denoised = noise_in_prior(prior.value, pair, reconstruction) < most_noise_in_prior;
   reconstruction = {};
-  decisions.push_back({"prior", denoised, layer + (denoised ? "'" : "' is the noisy image itself")});
+  decisions.push_back({"prior", denoised, name + (denoised ? "" : " is the noisy image itself")});
   return denoised ? add_prior(pair, prior, error.mse, std::move(solved), params, max_bytes) : solved;
 }
 

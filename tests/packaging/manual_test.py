@@ -69,6 +69,7 @@ class Manual(unittest.TestCase):
             ("polyrecon denoise --quality dr\t", "draft "),
             ("polyrecon denoise --progress js\t", "json "),
             ("polyrecon denoise -i noi\t", "noisy\\ render.exr"),
+            ("polyrecon denoise --prior noi\t", "noisy\\ render.exr"),
             ("polyrecon inspect noi\t", "noisy\\ render.exr"),
             ("polyrecon --vers\t", "--version "),
         ):
@@ -125,6 +126,7 @@ class Manual(unittest.TestCase):
         self.assertEqual(complete("polyrecon denoise --qual"), ["--quality"])
         self.assertEqual(complete("polyrecon denoise --quality dr"), ["draft"])
         self.assertEqual(complete("polyrecon denoise -i noi"), ["noisy render.exr"])
+        self.assertEqual(complete("polyrecon denoise --prior noi"), ["noisy render.exr"])
         self.assertEqual(complete("polyrecon inspect noi"), ["noisy render.exr"])
 
 

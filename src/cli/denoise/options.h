@@ -31,7 +31,7 @@ struct DenoiseOptions {
   std::vector<std::string> inputs;  ///< One file, one pattern, or several files.
   OutputPaths outputs;              ///< Files, or patterns and folders where there are several inputs.
   std::string frames;               ///< "1-10,20-40x2"; empty: all frames of the pattern that exist.
-  std::vector<std::string> roles;   ///< "role=LAYER"
+  std::vector<std::string> roles;   ///< "role=LAYER": those of --map, then those of --prior, whatever the order typed.
   ReadOptions read;
   std::optional<Quality> quality;
   std::optional<int> stages, order;
