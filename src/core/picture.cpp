@@ -104,6 +104,19 @@ class Counts {
   std::vector<int> sums_;
 };
 
+/// The mask without pixels that are in no square of 2 x 2 of its pixels: what a few samples missed by chance.
+Mask without_lone_pixels(const Rect& bounds, const Mask& mask) {
+  const auto width = static_cast<std::size_t>(bounds.x1);
+  Mask out(mask.size(), 0);
+  for (int y = 0; y + 1 < bounds.y1; ++y)
+    for (std::size_t x = 0; x + 1 < width; ++x) {
+      const std::size_t i = static_cast<std::size_t>(y) * width + x;
+      if (mask[i] && mask[i + 1] && mask[i + width] && mask[i + width + 1])
+        out[i] = out[i + 1] = out[i + width] = out[i + width + 1] = 1;
+    }
+  return out;
+}
+
 /// Takes the pixels out of the mask around which it is mixed with others.
 void leave_mixtures(const Rect& bounds, Mask& mask) {
   const Counts speckles(bounds, [&](int x, int y) { return is_speckle(mask, bounds, x, y); });
@@ -125,6 +138,7 @@ Image picture_of(const Frame& frame) {
   Mask empty = empty_pixels(frame);
   if (std::find(empty.begin(), empty.end(), 1) == empty.end()) return {};
   leave_mixtures(frame.beauty.mean.bounds(), empty);
+  empty = without_lone_pixels(frame.beauty.mean.bounds(), empty);
   const auto voids = static_cast<std::size_t>(std::count(empty.begin(), empty.end(), 1));
   if (voids == 0 || voids == empty.size()) return {};
   Image picture(frame.width(), frame.height(), 1);

@@ -122,6 +122,16 @@ TEST(Void, IsNotWhatSamplesMissedByChance) {
   EXPECT_EQ(inside, volume.area());
 }
 
+TEST(Void, IsNoLonePixel) {
+  test::Scene scene = cut_to(region, 72, 50);
+  scene.frame.features.clear();
+  scene.frame.alpha.at(30, 20, 0) = 0;
+  for (int c = 0; c < 3; ++c) scene.frame.beauty.mean.at(30, 20, c) = 0;
+  const Image picture = picture_of(scene.frame);
+  EXPECT_TRUE(in_picture(picture, picture.index(30, 20)));
+  EXPECT_FALSE(in_picture(picture, picture.index(9, 20)));
+}
+
 /// At a hard border the picture was cut off, at a soft one it ends.
 TEST(Void, IsASampleOfThePictureAtSoftBordersOnly) {
   test::Scene scene = cut_to(region, 72, 50);
