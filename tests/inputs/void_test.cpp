@@ -69,8 +69,8 @@ TEST(Void, IsNotWhereAnyPassShowsSomething) {
   frame.features[0].pass.mean.at(2, 3, 1) = Real(0.1);
   EXPECT_EQ(picture_box(frame), (Rect{2, 3, 58, 40}));
   frame = scene.frame;
-  frame.alpha.at(70, 49, 0) = Real(0.01);
-  EXPECT_EQ(picture_box(frame), (Rect{10, 8, 71, 50}));
+  frame.alpha.at(68, 46, 0) = Real(0.01);
+  EXPECT_EQ(picture_box(frame), (Rect{10, 8, 69, 47}));
   frame = scene.frame;
   frame.aovs.push_back({"Glow", Image(72, 50, 3), {}, {}, {}});
   frame.aovs[0].mean.at(5, 45, 2) = 1;
