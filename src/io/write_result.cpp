@@ -71,12 +71,16 @@ const Layer& layer_named(const FrameSource& source, const std::string& name) {
   return *found;
 }
 
-/// "ViewLayer.Combined.R" becomes "ViewLayer.Combined Noisy.R". A channel without a layer gets the layer's pass in
-/// front.
+/// "ViewLayer.Combined.R" becomes "ViewLayer.Combined Noisy.R", and "Combined.right.R" "Combined Noisy.right.R". A
+/// channel without a layer gets the layer's pass in front.
 std::string noisy_name(const Layer& layer, const std::string& channel) {
   const auto dot = channel.rfind('.');
-  if (dot == std::string::npos) return layer.pass + noisy_suffix + "." + word_of(layer, channel);
-  return channel.substr(0, dot) + noisy_suffix + channel.substr(dot);
+  const std::string word = "." + word_of(layer, channel), pass = layer.pass + noisy_suffix;
+  if (dot == std::string::npos) return pass + word;
+  const std::string prefix = channel.substr(0, dot);
+  const bool has_view_behind = !layer.view.empty() && prefix.substr(prefix.rfind('.') + 1) == layer.view;
+  if (!has_view_behind) return prefix + noisy_suffix + word;
+  return (layer.view_layer.empty() ? "" : layer.view_layer + ".") + pass + "." + layer.view + word;
 }
 
 std::vector<std::string> channels_to_replace(const Layer& layer, const Replacement& replacement) {

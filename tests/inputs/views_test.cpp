@@ -6,6 +6,7 @@
 
 #include "io/exr_fixture.h"
 #include "polyrecon/read_frame.h"
+#include "polyrecon/write_result.h"
 
 namespace polyrecon {
 namespace {
@@ -78,6 +79,27 @@ TEST(InputViews, NamesOfOpenExrAndOfNukeWithAndWithoutAList) {
     expect_eyes(write_exr(folder / "without.exr", {part}));
     set_views(part);
     expect_eyes(write_exr(folder / "with.exr", {part}));
+  }
+}
+
+TEST(InputViews, TheNoisyLayersThatAreKeptStayInTheirViews) {
+  const TemporaryFolder folder;
+  for (const std::string right : {"right", "Combined.right", "V.Combined.right", "right.beauty"}) {
+    TestPart part = part_of({{"", left_beauty}, {right, right_beauty}});
+    set_views(part);
+    ReadOptions options;
+    options.view = "right";
+    const ReadResult read = read_frame(write_exr(folder / "in.exr", {part}), options);
+    WriteOptions keep;
+    keep.keep_noisy = true;
+    write_result(read.source, {{read.frame.beauty.name, Image(8, 6, 3, Real(7)), false, {0, 0, 8, 6}}},
+                 folder / "out.exr", keep);
+    const Frame again = read_frame(folder / "out.exr", options).frame;
+    EXPECT_TRUE(holds(again.beauty.mean, right_beauty)) << right;
+    ASSERT_EQ(again.prior.mean.channels(), 3) << right;
+    EXPECT_EQ(again.prior.mean.at(0, 0, 0), 7) << right;
+    options.view = "left";
+    EXPECT_TRUE(holds(read_frame(folder / "out.exr", options).frame.beauty.mean, left_beauty)) << right;
   }
 }
 
