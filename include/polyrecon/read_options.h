@@ -33,6 +33,7 @@ struct RoleMapping {
   Companion companion = Companion::Mean;
   std::string
       layer;  ///< Name of a layer (whole, or within the view layer), whole name of a channel, or path of a file.
+  std::string file;  ///< Path of the file where no layer has that name, for a frame of a sequence; empty: `layer`.
 };
 
 /// Parses "ROLE=LAYER". ROLE is the name of a role that one layer is chosen for (roles.h), or a companion: variance,

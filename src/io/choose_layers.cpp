@@ -162,21 +162,22 @@ void require_fitting(const FrameSource& source, const Layer& layer, const RoleMa
 /// the layer belongs to another picture.
 int mapped_layer(LayerChoice& choice, const RoleMapping& mapping, const ReadOptions& options, int files_of_frame) {
   FrameSource& source = choice.source;
+  const std::string& file = mapping.file.empty() ? mapping.layer : mapping.file;
   int index = find_layer(source, mapping.layer);
   std::error_code failure;
   const bool added = index >= 0 && source.layers[static_cast<std::size_t>(index)].file >= files_of_frame;
-  if ((index < 0 || added) && std::filesystem::is_regular_file(mapping.layer, failure)) {
-    index = add_file(source, mapping.layer, mapping.role, options.limits);
+  if ((index < 0 || added) && std::filesystem::is_regular_file(file, failure)) {
+    index = add_file(source, file, mapping.role, options.limits);
     Layer& layer = source.layers[static_cast<std::size_t>(index)];
     const bool of_another = source.pictures.size() > 1 && !(place_of(layer) == place_of(source)) &&
                             !(place_of(source) == source.pictures.front());
-    rename_layer(layer, mapping.layer);
+    rename_layer(layer, file);
     if (of_another) index = elsewhere;
   }
-  if (index == nowhere) no_such_layer(source, mapping.layer);
+  if (index == nowhere) no_such_layer(source, file);
   if (index == elsewhere)
-    choice.notes.push_back(fmt::format("{} is not used as {} of {}: it has no such layer", mapping.layer,
-                                       name_of(mapping.role), name_of(place_of(source))));
+    choice.notes.push_back(fmt::format("{} is not used as {} of {}: it has no such layer", file, name_of(mapping.role),
+                                       name_of(place_of(source))));
   return index;
 }
 
@@ -410,7 +411,8 @@ FrameSource open_source(const std::string& path, const ReadLimits& limits, std::
   if (!is_one_bare_image(source)) return source;
   const auto siblings = find_siblings(path);
   if (siblings.empty()) return source;
-  source.layers.front().name = source.layers.front().pass = pass_in_file_name(path);
+  if (const std::string pass = pass_in_file_name(path); !pass.empty())
+    source.layers.front().name = source.layers.front().pass = pass;
   std::vector<std::string> names;
   for (const SiblingFile& sibling : siblings) {
     const int added = add_file(source, sibling.path, Role::Other, limits);

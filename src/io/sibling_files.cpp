@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <regex>
 #include <system_error>
+#include <utility>
 
 #include "io/channel_names.h"
 #include "io/renderers/known_names.h"
@@ -27,29 +29,66 @@ bool is_pass_or_companion(const std::string& word) {
   });
 }
 
-}  // namespace
-
-std::string pass_in_file_name(const std::string& path) {
-  const std::string stem = fs::path(path).stem().string();
-  for (std::size_t begin = 0; begin < stem.size(); ++begin)
-    if (is_pass(stem.substr(begin))) return stem.substr(begin);
+/// The longest known pass at the end of the text.
+std::string pass_at_end(const std::string& text) {
+  for (std::size_t begin = 0; begin < text.size(); ++begin)
+    if (is_pass(text.substr(begin))) return text.substr(begin);
   return {};
 }
 
+/// The parts of a file's name, its extension left out: "shot_" "beauty" ".0001".
+struct NameParts {
+  std::string before, pass, after;
+};
+
+/// The pass is at the end of the name, or numbers of a frame and a version follow it: ".0001", "_v02.-0005". It is
+/// empty where no pass is known.
+NameParts parts_of(const std::string& path) {
+  static const std::regex numbers(R"((.*?)((?:[._-]?[vV]?-?\d+)+))");
+  const std::string stem = fs::path(path).stem().string();
+  NameParts parts{stem, pass_at_end(stem), {}};
+  std::smatch match;
+  if (parts.pass.empty() && std::regex_match(stem, match, numbers)) parts = {match[1], pass_at_end(match[1]), match[2]};
+  parts.before.resize(parts.before.size() - parts.pass.size());
+  return parts;
+}
+
+/// What stands between the two ends of the text; empty where it has no such ends, or nothing between them.
+std::string between(const std::string& before, const std::string& text, const std::string& after) {
+  const std::size_t ends = before.size() + after.size();
+  if (text.size() <= ends || text.compare(0, before.size(), before) != 0 ||
+      text.compare(text.size() - after.size(), after.size(), after) != 0)
+    return {};
+  return text.substr(before.size(), text.size() - ends);
+}
+
+/// The feature that the word adds to the name of a beauty without a pass, "_albedo" or ".Normal"; else empty.
+std::string added_feature(const std::string& word) {
+  if (word.find_first_of("._-") != 0) return {};
+  const std::string pass = word.substr(1);
+  return is_pass(pass) && info_of(classify_pass(pass)->role).feature ? pass : std::string();
+}
+
+}  // namespace
+
+std::string pass_in_file_name(const std::string& path) { return parts_of(path).pass; }
+
 std::vector<SiblingFile> find_siblings(const std::string& path) {
   const fs::path self(path);
-  const std::string pass = pass_in_file_name(path), stem = self.stem().string();
-  if (pass.empty()) return {};
-  const std::string shared = stem.substr(0, stem.size() - pass.size());
+  const NameParts parts = parts_of(path);
   std::vector<SiblingFile> siblings;
   std::error_code failure;
   const fs::path folder = self.has_parent_path() ? self.parent_path() : fs::path(".");
   for (fs::directory_iterator entry(folder, failure), end; !failure && entry != end; entry.increment(failure)) {
     const std::string other = entry->path().stem().string();
-    if (entry->path().extension() != self.extension() || other == stem || other.compare(0, shared.size(), shared) != 0)
-      continue;
-    if (const std::string word = other.substr(shared.size()); is_pass_or_companion(word))
+    if (entry->path().extension() != self.extension() || other == self.stem().string()) continue;
+    const std::string word = between(parts.before, other, parts.after);
+    if (parts.pass.empty()) {
+      if (std::string feature = added_feature(word); !feature.empty())
+        siblings.push_back({entry->path().string(), std::move(feature)});
+    } else if (is_pass_or_companion(word)) {
       siblings.push_back({entry->path().string(), word});
+    }
   }
   std::sort(siblings.begin(), siblings.end(), [](const auto& a, const auto& b) { return a.path < b.path; });
   return siblings;

@@ -16,10 +16,11 @@ struct SiblingFile {
 
 /// The other passes of a render that has a file for each: files in the folder of path with the same extension, whose
 /// names differ from that of path only in a pass that some renderer is known to write ("Color" | "Albedo", "NormalB").
-/// Empty where the name of path does not end in a known pass.
+/// The numbers of a frame and a version may follow the pass: "shot_beauty.0001" | "shot_albedo.0001". Where the name of
+/// path has no known pass, features that are added to it are found: "shot.0001" | "shot_albedo.0001".
 std::vector<SiblingFile> find_siblings(const std::string& path);
 
-/// The pass at the end of the file's name ("Color"); empty where there is none.
+/// The pass in the file's name ("Color"), before its numbers if there are any; empty where there is none.
 std::string pass_in_file_name(const std::string& path);
 
 }  // namespace polyrecon

@@ -10,6 +10,7 @@
 #include <thread>
 #include <utility>
 
+#include "cli/common/checks.h"
 #include "cli/denoise/finished.h"
 #include "polyrecon/error.h"
 #include "polyrecon/reconstruct.h"
@@ -70,16 +71,18 @@ auto FrameFetcher::wait_for(const std::string& path, double seconds, const Attem
 std::optional<LoadedFrame> FrameFetcher::fetch(const FrameFiles& files) {
   return wait_for(files.input, job_.run.wait, [&]() -> std::optional<LoadedFrame> {
     if (job_.run.skip_existing && is_finished(job_, files)) return std::nullopt;
-    return load_with_neighbours(files, job_.read);
+    if (job_.sample_map && !job_.sample_map->cost.empty()) require_readable(sample_map_for(job_, files).cost);
+    return load_with_neighbours(files, read_options_for(job_, files.number_in_names()));
   });
 }
 
 LoadedFrame FrameFetcher::fetch(const FrameFiles& files, const PictureChoice& picture) {
-  return load_with_neighbours(files, with_picture(job_.read, picture));
+  return load_with_neighbours(files, with_picture(read_options_for(job_, files.number_in_names()), picture));
 }
 
 LoadedFrame FrameFetcher::load_with_neighbours(const FrameFiles& files, const ReadOptions& options) {
   LoadedFrame loaded = load_frame(files.input, options);
+  for (std::string& note : fixed_file_notes(job_, loaded.in.source)) loaded.in.notes.push_back(std::move(note));
   if (!files.neighbours.empty()) add_neighbours(files, loaded);
   return loaded;
 }
@@ -109,7 +112,7 @@ FrameFetcher::Prepared FrameFetcher::neighbour(const NeighbourFile& file, Loaded
   Cancellable progress(cancelled_);
   try {
     return wait_for(file.path, patience, [&] {
-      const LoadedFrame frame = load_frame(file.path, with_picture(job_.read, loaded.picture));
+      const LoadedFrame frame = load_frame(file.path, with_picture(read_options_for(job_, file.frame), loaded.picture));
       return prepare_neighbour(frame.in.frame, file.number, job_.params, progress);
     });
   } catch (const Error& error) {

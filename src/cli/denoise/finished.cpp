@@ -24,13 +24,28 @@ bool has_attribute(const FileInfo& file, const std::string& attribute, const std
   return found && found->value == value;
 }
 
-}  // namespace
-
-std::string input_identity(const FrameFiles& files, const FrameSource& source) {
+std::string identity_of(const FrameSource& source) {
   std::string text;
   for (const FileInfo& file : source.files) text += (text.empty() ? "" : "; ") + file_identity(file.path);
+  return text;
+}
+
+/// Of all files with its passes; of the one that is named where they cannot be found.
+std::string neighbour_identity(const Job& job, const NeighbourFile& neighbour) {
+  try {
+    return identity_of(read_frame_header(neighbour.path, read_options_for(job, neighbour.frame)).source);
+  } catch (const Error&) {
+    return file_identity(neighbour.path);
+  }
+}
+
+}  // namespace
+
+std::string input_identity(const Job& job, const FrameFiles& files, const FrameSource& source) {
+  std::string text = identity_of(source);
   for (const NeighbourFile& neighbour : files.neighbours)
-    if (exists(neighbour.path)) text += fmt::format("; {:+d}: {}", neighbour.offset, file_identity(neighbour.path));
+    if (exists(neighbour.path))
+      text += fmt::format("; {:+d}: {}", neighbour.offset, neighbour_identity(job, neighbour));
   return text;
 }
 
@@ -38,7 +53,7 @@ bool is_finished(const Job& job, const FrameFiles& files) {
   const OutputPaths& outputs = files.outputs;
   for (const OutputOption& option : output_options())
     if (const std::string& path = outputs.*option.path; !path.empty() && !exists(path)) return false;
-  const FrameSource source = read_frame_header(files.input, job.read).source;
+  const FrameSource source = read_frame_header(files.input, read_options_for(job, files.number_in_names())).source;
   std::vector<OutputPaths> of_pictures{outputs};
   for (std::size_t p = 1; p < source.pictures.size(); ++p)
     of_pictures.push_back(maps_of(outputs, {source.pictures[p], {}}));
@@ -46,7 +61,7 @@ bool is_finished(const Job& job, const FrameFiles& files) {
     const FileInfo picture = describe_file(outputs.picture);
     if (!has_attribute(picture, "polyrecon/version", POLYRECON_VERSION) ||
         !has_attribute(picture, "polyrecon/settings", settings_of(job, files)) ||
-        !has_attribute(picture, "polyrecon/input", input_identity(files, source)))
+        !has_attribute(picture, "polyrecon/input", input_identity(job, files, source)))
       return false;
     for (const OutputPaths& paths : of_pictures)
       for (const std::string* path : {&paths.picture, &paths.error_map, &paths.order_map, &paths.sample_map})

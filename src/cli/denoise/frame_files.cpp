@@ -38,7 +38,7 @@ void add_neighbours(const FramePattern& inputs, int radius, std::vector<FrameFil
     for (int k = -radius; k <= radius; ++k)
       if (k != 0)
         files.neighbours.push_back(
-            {k, *files.frame + k, inputs.path(*files.frame + k), worked.count(*files.frame + k) > 0});
+            {k, *files.frame + k, *files.frame + k, inputs.path(*files.frame + k), worked.count(*files.frame + k) > 0});
 }
 
 /// Adds the files before and after in the list.
@@ -46,9 +46,10 @@ void add_neighbours(int radius, std::vector<FrameFiles>& frames) {
   const int count = static_cast<int>(frames.size());
   for (int n = 0; n < count; ++n)
     for (int k = std::max(-radius, -n); k <= std::min(radius, count - 1 - n); ++k)
-      if (k != 0)
-        frames[static_cast<std::size_t>(n)].neighbours.push_back(
-            {k, n + k, frames[static_cast<std::size_t>(n + k)].input, true});
+      if (k != 0) {
+        const FrameFiles& other = frames[static_cast<std::size_t>(n + k)];
+        frames[static_cast<std::size_t>(n)].neighbours.push_back({k, n + k, other.frame, other.input, true});
+      }
 }
 
 std::vector<FrameFiles> frames_of_pattern(const DenoiseOptions& o, const FramePattern& inputs, int radius) {
@@ -131,6 +132,8 @@ const std::array<OutputOption, 5>& output_options() {
 }
 
 std::string FrameFiles::label() const { return frame ? fmt::format("frame {}", *frame) : input; }
+
+std::optional<int> FrameFiles::number_in_names() const { return frame ? frame : frame_in_name(input); }
 
 FrameList list_frames(const DenoiseOptions& o) {
   const auto pattern = o.inputs.size() == 1 ? FramePattern::parse(o.inputs.front()) : std::nullopt;

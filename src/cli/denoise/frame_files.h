@@ -24,8 +24,9 @@ const std::array<OutputOption, 5>& output_options();
 
 /// The input of a frame before or after, whose samples help.
 struct NeighbourFile {
-  int offset = 0;  ///< In frames; in a list of files, in files.
-  int number = 0;  ///< Its frame number; in a list of files, its index.
+  int offset = 0;            ///< In frames; in a list of files, in files.
+  int number = 0;            ///< Its frame number; in a list of files, its index.
+  std::optional<int> frame;  ///< The number in its name; unknown for a file without one.
   std::string path;
   bool is_denoised_too = false;  ///< Whether the run denoises this frame too.
 };
@@ -40,6 +41,9 @@ struct FrameFiles {
 
   /// Its name in messages: "frame 12", or the input's path.
   std::string label() const;
+
+  /// The number that stands for #### in the names of other inputs: its own, or the one in the input's name.
+  std::optional<int> number_in_names() const;
 };
 
 /// The frames of a run, in order.

@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 #include <utility>
 
 #include "cli/common/checks.h"
+#include "cli/common/frame_names.h"
 #include "cli/common/steps_option.h"
 #include "pipeline/memory.h"
 #include "polyrecon/error.h"
@@ -90,11 +92,42 @@ void check_files(const Job& job) {
       outputs.push_back({option.name, files.outputs.*option.path});
       all_outputs.push_back(files.outputs.*option.path);
     }
-    require_different_files({files.input, job.sample_map ? job.sample_map->cost : std::string()}, outputs);
+    require_different_files({files.input, job.sample_map ? sample_map_for(job, files).cost : std::string()}, outputs);
   }
-  if (job.sample_map && !job.sample_map->cost.empty()) require_readable(job.sample_map->cost);
+  if (job.sample_map && !job.sample_map->cost.empty() && !FramePattern::parse(job.sample_map->cost))
+    require_readable(job.sample_map->cost);
   if (!job.is_sequence && job.run.wait <= 0) require_readable(job.frames.front().input);
   require_writable(all_outputs);
+}
+
+ReadOptions read_options_for(const Job& job, std::optional<int> frame) {
+  ReadOptions read = job.read;
+  for (RoleMapping& mapping : read.map)
+    if (const auto pattern = FramePattern::parse(mapping.layer); pattern && frame) mapping.file = pattern->path(*frame);
+  return read;
+}
+
+SampleMapOptions sample_map_for(const Job& job, const FrameFiles& files) {
+  SampleMapOptions options = *job.sample_map;
+  if (files.frame) options.frame = *files.frame;
+  const auto pattern = FramePattern::parse(options.cost);
+  if (const auto number = files.number_in_names(); pattern && number) options.cost = pattern->path(*number);
+  return options;
+}
+
+std::vector<std::string> fixed_file_notes(const Job& job, const FrameSource& source) {
+  std::set<std::string> fixed;
+  for (const RoleMapping& mapping : job.read.map)
+    for (const FileInfo& file : source.files)
+      if (file.path == mapping.layer && file.path != source.path) fixed.insert(file.path);
+  if (job.sample_map && !job.sample_map->cost.empty() && !FramePattern::parse(job.sample_map->cost))
+    fixed.insert(job.sample_map->cost);
+  std::vector<std::string> notes;
+  if (job.is_sequence)
+    for (const std::string& path : fixed)
+      notes.push_back(
+          fmt::format("{} is used for every frame; if each has its own, put #### or %04d into the name", path));
+  return notes;
 }
 
 std::string settings_of(const Job& job, const FrameFiles& files) {

@@ -54,6 +54,16 @@ Job make_job(const DenoiseOptions& options, const OptionSet& set);
 /// an input too, an input that does not exist, a folder that cannot be written to. Reads no pixel.
 void check_files(const Job& job);
 
+/// How the frame of this number is read: in the names of files that options name, the number replaces ####.
+ReadOptions read_options_for(const Job& job, std::optional<int> frame);
+
+/// The options of a frame's sample map; the job must have some. Its number is written into the map, and replaces ####
+/// in the name of the file of costs.
+SampleMapOptions sample_map_for(const Job& job, const FrameFiles& files);
+
+/// Notes on files that options name without a number, if one of them is used for this frame of a sequence.
+std::vector<std::string> fixed_file_notes(const Job& job, const FrameSource& source);
+
 /// What the result of a frame depends on in addition to its input, as options of the command line. The result and the
 /// report contain it; --skip-existing compares it.
 std::string settings_of(const Job& job, const FrameFiles& files);

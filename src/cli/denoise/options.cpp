@@ -49,7 +49,8 @@ void add_input_options(OptionSet& set, DenoiseOptions& o) {
       ->type_name("LAYER")
       ->expected(1)
       ->take_all();
-  set.add(Changes::Result, "--map", o.roles, "Assign a role to a layer: albedo=ViewLayer.MyAlbedo (repeatable)")
+  set.add(Changes::Result, "--map", o.roles,
+          "Assign a role to a layer, or to a file: albedo=ViewLayer.MyAlbedo, albedo=shot_albedo.####.exr (repeatable)")
       ->type_name("ROLE=LAYER")
       ->expected(1)
       ->take_all();

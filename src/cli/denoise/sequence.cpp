@@ -211,7 +211,8 @@ void run_sequence(const Job& job, RunProgress& progress) {
 void show_dry_run(const Job& job) {
   Outcome outcome(job.run.strict);
   for (const FrameFiles& files : job.frames) try {
-      read_frame_header(files.input, job.read);  // throws where the frame would fail
+      read_frame_header(files.input,
+                        read_options_for(job, files.number_in_names()));  // throws where the frame would fail
       const bool skip = job.run.skip_existing && is_finished(job, files);
       std::fputs(fmt::format("{}: {} -> {}{}\n", files.label(), files.input, files.outputs.picture,
                              skip ? ", finished already: skipped" : "")

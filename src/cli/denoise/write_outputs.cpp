@@ -91,11 +91,6 @@ Image sample_counts(const ReadOptions& options, const ReadResult& in) {
   return everywhere > 0 ? Image(window.width(), window.height(), 1, static_cast<Real>(everywhere)) : Image();
 }
 
-SampleMapOptions with_frame_number(SampleMapOptions options, const FrameFiles& files) {
-  if (files.frame) options.frame = *files.frame;
-  return options;
-}
-
 /// Writes the maps of one picture. Returns notes about them.
 std::vector<std::string> write_maps_of(const Job& job, const FrameFiles& files, const DonePicture& done,
                                        const OutputPaths& outputs, Progress& progress) {
@@ -107,7 +102,7 @@ std::vector<std::string> write_maps_of(const Job& job, const FrameFiles& files, 
   if (!outputs.error_map.empty()) write_error_map(outputs.error_map, result.error, samples, windows);
   if (!job.sample_map) return {};
   return {"sample map: " + make_and_write_sample_map(outputs.sample_map, result.error, samples, windows,
-                                                     with_frame_number(*job.sample_map, files), progress)};
+                                                     sample_map_for(job, files), progress)};
 }
 
 }  // namespace
@@ -117,7 +112,7 @@ std::vector<std::string> write_outputs(const Job& job, const FrameFiles& files,
   const DonePicture& first = pictures.front();
   WriteOptions options;
   options.keep_noisy = job.keep_noisy;
-  options.provenance = {settings_of(job, files), input_identity(files, first.in.source),
+  options.provenance = {settings_of(job, files), input_identity(job, files, first.in.source),
                         first.result.report.estimated_relative_mse};
   std::vector<Replacement> replacements;
   for (const DonePicture& done : pictures)
