@@ -32,7 +32,7 @@ struct RoleMapping {
   Role role = Role::Other;
   Companion companion = Companion::Mean;
   std::string
-      layer;  ///< Name of a layer (whole, or within the view layer), whole name of a channel, or path of a file.
+      layer;         ///< Name of a layer (whole, or within the view layer), whole name of a channel, or path of a file.
   std::string file;  ///< Path of the file where no layer has that name, for a frame of a sequence; empty: `layer`.
 };
 

@@ -44,8 +44,10 @@ struct Report {
   std::size_t repaired_pixels = 0;  ///< Non-finite input pixels replaced before the fit, all passes.
   std::size_t negative_pixels = 0;  ///< Beauty pixels with a negative channel, which are kept.
 
-  std::size_t neighbours = 0;   ///< Frames before and after that were averaged into this one.
-  double neighbour_weight = 0;  ///< Mean over pixels of the neighbours' total weight; the frame itself has weight 1.
+  std::size_t neighbours = 0;         ///< Frames before and after that were averaged into this one.
+  double neighbour_weight = 0;        ///< Mean of the neighbours' total weight at noisy pixels; the frame's own is 1.
+  double neighbour_shared_noise = 0;  ///< Share of the noisy pixels whose noise the neighbours repeat, as
+                                      ///< frames of one random seed do. They do not join there.
 
   std::size_t outliers = 0;                ///< Fireflies: pixels replaced by the median of equation (10).
   std::array<double, 3> outlier_energy{};  ///< Sum of e_o, equation (11), per channel, radiance x pixels.

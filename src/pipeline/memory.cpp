@@ -80,7 +80,10 @@ FrameShape shape_of(const Frame& frame) {
 }
 
 int neighbours_channels(const FrameShape& shape, int neighbours, const Params& params) {
-  return neighbours * static_cast<int>(neighbour_channels(count(reconstructed_channels(shape, params))));
+  // The frame's own geometry and its noise are held until the neighbours have joined.
+  const std::size_t own = neighbours > 0 ? geometry_channels + surfaces : 0;
+  return static_cast<int>(
+      static_cast<std::size_t>(neighbours) * neighbour_channels(count(reconstructed_channels(shape, params))) + own);
 }
 
 int channels_ahead(const FrameShape& shape, const Params& params) {

@@ -47,9 +47,10 @@ void note_outliers(const std::vector<Outlier>& outliers, const Steps& steps, Rep
 void note_neighbours(const JoinCounts& counts, bool with_motion, Report& report) {
   report.neighbours = counts.neighbours;
   report.neighbour_weight = counts.weight;
+  report.neighbour_shared_noise = counts.shared_noise;
   report.decisions.push_back(
       {"neighbours in time", counts.neighbours > 0,
-       counts.neighbours == 0 ? "none of this size"
+       counts.neighbours == 0 ? "none with these layers"
                               : std::to_string(counts.neighbours) + (with_motion ? " frames, along the motion vectors"
                                                                                  : " frames, no motion vectors")});
 }

@@ -225,7 +225,7 @@ std::shared_ptr<const Neighbour> prepare_neighbour(const Frame& frame, int numbe
   Params without_bound = params;
   without_bound.parts.noise_bound = false;
   NoisyHalves halves = split_into_halves(colors, preparation, noise, without_bound, stages);
-  return std::make_shared<Neighbour>(Neighbour{std::move(halves.prepared.pair), frame.motion});
+  return std::make_shared<Neighbour>(Neighbour{std::move(halves.prepared.pair), geometry_of(frame)});
 }
 
 Result reconstruct(Frame& frame, const Params& params, Progress& progress) {
@@ -247,14 +247,22 @@ Result reconstruct(Frame& frame, const std::vector<TimedNeighbour>& neighbours, 
   // The input as two halves of known noise, and the features that describe the scene (equations 1 and 2).
   const Survey survey = survey_input(frame, params, stages);
   const NoiseVariance& noise = survey.noise;
+  Geometry geometry;
+  std::array<Image, surfaces> surfaces_noise;
+  if (!neighbours.empty()) {  // before the features are taken from the frame
+    geometry = geometry_of(frame);
+    surfaces_noise = surface_noise(frame);
+  }
   NoisyHalves halves = split_into_halves(frame, survey.preparation, noise, params, stages);
   HalfPair& pair = halves.prepared.pair;
   note_preparation(noise, survey.preparation, halves.prepared, report);
   note_outliers(halves.outliers, params.steps, report);
   if (!neighbours.empty()) {
     const JoinCounts joined = stages.run("neighbours in time", 2, [&](Progress& p) {
-      return join_neighbours(frame.motion, neighbours, params.temporal, pair, p);
+      return join_neighbours(geometry, surfaces_noise, neighbours, params.temporal, pair, p);
     });
+    geometry = {};
+    surfaces_noise = {};
     note_neighbours(joined, !frame.motion.empty(), report);
   }
 

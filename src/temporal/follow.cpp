@@ -18,9 +18,12 @@ bool inside(double x, double y, const Image& image) {
   return x > -0.5 && y > -0.5 && x < image.width() - 0.5 && y < image.height() - 0.5;
 }
 
-/// Advances the places from one frame to the next one in the same direction. channel: first of the two motion channels,
-/// 0 for the frame before and 2 for the one after.
-void step(const Image& from, const Image& to, int channel, Places& places) {
+/// Advances the places from one frame to the next one in the same direction, whose image is `image`. channel: first of
+/// the two motion channels, 0 for the frame before and 2 for the one after.
+void step(const Geometry& here, const Geometry& there, const Image& image, int channel, Places& places) {
+  const Image &from = here.motion, &to = there.motion;
+  // From an image's coordinates to those of the other one.
+  const double shift_x = here.window.x0 - there.window.x0, shift_y = here.window.y0 - there.window.y0;
   for_rows(places.position.height(), [&](int y) {
     for (int x = 0; x < places.position.width(); ++x) {
       unsigned char& seen = places.seen[places.position.index(x, y)];
@@ -34,14 +37,16 @@ void step(const Image& from, const Image& to, int channel, Places& places) {
         x1 += static_cast<double>(from.at(u, v, channel));
         y1 += static_cast<double>(from.at(u, v, channel + 1));
       }
-      seen = std::isfinite(x1) && std::isfinite(y1) && inside(x1, y1, places.position);
+      x1 += shift_x;
+      y1 += shift_y;
+      seen = std::isfinite(x1) && std::isfinite(y1) && inside(x1, y1, image);
       if (!seen) continue;
       px = static_cast<Real>(x1);
       py = static_cast<Real>(y1);
       if (from.empty() || to.empty()) continue;
       const int u = nearest(x1, to.width()), v = nearest(y1, to.height());
-      const double dx = x1 + static_cast<double>(to.at(u, v, 2 - channel)) - x0;
-      const double dy = y1 + static_cast<double>(to.at(u, v, 3 - channel)) - y0;
+      const double dx = x1 - shift_x + static_cast<double>(to.at(u, v, 2 - channel)) - x0;
+      const double dy = y1 - shift_y + static_cast<double>(to.at(u, v, 3 - channel)) - y0;
       seen = dx * dx + dy * dy < max_miss * max_miss;
     }
   });
@@ -49,7 +54,7 @@ void step(const Image& from, const Image& to, int channel, Places& places) {
 
 const Neighbour* find(const std::vector<TimedNeighbour>& neighbours, int offset, const HalfPair& pair) {
   for (const TimedNeighbour& n : neighbours)
-    if (n.offset == offset && n.frame->pair.color[0].same_shape(pair.color[0])) return n.frame;
+    if (n.offset == offset && n.frame->pair.color[0].channels() == pair.color[0].channels()) return n.frame;
   return nullptr;
 }
 
@@ -61,7 +66,8 @@ std::array<double, 4> cubic_weights(double t) {
 
 }  // namespace
 
-std::vector<Places> follow(const Image& motion, const HalfPair& pair, const std::vector<TimedNeighbour>& neighbours) {
+std::vector<Places> follow(const Geometry& geometry, const HalfPair& pair,
+                           const std::vector<TimedNeighbour>& neighbours) {
   const int width = pair.width(), height = pair.height();
   std::vector<Places> out;
   for (const int side : {-1, 1}) {
@@ -73,14 +79,14 @@ std::vector<Places> follow(const Image& motion, const HalfPair& pair, const std:
         places.position.at(x, y, 1) = static_cast<Real>(y);
       }
     });
-    const Image* from = &motion;
+    const Geometry* from = &geometry;
     for (int offset = side;; offset += side) {
       places.offset = offset;
       places.frame = find(neighbours, offset, pair);
       if (!places.frame) break;
-      step(*from, places.frame->motion, side < 0 ? 0 : 2, places);
+      step(*from, places.frame->geometry, places.frame->pair.variance, side < 0 ? 0 : 2, places);
       out.push_back(places);
-      from = &places.frame->motion;
+      from = &places.frame->geometry;
     }
   }
   return out;

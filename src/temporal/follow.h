@@ -11,16 +11,17 @@ namespace polyrecon {
 struct Places {
   int offset = 0;  ///< Of the neighbouring frame, in frames.
   const Neighbour* frame = nullptr;
-  Image position;                   ///< 2 channels: column and row in that frame, in pixels, fractional.
+  Image position;                   ///< 2 channels: column and row in that frame's image, in pixels, fractional.
   std::vector<unsigned char> seen;  ///< Per pixel, 0 where the point is hidden in that frame or outside of it.
 };
 
 /// Follows the motion vectors from frame to frame, backward and forward in time. A point is seen in a frame if the
 /// vectors of that frame lead back to within a pixel of where the point was. Where a frame has no vectors, points are
-/// taken not to move. A direction ends at the first frame that is missing, or whose size or layers differ from pair's.
-/// motion: as Frame::motion, of the current frame.
-/// neighbours: each offset at most once.
-std::vector<Places> follow(const Image& motion, const HalfPair& pair, const std::vector<TimedNeighbour>& neighbours);
+/// taken not to move. Frames are joined by the coordinates of the file, whatever their data windows. A direction ends
+/// at the first frame that is missing, or whose layers differ from pair's. geometry: of the current frame. neighbours:
+/// each offset at most once.
+std::vector<Places> follow(const Geometry& geometry, const HalfPair& pair,
+                           const std::vector<TimedNeighbour>& neighbours);
 
 /// An image of a neighbour, sampled at the places of the pixels of area; 0 where a pixel is not seen. sharp: cubic
 /// interpolation (Catmull and Rom 1974), which keeps detail; otherwise linear, which keeps the sign.

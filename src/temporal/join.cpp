@@ -8,78 +8,24 @@
 
 #include "core/gaussian.h"
 #include "core/parallel.h"
-#include "core/picture_mask.h"
 #include "core/rect.h"
 #include "polyrecon/error.h"
+#include "temporal/estimate.h"
 #include "temporal/follow.h"
 #include "temporal/neighbour.h"
+#include "temporal/shared_noise.h"
+#include "temporal/surface_change.h"
 
 namespace polyrecon {
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
-constexpr double ratio_sigma = 2;   // pixels; variances are averaged before they are compared, as single ones are noisy
-constexpr double shared_sigma = 8;  // pixels; squared differences are averaged to find whether frames share their noise
-// Frames share their noise where squared differences are below this part of what independent noise makes.
-constexpr double shared_below = 0.7;
+constexpr double ratio_sigma = 2;  // pixels; variances are averaged before they are compared, as single ones are noisy
+// K: variance of a pixel over that of the fitted image; about the number of pixels that a fit averages.
+constexpr double noise_of_fit = 30;
+constexpr double agreement_sigma = 8;  // pixels
 constexpr double tiny = 1e-30;
 constexpr int band_rows = 256;  // height of a band of the frame
-
-/// An estimate of the current frame from other frames; zero where it is not valid.
-struct Estimate {
-  std::array<Image, 2> color;
-  Image variance;                    ///< Of one half, 3 channels.
-  std::vector<unsigned char> valid;  ///< One byte per pixel.
-};
-
-/// Whether a pixel is seen in the neighbour and holds a picture there.
-unsigned char sees_picture(const Places& places, int x, int y) {
-  const Image& picture = places.frame->pair.sampled;
-  const unsigned char seen = places.seen[places.position.index(x, y)];
-  if (!seen || picture.empty()) return seen;
-  const auto nearest = [](Real position, int size) {
-    return std::clamp(static_cast<int>(std::lround(position)), 0, size - 1);
-  };
-  return in_picture(picture, picture.index(nearest(places.position.at(x, y, 0), picture.width()),
-                                           nearest(places.position.at(x, y, 1), picture.height())));
-}
-
-Estimate estimate_from(const Places& places, const Rect& area) {
-  const HalfPair& pair = places.frame->pair;
-  Estimate out{{sample_at(pair.color[0], places, area, true), sample_at(pair.color[1], places, area, true)},
-               sample_at(pair.variance, places, area, false),
-               {}};
-  for (int y = area.y0; y < area.y1; ++y)
-    for (int x = area.x0; x < area.x1; ++x) out.valid.push_back(sees_picture(places, x, y));
-  return out;
-}
-
-/// The mean of two estimates where both are valid, else the valid one.
-Estimate combine(Estimate a, const Estimate& b) {
-  for_rows(a.variance.height(), [&](int y) {
-    for (int x = 0; x < a.variance.width(); ++x) {
-      const std::size_t i = a.variance.index(x, y);
-      if (!b.valid[i]) continue;
-      const Real share = a.valid[i] ? Real(0.5) : Real(1);
-      for (std::size_t h = 0; h < 2; ++h)
-        for (int c = 0; c < a.color[h].channels(); ++c)
-          a.color[h].plane(c)[i] = share * (a.color[h].plane(c)[i] + b.color[h].plane(c)[i]);
-      for (int c = 0; c < 3; ++c)
-        a.variance.plane(c)[i] = share * share * (a.variance.plane(c)[i] + b.variance.plane(c)[i]);
-      a.valid[i] = 1;
-    }
-  });
-  return a;
-}
-
-/// The estimate from the frames k before and k after; empty if there are none.
-Estimate estimate_at(const std::vector<Places>& all, int k, const Rect& area) {
-  Estimate out;
-  for (const Places& places : all)
-    if (std::abs(places.offset) == k)
-      out = out.valid.empty() ? estimate_from(places, area) : combine(std::move(out), estimate_from(places, area));
-  return out;
-}
 
 /// The difference of a half from its estimate. Channels: difference RGB, the sum over RGB of its noise variance, and 1;
 /// all zero where the estimate is not valid.
@@ -144,29 +90,12 @@ Image sum_of_channels(const Image& image) {
   return out;
 }
 
-/// The part of the noise that the estimate shares with the current frame, 0 to 1, 1 channel. The squared difference of
-/// independent noise is the sum of the variances; that of shared noise is 0.
-Image shared_noise(const Image& difference) {
-  Image moments(difference.width(), difference.height(), 2);
-  for (std::size_t i = 0; i < moments.pixels(); ++i) {
-    moments.plane(0)[i] = static_cast<Real>(squared(difference, i));
-    moments.plane(1)[i] = difference.plane(3)[i];
-  }
-  moments = gaussian_blur(moments, shared_sigma);
-  Image out(moments.width(), moments.height(), 1);
-  for (std::size_t i = 0; i < out.pixels(); ++i) {
-    const double noise = moments.plane(1)[i], ratio = noise > 0 ? static_cast<double>(moments.plane(0)[i]) / noise : 1;
-    out.plane(0)[i] = static_cast<Real>(std::max(0.0, 1 - ratio / shared_below));
-  }
-  return out;
-}
-
 /// Running sums of one half over the pixel itself (with w = 1) and the estimates.
 struct Sums {
-  Image color, variance, shared, weight;  ///< sum w y, sum w^2 Var, sum w shared (estimates only), sum w
+  Image color, variance, weight;  ///< sum w y, sum w^2 Var, sum w
 };
 
-void add_estimate(const Estimate& estimate, std::size_t half, const Image& weight, const Image& shared, Sums& sums) {
+void add_estimate(const Estimate& estimate, std::size_t half, const Image& weight, Sums& sums) {
   for_rows(weight.height(), [&](int y) {
     for (int x = 0; x < weight.width(); ++x) {
       const std::size_t i = weight.index(x, y);
@@ -174,7 +103,6 @@ void add_estimate(const Estimate& estimate, std::size_t half, const Image& weigh
       if (w == 0) continue;
       for (int c = 0; c < sums.color.channels(); ++c) sums.color.plane(c)[i] += w * estimate.color[half].plane(c)[i];
       for (int c = 0; c < 3; ++c) sums.variance.plane(c)[i] += w * w * estimate.variance.plane(c)[i];
-      sums.shared.plane(0)[i] += w * shared.plane(0)[i];
       sums.weight.plane(0)[i] += w;
     }
   });
@@ -191,35 +119,104 @@ Image excess_error(const Image& difference) {
   return excess;
 }
 
-/// Weight of an estimate for one half, from the difference of the other half.
-Image weight_of(const HalfPair& pair, const Estimate& estimate, const Image& difference, const TemporalParams& params) {
-  Image weight = gate(difference, params);
+/// Radiance squared, summed over RGB, 1 channel: an average around each pixel of one half.
+Image square_of_radiance(const Image& color) {
+  Image out(color.width(), color.height(), 1);
+  const Image mean = gaussian_blur(crop(color, color.bounds(), 0, 3), ratio_sigma);
+  for (std::size_t i = 0; i < out.pixels(); ++i) out.plane(0)[i] = static_cast<Real>(squared(mean, i));
+  return out;
+}
+
+/// Shares of the pixels around a pixel that agree: up to the first it gets no neighbours, from the second on whole
+/// ones.
+struct Trust {
+  double none, full;
+};
+// Some pixels agree by chance: after a cut, and in patterns that move without vectors. Vectors make this rare.
+constexpr Trust with_vectors{0.25, 0.5}, without_vectors{0.5, 0.75};
+
+/// Whether there are vectors that are not all 0; such ones say no more than none.
+bool has_vectors(const Image& motion) {
+  for (int c = 0; c < motion.channels(); ++c)
+    if (std::any_of(motion.plane(c), motion.plane(c) + motion.pixels(), [](Real v) { return std::abs(v) > 0; }))
+      return true;
+  return false;
+}
+
+/// Lowers weights where few pixels around agree. agreement: 0 to 1 and, in channel 1, 1 where it is known.
+void trust_the_surroundings(const Image& agreement, const Trust& trust, Image& weight) {
+  const Image around = gaussian_blur(agreement, agreement_sigma);
+  for (std::size_t i = 0; i < weight.pixels(); ++i) {
+    const auto known = static_cast<double>(around.plane(1)[i]);
+    if (!(known > 0)) continue;
+    const double share = static_cast<double>(around.plane(0)[i]) / known;
+    weight.plane(0)[i] *= static_cast<Real>(std::clamp((share - trust.none) / (trust.full - trust.none), 0.0, 1.0));
+  }
+}
+
+/// Weight of an estimate for one half, from the difference of the other half. change: surface_change.
+Image weight_of(const HalfPair& pair, const Estimate& estimate, std::size_t half, const Image& change,
+                const Image& shared, const Trust& trust, const TemporalParams& params) {
+  const Image difference = differences(pair, estimate, 1 - half);
+  Image weight = gate(difference, params), agreement(weight.width(), weight.height(), 2);
   const Image variance = gaussian_blur(sum_of_channels(pair.variance), ratio_sigma);
   const Image estimate_variance = gaussian_blur(sum_of_channels(estimate.variance), ratio_sigma);
   const Image excess = excess_error(difference);
+  const Image square = square_of_radiance(pair.color[1 - half]);
   for_rows(weight.height(), [&](int y) {
     for (int x = 0; x < weight.width(); ++x) {
-      const double error = estimate_variance.at(x, y, 0) + excess.at(x, y, 0), v = variance.at(x, y, 0);
-      weight.at(x, y, 0) *= static_cast<Real>(std::min(error > 0 ? v / error : params.max_weight, params.max_weight));
+      const double v = variance.at(x, y, 0);
+      const double expected =
+          noise_of_fit * static_cast<double>(change.at(x, y, 0)) * static_cast<double>(square.at(x, y, 0));
+      if (difference.at(x, y, 4) > 0 && v > 0) {
+        agreement.at(x, y, 0) = weight.at(x, y, 0) * static_cast<Real>(v / (v + expected));
+        agreement.at(x, y, 1) = 1;
+      }
+      const double error = estimate_variance.at(x, y, 0) + excess.at(x, y, 0) + expected;
+      const double ratio = std::min(error > 0 ? v / error : params.max_weight, params.max_weight);
+      weight.at(x, y, 0) *= static_cast<Real>(ratio * (1 - static_cast<double>(shared.at(x, y, 0))));
     }
   });
+  trust_the_surroundings(agreement, trust, weight);
   return weight;
 }
 
-std::array<Sums, 2> join_area(const HalfPair& pair, const std::vector<Places>& places, const Rect& area,
-                              const TemporalParams& params) {
-  const Image none(pair.width(), pair.height(), 1), one(pair.width(), pair.height(), 1, 1);
-  std::array<Sums, 2> sums{Sums{pair.color[0], pair.variance, none, one},
-                           Sums{pair.color[1], pair.variance, none, one}};
+/// A part of the current frame.
+struct Part {
+  HalfPair pair;
+  Geometry geometry;
+  std::array<Image, surfaces> noise;
+  Trust trust;
+  Sharing sharing;
+};
+
+Image maximum(Image a, const Image& b) {
+  if (!b.empty())
+    for (std::size_t i = 0; i < a.pixels(); ++i) a.plane(0)[i] = std::max(a.plane(0)[i], b.plane(0)[i]);
+  return a;
+}
+
+/// The sums over the neighbours, and in `shared`, empty before, whether they share their noise.
+std::array<Sums, 2> join_area(const Part& part, const std::vector<Places>& places, const Rect& area,
+                              const TemporalParams& params, Image& shared) {
+  const HalfPair& pair = part.pair;
+  const Image one(pair.width(), pair.height(), 1, 1);
+  std::array<Sums, 2> sums{Sums{pair.color[0], pair.variance, one}, Sums{pair.color[1], pair.variance, one}};
   for (int k = 1; k <= params.radius; ++k) {
     const Estimate estimate = estimate_at(places, k, area);
     if (estimate.valid.empty()) break;
-    for (std::size_t half = 0; half < 2; ++half) {
-      const Image difference = differences(pair, estimate, 1 - half);
-      add_estimate(estimate, half, weight_of(pair, estimate, difference, params), shared_noise(difference), sums[half]);
-    }
+    // Frames that are further away share their noise too, though less of the scene stands still between them.
+    shared = maximum(shared_noise(pair, estimate, part.sharing), shared);
+    const Image change =
+        surface_change(pair.width(), pair.height(), part.geometry.surface, part.noise, estimate.surface);
+    for (std::size_t half = 0; half < 2; ++half)
+      add_estimate(estimate, half, weight_of(pair, estimate, half, change, shared, part.trust, params), sums[half]);
   }
   return sums;
+}
+
+bool is_noisy(const Image& variance, int x, int y) {
+  return variance.at(x, y, 0) > 0 || variance.at(x, y, 1) > 0 || variance.at(x, y, 2) > 0;
 }
 
 /// Divides the sums by their weights. Pixels without noise keep their value, which is exact.
@@ -228,52 +225,74 @@ void average(const std::array<Sums, 2>& sums, HalfPair& pair) {
   for_rows(pair.height(), [&](int y) {
     for (int x = 0; x < pair.width(); ++x) {
       const std::size_t i = variance.index(x, y);
-      if (!(variance.plane(0)[i] > 0 || variance.plane(1)[i] > 0 || variance.plane(2)[i] > 0)) continue;
+      if (!is_noisy(variance, x, y)) continue;
       for (int c = 0; c < 3; ++c) pair.variance.plane(c)[i] = 0;
       for (std::size_t h = 0; h < 2; ++h) {
-        const Real weight = sums[h].weight.plane(0)[i], others = weight - 1;
+        const Real weight = sums[h].weight.plane(0)[i];
         for (int c = 0; c < pair.color[h].channels(); ++c)
           pair.color[h].plane(c)[i] = sums[h].color.plane(c)[i] / weight;
-        const Real shared = others > 0 ? sums[h].shared.plane(0)[i] / others : Real(0);
         for (int c = 0; c < 3; ++c)
-          pair.variance.plane(c)[i] += Real(0.5) * (shared * variance.plane(c)[i] +
-                                                    (1 - shared) * sums[h].variance.plane(c)[i] / (weight * weight));
+          pair.variance.plane(c)[i] += Real(0.5) * sums[h].variance.plane(c)[i] / (weight * weight);
       }
     }
   });
 }
 
+/// Adds the sums over the noisy pixels of a band to counts, and returns their number. row: of the sums' images, where
+/// the band begins.
+double add_to_counts(const Image& variance, const Rect& band, int row, const std::array<Sums, 2>& sums,
+                     const Image& shared, JoinCounts& counts) {
+  double noisy = 0;
+  for (int y = band.y0; y < band.y1; ++y)
+    for (int x = 0; x < band.width(); ++x) {
+      if (!is_noisy(variance, x, y)) continue;
+      const int v = row + y - band.y0;
+      noisy += 1;
+      for (const Sums& s : sums) counts.weight += 0.5 * (static_cast<double>(s.weight.at(x, v, 0)) - 1);
+      counts.shared_noise += shared.at(x, v, 0) > Real(0.5);
+    }
+  return noisy;
+}
+
 int halo_of(const TemporalParams& params) {
   double widest = shared_sigma;
   for (const double sigma : params.scales) widest = std::max(widest, sigma);
-  return gaussian_radius(widest);
+  return gaussian_radius(widest) + gaussian_radius(agreement_sigma);  // what agrees is averaged again
 }
 
 }  // namespace
 
-JoinCounts join_neighbours(const Image& motion, const std::vector<TimedNeighbour>& neighbours,
-                           const TemporalParams& params, HalfPair& pair, Progress& progress) {
-  const std::vector<Places> places = follow(motion, pair, neighbours);
-  JoinCounts counts{places.size(), 0};
+JoinCounts join_neighbours(const Geometry& geometry, const std::array<Image, surfaces>& noise,
+                           const std::vector<TimedNeighbour>& neighbours, const TemporalParams& params, HalfPair& pair,
+                           Progress& progress) {
+  const std::vector<Places> places = follow(geometry, pair, neighbours);
+  JoinCounts counts{places.size(), 0, 0};
   if (places.empty()) return counts;
+  const Trust& trust = has_vectors(geometry.motion) ? with_vectors : without_vectors;
   const HalfPair before{pair.color, pair.variance, {}, pair.epsilon};
+  const Sharing& sharing = sharing_of(before, places, params.radius);
+  double noisy = 0;
   // In bands, since the estimates and their blurs take several times the memory of the frame.
   for (int y = 0; y < pair.height(); y += band_rows) {
     if (progress.cancelled()) throw Error(ExitCode::Interrupted, "interrupted");
     const Rect band{0, y, pair.width(), std::min(y + band_rows, pair.height())};
     const Rect area = intersect(grow(band, halo_of(params)), pair.variance.bounds());
-    HalfPair part = crop(before, area);
-    const std::array<Sums, 2> sums = join_area(part, places, area, params);
-    average(sums, part);
+    Part part{crop(before, area), crop(geometry, area), {}, trust, sharing};
+    for (std::size_t s = 0; s < surfaces; ++s)
+      if (!noise[s].empty()) part.noise[s] = crop(noise[s], area);
+    Image shared;
+    const std::array<Sums, 2> sums = join_area(part, places, area, params, shared);
+    average(sums, part.pair);
     const Rect inner{0, band.y0 - area.y0, band.width(), band.y1 - area.y0};
-    for (std::size_t h = 0; h < 2; ++h) paste(part.color[h], inner, pair.color[h], 0, band.y0);
-    paste(part.variance, inner, pair.variance, 0, band.y0);
-    for (int v = inner.y0; v < inner.y1; ++v)
-      for (int x = 0; x < band.width(); ++x)
-        for (const Sums& s : sums) counts.weight += 0.5 * (static_cast<double>(s.weight.at(x, v, 0)) - 1);
+    for (std::size_t h = 0; h < 2; ++h) paste(part.pair.color[h], inner, pair.color[h], 0, band.y0);
+    paste(part.pair.variance, inner, pair.variance, 0, band.y0);
+    noisy += add_to_counts(before.variance, band, inner.y0, sums, shared, counts);
     progress.advance(1);
   }
-  counts.weight /= static_cast<double>(pair.variance.pixels());
+  if (noisy > 0) {
+    counts.weight /= noisy;
+    counts.shared_noise /= noisy;
+  }
   return counts;
 }
 

@@ -113,7 +113,7 @@ void write_exr(const std::string& path, int width, int height, const std::vector
 }
 
 /// A noisy ramp with an edge, as Blender names its layers: beauty, its variance and half buffers, albedo and depth.
-inline void write_render(const std::string& path, int width = 40, int height = 24) {
+inline void write_render(const std::string& path, int width = 40, int height = 24, unsigned seed = 1) {
   const std::string beauty = "ViewLayer.Combined";
   std::vector<std::string> channels;
   for (const char* suffix : {"", " Variance", " A", " B"})
@@ -121,7 +121,7 @@ inline void write_render(const std::string& path, int width = 40, int height = 2
   for (const char* c : {".R", ".G", ".B"}) channels.push_back(std::string("ViewLayer.Denoising Albedo") + c);
   channels.push_back("ViewLayer.Denoising Depth.Z");
   constexpr double sigma = 0.1;
-  std::mt19937 random(1);
+  std::mt19937 random(seed);
   std::normal_distribution<double> noise(0, sigma * std::sqrt(2.0));
   std::vector<double> a(3), b(3);
   write_exr(path, width, height, channels, [&](int x, int y, int c) {

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <fstream>
@@ -23,10 +24,10 @@ class Sequence : public ProgramTest {
  protected:
   Sequence() { std::filesystem::create_directory(path("out")); }
 
-  void render(const std::string& name) const { write_render(path(name), width, height); }
+  void render(const std::string& name, unsigned seed = 1) const { write_render(path(name), width, height, seed); }
 
   void render_frames(int first, int last) const {
-    for (int n = first; n <= last; ++n) render("shot.000" + std::to_string(n) + ".exr");
+    for (int n = first; n <= last; ++n) render("shot.000" + std::to_string(n) + ".exr", static_cast<unsigned>(n));
   }
 
   Outcome denoise(const std::vector<std::string>& more) const {
@@ -227,6 +228,31 @@ TEST_F(Sequence, TwoNeighboursOnEachSideJoinUnlessAFileIsOnItsOwn) {
   EXPECT_EQ(read_text(path("out/shot.0002.exr")), alone);
 }
 
+TEST_F(Sequence, FramesOfOneSeedBringNothingAndANoteSaysSo) {
+  for (const char* name : {"shot.0001.exr", "shot.0002.exr", "shot.0003.exr"}) render(name);
+  ASSERT_EQ(denoise({"--frame-radius", "0", "--frames", "2"}).code, 0);
+  const OIIO::ImageBuf alone = load(path("out/shot.0002.exr"));
+  const Outcome o = denoise({"--report", "out/####.json"});
+  ASSERT_EQ(o.code, 0) << o.err;
+  EXPECT_THAT(o.out, HasSubstr("animate the seed"));
+  const auto report = nlohmann::json::parse(read_text(path("out/0002.json")));
+  EXPECT_THAT(report["notes"].dump(), HasSubstr("the same noise in 100 % of the noisy pixels"));
+  EXPECT_EQ(report["neighbours"]["shared_noise"], 1);
+  EXPECT_EQ(report["neighbours"]["mean_weight"], 0);
+  const OIIO::ImageBuf joined = load(path("out/shot.0002.exr"));
+  for (int c = 0; c < 3; ++c)
+    for (int y = 0; y < height; ++y)
+      for (int x = 0; x < width; ++x) ASSERT_EQ(joined.getchannel(x, y, 0, c), alone.getchannel(x, y, 0, c));
+}
+
+TEST_F(Sequence, FramesOfOtherSeedsGetNoNote) {
+  for (const unsigned seed : {1U, 2U, 3U}) write_render(path("shot.000" + std::to_string(seed) + ".exr"), 96, 64, seed);
+  ASSERT_EQ(denoise({"--report", "out/####.json"}).code, 0);
+  const auto report = nlohmann::json::parse(read_text(path("out/0002.json")));
+  EXPECT_THAT(report["notes"].dump(), ::testing::Not(HasSubstr("seed")));
+  EXPECT_GT(report["neighbours"]["mean_weight"], 1);
+}
+
 TEST_F(Sequence, ABrokenNeighbourIsLeftOutAndAChangedOneIsNoticed) {
   render_frames(1, 3);
   const std::vector<std::string> temporal{"--frame-radius", "1", "--skip-existing", "--report", "out/####.json"};
@@ -245,6 +271,110 @@ TEST_F(Sequence, TheFrameNumberGoesIntoTheSampleMap) {
   render("shot.0007.exr");
   ASSERT_EQ(denoise({"--sample-map", "out/samples.####.exr", "--budget", "4"}).code, 0);
   EXPECT_EQ(load(path("out/samples.0007.exr")).spec().get_float_attribute("frame"), 7);
+}
+
+/// Frames that have a file for each pass; the albedo of each frame is another one.
+class SequenceOfFiles : public Sequence {
+ protected:
+  static std::vector<std::string> rgb() { return {"R", "G", "B"}; }
+
+  void write_frame(int frame, const std::string& albedo) const {
+    write_exr(path(name("shot", frame)), width, height, rgb(),
+              [](int x, int y, int c) { return 0.5 + 0.01 * ((7 * x + 3 * y + c) % 5); });
+    write_exr(path(name(albedo, frame)), width, height, rgb(),
+              [&](int x, int, int) { return x < width / 2 ? 0.1 * frame : 0.8; });
+  }
+
+  static std::string name(const std::string& stem, int frame) { return stem + ".000" + std::to_string(frame) + ".exr"; }
+
+  /// The layer that a frame's report names for a role; empty without one.
+  std::string layer_of(const std::string& role, int frame) const {
+    const auto report = nlohmann::json::parse(read_text(path("out/000" + std::to_string(frame) + ".json")));
+    for (const auto& choice : report["roles"])
+      if (choice["role"] == role) return choice["layer"];
+    return "";
+  }
+
+  std::string notes_of(int frame) const {
+    return nlohmann::json::parse(read_text(path("out/000" + std::to_string(frame) + ".json")))["notes"].dump();
+  }
+};
+
+TEST_F(SequenceOfFiles, AMappedFileTakesTheNumberOfTheFrame) {
+  for (int frame = 1; frame <= 3; ++frame) write_frame(frame, "colours");
+  for (const char* pattern : {"colours.####.exr", "colours.%04d.exr"}) {
+    const std::string map = std::string("albedo=") + pattern;
+    ASSERT_EQ(denoise({"--map", map, "--report", "out/####.json"}).code, 0);
+    for (int frame = 1; frame <= 3; ++frame) {
+      EXPECT_EQ(layer_of("albedo", frame), name("colours", frame));
+      EXPECT_THAT(notes_of(frame), ::testing::Not(HasSubstr("every frame")));
+    }
+  }
+  // A list of files, and one file, take the number in each input's name.
+  ASSERT_EQ(run({"denoise", "-i", "shot.0003.exr", "shot.0002.exr", "-o", "out", "--map", "albedo=colours.####.exr",
+                 "--report", "out/####.json", "--quality", "draft"})
+                .code,
+            0);
+  EXPECT_EQ(layer_of("albedo", 3), name("colours", 3));
+  ASSERT_EQ(run({"denoise", "-i", "shot.0002.exr", "-o", "out/one.exr", "--prior", "colours.####.exr", "--report",
+                 "out/0009.json", "--quality", "draft"})
+                .code,
+            0);
+  EXPECT_EQ(layer_of("prior", 9), name("colours", 2));
+  // A frame without its file is a broken frame, and the message names the file.
+  std::filesystem::remove(path("colours.0002.exr"));
+  const Outcome o = denoise({"--map", "albedo=colours.####.exr", "--frame-radius", "0"});
+  EXPECT_EQ(o.code, 4);
+  EXPECT_THAT(o.err, HasSubstr("no layer colours.0002.exr"));
+  EXPECT_THAT(o.out, HasSubstr("2 written, 0 skipped, 1 failed"));
+}
+
+TEST_F(SequenceOfFiles, AFileForAllFramesIsNoted) {
+  for (int frame = 1; frame <= 2; ++frame) write_frame(frame, "colours");
+  ASSERT_EQ(denoise({"--map", "albedo=colours.0001.exr", "--report", "out/####.json"}).code, 0);
+  EXPECT_THAT(notes_of(2), HasSubstr("colours.0001.exr is used for every frame"));
+  ASSERT_EQ(run({"denoise", "-i", "shot.0002.exr", "-o", "out/a.exr", "--map", "albedo=colours.0001.exr", "--report",
+                 "out/0002.json", "--quality", "draft"})
+                .code,
+            0);
+  EXPECT_THAT(notes_of(2), ::testing::Not(HasSubstr("every frame")));
+}
+
+TEST_F(SequenceOfFiles, PassesNextToEachFrameAreFound) {
+  for (int frame = 1; frame <= 2; ++frame) write_frame(frame, "shot_albedo");
+  ASSERT_EQ(denoise({"--report", "out/####.json"}).code, 0);
+  for (int frame = 1; frame <= 2; ++frame) {
+    EXPECT_EQ(layer_of("albedo", frame), "albedo");
+    EXPECT_THAT(notes_of(frame), HasSubstr(name("shot_albedo", frame)));
+  }
+}
+
+TEST_F(SequenceOfFiles, CostsTakeTheNumberOfTheFrame) {
+  for (int frame = 1; frame <= 2; ++frame) {
+    write_frame(frame, "colours");
+    // The left half is dearer in frame 1, the right half in frame 2.
+    write_exr(path(name("cost", frame)), width, height, {"Y"},
+              [&](int x, int, int) { return (x < width / 2) == (frame == 1) ? 16.0 : 1.0; });
+  }
+  ASSERT_EQ(denoise({"--sample-map", "out/map.####.exr", "--budget", "4", "--cost", "cost.####.exr", "--frame-radius",
+                     "0", "--map", "albedo=colours.0001.exr"})
+                .code,
+            0);
+  const auto samples = [&](const char* file, int begin, int end) {
+    const OIIO::ImageBuf map = load(path(file));
+    const auto& names = map.spec().channelnames;
+    const auto channel = std::find(names.begin(), names.end(), "samples.Y") - names.begin();
+    double sum = 0;
+    for (int y = 0; y < height; ++y)
+      for (int x = begin; x < end; ++x) sum += map.getchannel(x, y, 0, static_cast<int>(channel));
+    return sum;
+  };
+  EXPECT_LT(samples("out/map.0001.exr", 0, width / 2), samples("out/map.0002.exr", 0, width / 2));
+  EXPECT_GT(samples("out/map.0001.exr", width / 2, width), samples("out/map.0002.exr", width / 2, width));
+  std::filesystem::remove(path("cost.0002.exr"));
+  const Outcome o = denoise({"--sample-map", "out/map.####.exr", "--budget", "4", "--cost", "cost.####.exr"});
+  EXPECT_EQ(o.code, 4);
+  EXPECT_THAT(o.err, HasSubstr("cost.0002.exr: no such file"));
 }
 
 TEST_F(Sequence, OpenJdProgressRisesTo100AndTellsFailure) {

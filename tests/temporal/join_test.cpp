@@ -33,18 +33,21 @@ Image motion_of(double dx, double dy, int h = height) {
 
 /// A frame with `radius` neighbours on each side, all with independent noise.
 struct Sequence {
-  Image truth, motion;
+  Image truth;
+  Geometry geometry;
+  std::array<Image, surfaces> noise;
   HalfPair pair;
   std::vector<Neighbour> frames;
   std::vector<TimedNeighbour> neighbours;
 
-  Sequence(const Truth& of, Image vectors, int radius = 2, int h = height) : motion(std::move(vectors)) {
+  Sequence(const Truth& of, Image vectors, int radius = 2, int h = height)
+      : geometry{{0, 0, width, h}, std::move(vectors), {}} {
     truth = truth_of(of, 0, h);
     pair = test::pair_of(truth, sigma, 1);
     frames.reserve(16);
     for (int k = -radius; k <= radius; ++k) {
       if (k == 0) continue;
-      frames.push_back({test::pair_of(truth_of(of, k, h), sigma, static_cast<std::uint64_t>(10 + k)), motion});
+      frames.push_back({test::pair_of(truth_of(of, k, h), sigma, static_cast<std::uint64_t>(10 + k)), geometry});
       neighbours.push_back({k, &frames.back()});
     }
   }
@@ -52,7 +55,17 @@ struct Sequence {
   JoinCounts join(int radius = 2) {
     TemporalParams params;
     params.radius = radius;
-    return join_neighbours(motion, neighbours, params, pair, silent_progress());
+    return join_neighbours(geometry, noise, neighbours, params, pair, silent_progress());
+  }
+
+  /// Shows a surface in all frames; of(k, x, y, c) is that of frame k.
+  template <typename Values>
+  void show(Surface surface, int channels, const Values& of) {
+    const auto image = [&](int k) {
+      return test::image_of(width, truth.height(), channels, [&](int x, int y, int c) { return of(k, x, y, c); });
+    };
+    geometry.surface[surface] = image(0);
+    for (std::size_t n = 0; n < frames.size(); ++n) frames[n].geometry.surface[surface] = image(neighbours[n].offset);
   }
 
   /// Mean squared error of both halves, where take(x, y).
@@ -168,6 +181,134 @@ TEST(JoinNeighbours, SharedNoiseIsNotTakenForIndependent) {
   EXPECT_GT(s.claimed(), 0.9 * sigma * sigma);
 }
 
+/// Halves that were split from one image: `noise` is that of the image, and the split adds its own.
+HalfPair split_pair(const Image& truth, std::uint64_t noise, std::uint64_t split) {
+  const HalfPair of_image = test::pair_of(truth, sigma / std::sqrt(2.0), noise);
+  const HalfPair of_split = test::pair_of(Image(truth.width(), truth.height(), 3), sigma / std::sqrt(2.0), split);
+  HalfPair out = test::pair_of(truth, sigma, 1);
+  for (int c = 0; c < 3; ++c)
+    for (std::size_t i = 0; i < truth.pixels(); ++i) {
+      const Real mean = of_image.color[0].plane(c)[i], difference = of_split.color[0].plane(c)[i];
+      out.color[0].plane(c)[i] = mean + difference;
+      out.color[1].plane(c)[i] = mean - difference;
+    }
+  return out;
+}
+
+/// Frames of one seed that were split with random numbers of their own: their average would lose the noise of the split
+/// alone, and the difference of its halves would no longer show the noise that is left. Where noise is shared
+/// neighbours bring nothing, elsewhere they help as ever.
+TEST(JoinNeighbours, SharedNoiseIsFoundInSplitHalves) {
+  const Truth still = [](int, int x, int y) { return texture(x, y); };
+  for (const double part : {1.0, 0.5}) {  // of the columns that share their noise
+    Sequence s(still, Image());
+    const auto shares = [&](int x) { return x < part * width; };
+    s.pair = split_pair(s.truth, 1, 2);
+    for (std::size_t k = 0; k < s.frames.size(); ++k) {
+      s.frames[k].pair = split_pair(s.truth, 1, 10 + k);
+      const HalfPair other = split_pair(s.truth, 20 + k, 30 + k);
+      for (std::size_t h = 0; h < 2; ++h)
+        for (int c = 0; c < 3; ++c)
+          for (int y = 0; y < height; ++y)
+            for (int x = 0; x < width; ++x)
+              if (!shares(x)) s.frames[k].pair.color[h].at(x, y, c) = other.color[h].at(x, y, c);
+    }
+    const HalfPair before = s.pair;
+    const JoinCounts counts = s.join();
+    EXPECT_NEAR(counts.shared_noise, part, 0.15);
+    for (int y = 0; y < height; ++y)
+      for (int x = 0; x < static_cast<int>(part * width) - 24; ++x)
+        EXPECT_EQ(s.pair.color[0].at(x, y, 0), before.color[0].at(x, y, 0)) << x << " " << y;
+    if (part < 1) {
+      EXPECT_LT(s.error([](int x, int) { return x > width - 8; }), 0.4 * sigma * sigma);
+    } else {
+      EXPECT_NEAR(s.claimed(), sigma * sigma, 1e-5);
+    }
+  }
+}
+
+/// Frames with seeds of their own are not taken for ones that share their noise.
+TEST(JoinNeighbours, IndependentNoiseIsNotTakenForShared) {
+  Sequence s([](int, int x, int y) { return texture(x, y); }, Image());
+  EXPECT_LT(s.join().shared_noise, 0.001);
+}
+
+/// Stripes that move without vectors, fainter than the noise of a pixel, so that the radiance does not show it. The
+/// albedo of both frames does.
+TEST(JoinNeighbours, AlbedoThatDiffersKeepsNeighboursOut) {
+  const auto stripe = [](int frame, int x) { return (x - 2 * frame) / 4 % 2 == 0 ? 1.0 : 0.92; };
+  const Truth moving = [&](int frame, int x, int) { return stripe(frame, x); };
+  Sequence with(moving, Image()), without(moving, Image());
+  with.show(AlbedoSurface, 3, [&](int k, int x, int, int) { return stripe(k, x); });
+  with.join();
+  without.join();
+  const auto bias = [](const Sequence& s) {  // of the mean of each column, as the stripes are columns
+    double sum = 0;
+    for (int x = 8; x < width - 8; ++x) {
+      double column = 0;
+      for (int y = 0; y < height; ++y)
+        column += static_cast<double>(s.pair.color[0].at(x, y, 0)) - static_cast<double>(s.truth.at(x, y, 0));
+      sum += column / height * column / height;
+    }
+    return sum / (width - 16);
+  };
+  EXPECT_GT(bias(without), 2 * bias(with));
+  EXPECT_LT(bias(with), 1.3 * sigma * sigma / height);  // that of the frame alone
+}
+
+/// Surfaces that agree lower no weight, and neither does their noise where it is known.
+TEST(JoinNeighbours, SurfacesThatAgreeKeepTheGain) {
+  const Truth still = [](int, int x, int y) { return texture(x, y); };
+  Sequence s(still, Image());
+  const double noise = 0.05;
+  std::array<HalfPair, 5> noisy;
+  for (std::size_t k = 0; k < noisy.size(); ++k) noisy[k] = test::pair_of(s.truth, noise, 60 + k);
+  s.show(AlbedoSurface, 3, [&](int k, int x, int y, int c) {
+    return static_cast<double>(noisy[static_cast<std::size_t>(k + 2)].color[0].at(x, y, c));
+  });
+  s.show(NormalSurface, 3, [](int, int, int, int c) { return c == 2 ? 1.0 : 0.0; });
+  s.show(DepthSurface, 1, [](int k, int x, int, int) { return std::log(2.0 + 0.1 * x + 0.05 * k); });
+  s.noise[AlbedoSurface] = Image(width, height, 1, static_cast<Real>(3 * noise * noise));
+  EXPECT_GT(s.join().weight, 3);
+  EXPECT_LT(s.error(), 0.27 * sigma * sigma);
+}
+
+/// An object that covers the picture in the other frames, of the same radiance: its depth or its normal differs.
+TEST(JoinNeighbours, ADepthOrANormalThatDiffersKeepsNeighboursOut) {
+  const Truth still = [](int, int x, int y) { return texture(x, y); };
+  Sequence depth(still, Image()), normal(still, Image());
+  depth.show(DepthSurface, 1, [](int k, int, int, int) { return std::log(k == 0 ? 5.0 : 3.0); });
+  normal.show(NormalSurface, 3, [](int k, int, int, int c) { return c == (k == 0 ? 2 : 0) ? 1.0 : 0.0; });
+  EXPECT_LT(depth.join().weight, 0.02);
+  EXPECT_LT(normal.join().weight, 0.02);
+}
+
+/// Data windows that move, as those of renderers that crop to what they hit: pixels of the same coordinates in the file
+/// are joined, and those that a neighbour lacks stay.
+TEST(JoinNeighbours, FramesOfOtherWindowsJoinByTheCoordinatesOfTheFile) {
+  const Truth still = [](int, int x, int y) { return texture(x, y); };
+  for (const bool vectors : {false, true}) {
+    Sequence s(still, vectors ? motion_of(0, 0) : Image(), 1);
+    const Rect window{12, -7, width + 12, height - 9};  // another size too
+    for (std::size_t k = 0; k < s.frames.size(); ++k) {
+      const Image truth = test::image_of(window.width(), window.height(), 3, [&](int x, int y, int c) {
+        return (1 + 0.2 * c) * texture(x + window.x0, y + window.y0);
+      });
+      s.frames[k].pair = test::pair_of(truth, sigma, 70 + k);
+      s.frames[k].geometry.window = window;
+      if (vectors) s.frames[k].geometry.motion = Image(window.width(), window.height(), 4);
+    }
+    const HalfPair before = s.pair;
+    s.join(1);
+    EXPECT_LT(s.error([&](int x, int y) { return window.contains(x, y); }), 0.5 * sigma * sigma);
+    for (int y = 0; y < height; ++y)
+      for (int x = 0; x < width; ++x)
+        if (!window.contains(x, y)) {
+          EXPECT_EQ(s.pair.color[0].at(x, y, 0), before.color[0].at(x, y, 0));
+        }
+  }
+}
+
 /// Weights depend on the noise: a neighbour with a hundredth of the variance counts more than the frame itself, a very
 /// noisy one hardly at all.
 TEST(JoinNeighbours, WeightsFollowTheVariance) {
@@ -213,10 +354,10 @@ TEST(JoinNeighbours, PixelsWithoutNoiseStay) {
     for (int c = 0; c < 3; ++c) EXPECT_EQ(s.pair.color[h].at(5, 6, c), before.color[h].at(5, 6, c));
 }
 
-TEST(JoinNeighbours, OtherSizesAndGapsAreLeftOut) {
+TEST(JoinNeighbours, OtherLayersAndGapsAreLeftOut) {
   Sequence s([](int, int x, int y) { return texture(x, y); }, Image());
   s.neighbours.erase(s.neighbours.begin() + 1);  // -1: so that -2 has no way to this frame
-  s.frames[3].pair = test::pair_of(Image(width, height + 1, 3, 1), sigma, 9);
+  s.frames[3].pair = test::pair_of(Image(width, height, 6, 1), sigma, 9);
   EXPECT_EQ(s.join().neighbours, 1u);
   s.neighbours.clear();
   EXPECT_EQ(s.join().neighbours, 0u);
@@ -226,10 +367,12 @@ TEST(JoinNeighbours, OtherSizesAndGapsAreLeftOut) {
 TEST(JoinNeighbours, BandsDoNotShow) {
   const Truth still = [](int, int x, int y) { return texture(x, y); };
   Sequence tall(still, Image(), 1, 420), cut = tall;
-  const Rect top{0, 0, width, 330};
+  const Rect top{0, 0, width, 350};
   cut.pair = crop(tall.pair, top);
+  cut.geometry.window = top;
   for (std::size_t k = 0; k < cut.frames.size(); ++k) {
     cut.frames[k].pair = crop(tall.frames[k].pair, top);
+    cut.frames[k].geometry.window = top;
     cut.neighbours[k].frame = &cut.frames[k];
   }
   tall.join(1);
@@ -243,12 +386,13 @@ TEST(JoinNeighbours, BandsDoNotShow) {
 /// A point that a nearer object covers in the other frame is not seen: the vectors there lead elsewhere.
 TEST(Follow, HiddenPointsAreNotSeen) {
   HalfPair pair = test::pair_of(Image(width, height, 3, 1), sigma, 1);
-  Neighbour next{pair, motion_of(0, 0)};
+  const Geometry still{{0, 0, width, height}, motion_of(0, 0), {}};
+  Neighbour next{pair, still};
   const auto covered = [](int x, int y) { return x >= 20 && x < 30 && y >= 10 && y < 20; };
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x)
-      if (covered(x, y)) next.motion.at(x, y, 0) = -10;  // the cover came from 10 pixels to the left
-  const std::vector<Places> places = follow(motion_of(0, 0), pair, {{1, &next}});
+      if (covered(x, y)) next.geometry.motion.at(x, y, 0) = -10;  // the cover came from 10 pixels to the left
+  const std::vector<Places> places = follow(still, pair, {{1, &next}});
   ASSERT_EQ(places.size(), 1u);
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x)

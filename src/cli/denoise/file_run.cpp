@@ -17,7 +17,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr double least_seconds = 1e-3;  // a budget that is spent still selects the fastest settings
+constexpr double least_shared_noise = 0.02;  // share of the noisy pixels; below it chance may be the cause
+constexpr double least_seconds = 1e-3;       // a budget that is spent still selects the fastest settings
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
@@ -25,6 +26,15 @@ void print(bool quiet, const std::string& text) {
   if (quiet) return;
   std::fputs(text.c_str(), stdout);
   std::fflush(stdout);
+}
+
+/// Where neighbours repeat the noise of a frame.
+void note_shared_noise(const Report& report, std::vector<std::string>& notes) {
+  if (report.neighbour_shared_noise < least_shared_noise) return;
+  notes.push_back(
+      fmt::format("the frames before and after have the same noise in {:.0f} % of the noisy pixels, and bring "
+                  "nothing there: animate the seed, so that each frame has its own",
+                  100 * report.neighbour_shared_noise));
 }
 
 std::string input_text(const LoadedFrame& loaded) {
@@ -112,6 +122,7 @@ void FileRun::denoise(LoadedFrame loaded, std::size_t max_memory, Progress& prog
   release_images(done);
   report.picture = loaded.picture;
   report.notes = done.in.notes;
+  note_shared_noise(done.result.report, report.notes);
   report.read_seconds = loaded.read_seconds;
   report.seconds = loaded.read_seconds + seconds_since(start);
   report.reconstruction = done.result.report;

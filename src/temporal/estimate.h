@@ -1,0 +1,24 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "polyrecon/image.h"
+#include "temporal/follow.h"
+#include "temporal/geometry.h"
+
+namespace polyrecon {
+
+/// An estimate of the current frame from other frames; zero where it is not valid.
+struct Estimate {
+  std::array<Image, 2> color;
+  Image variance;  ///< Of one half, 3 channels.
+  std::array<Image, surfaces> surface;
+  std::vector<unsigned char> valid;  ///< One byte per pixel.
+};
+
+/// The estimate of the pixels of area from the frames k before and k after; empty if there are none.
+/// all: places in all neighbours.
+Estimate estimate_at(const std::vector<Places>& all, int k, const Rect& area);
+
+}  // namespace polyrecon

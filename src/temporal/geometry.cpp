@@ -1,0 +1,80 @@
+#include "temporal/geometry.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "core/halves.h"
+#include "core/repair.h"
+
+namespace polyrecon {
+namespace {
+
+constexpr int repair_depth = 8;       // pixels, as for features
+constexpr double least_depth = 1e-6;  // depths below it, and 0 of an empty background, are one
+
+std::optional<Surface> surface_of(Role role) {
+  switch (role) {
+    case Role::Albedo:
+      return AlbedoSurface;
+    case Role::Normal:
+      return NormalSurface;
+    case Role::Depth:
+      return DepthSurface;
+    default:
+      return std::nullopt;
+  }
+}
+
+void to_logarithm(Image& depth, double sky) {
+  for (std::size_t i = 0; i < depth.pixels(); ++i) {
+    const auto z = static_cast<double>(depth.plane(0)[i]);
+    depth.plane(0)[i] = static_cast<Real>(std::log(std::isnan(z) ? sky : std::clamp(z, least_depth, sky)));
+  }
+}
+
+double noise_at(const Pass& pass, int c, std::size_t i) {
+  const double variance = !pass.variance.empty()
+                              ? static_cast<double>(pass.variance.plane(c)[i])
+                              : variance_of_mean<double>(pass.half_a.plane(c)[i], pass.half_b.plane(c)[i]);
+  return std::isfinite(variance) ? std::max(variance, 0.0) : 0;
+}
+
+}  // namespace
+
+Geometry geometry_of(const Frame& frame) {
+  Geometry out{frame.data_window, frame.motion, {}};
+  for (const Feature& feature : frame.features) {
+    const auto surface = surface_of(feature.role);
+    if (!surface) continue;
+    Image& image = out.surface[*surface];
+    image = feature.pass.mean;
+    if (*surface == DepthSurface) to_logarithm(image, frame.sky_depth);
+    repair_nonfinite(image, repair_depth);
+  }
+  return out;
+}
+
+std::array<Image, surfaces> surface_noise(const Frame& frame) {
+  std::array<Image, surfaces> out;
+  for (const Feature& feature : frame.features) {
+    const auto surface = surface_of(feature.role);
+    if (!surface || !feature.pass.noise_is_known()) continue;
+    Image& noise = out[*surface];
+    noise = Image(frame.width(), frame.height(), 1);
+    for (int c = 0; c < feature.pass.mean.channels(); ++c)
+      for (std::size_t i = 0; i < noise.pixels(); ++i)
+        noise.plane(0)[i] += static_cast<Real>(noise_at(feature.pass, c, i));
+  }
+  return out;
+}
+
+Geometry crop(const Geometry& geometry, const Rect& r) {
+  const Rect& w = geometry.window;
+  Geometry out{{w.x0 + r.x0, w.y0 + r.y0, w.x0 + r.x1, w.y0 + r.y1}, {}, {}};
+  for (std::size_t s = 0; s < surfaces; ++s)
+    if (!geometry.surface[s].empty()) out.surface[s] = crop(geometry.surface[s], r);
+  return out;
+}
+
+}  // namespace polyrecon

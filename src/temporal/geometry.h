@@ -1,0 +1,32 @@
+#pragma once
+
+#include <array>
+
+#include "polyrecon/frame.h"
+#include "polyrecon/image.h"
+
+namespace polyrecon {
+
+/// The passes that say which surface a pixel shows.
+enum Surface { AlbedoSurface, NormalSurface, DepthSurface, surfaces };
+
+/// What tells where the points of a frame are in another frame, and whether a pixel shows the same surface there.
+struct Geometry {
+  Rect window;                          ///< As Frame::data_window.
+  Image motion;                         ///< As Frame::motion.
+  std::array<Image, surfaces> surface;  ///< Albedo, normal, and the logarithm of the depth; empty where unknown.
+};
+
+/// Channels of a Geometry.
+inline constexpr std::size_t geometry_channels = 4 + 3 + 3 + 1;
+
+/// The geometry of a frame; its passes are copied and made finite.
+Geometry geometry_of(const Frame& frame);
+
+/// Noise variance of the mean of each surface, summed over its channels, 1 channel each; empty where it is unknown.
+std::array<Image, surfaces> surface_noise(const Frame& frame);
+
+/// The part inside r, which counts from the upper left pixel of the window; without motion.
+Geometry crop(const Geometry& geometry, const Rect& r);
+
+}  // namespace polyrecon
