@@ -13,7 +13,8 @@ struct MergeOptions {
   /// Samples per pixel of each render; 0: as the files say. Needed where their metadata misleads: Blender 5 writes the
   /// count of the whole sequence into every subset of it.
   double samples = 0;
-  /// Renders of half B; all others are half A. Empty: renders of even index are half A, those of odd index half B.
+  /// Renders of half B; all others are half A. Empty: renders are half A and B in turn, or,
+  /// where that gives one half more than 1.25 times the samples of the other, divided as evenly as they allow.
   std::vector<std::string> half_b;
   bool compress = true;  ///< ZIP. Without compression the file is larger, and faster to write and to read.
   ReadLimits limits;

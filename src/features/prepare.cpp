@@ -202,6 +202,13 @@ void scale(Image& image, Real factor) {
   });
 }
 
+/// Noise variance of a half of a pass over its variance, which is that of the mean if the file has it, else of (A + B)
+/// / 2.
+Real half_noise_of(const Pass& pass) {
+  const bool of_mean = pass.has_halves() && !pass.variance.empty();
+  return of_mean ? static_cast<Real>(half_noise(pass.mean, pass.half_a, pass.half_b)) : Real(2);
+}
+
 /// Moves the halves out of a pass and repairs them. A pass without halves has its mean split, with half_variance as the
 /// noise variance of one half; where that is empty both halves are the mean.
 std::array<Image, 2> halves_of(Pass& pass, const Image& half_variance, std::uint64_t stream, const Image& picture,
@@ -230,11 +237,12 @@ void remove_noise_of_sky(const Image& depth, double sky, Image& variance) {
 Image feature_half_variance(Feature& feature, double sky, const Image& picture, std::size_t& repaired) {
   Pass& pass = feature.pass;
   if (!pass.variance.empty()) {
+    const Real of_half = pass.variance_is_estimated ? Real(1) : half_noise_of(pass);
     Image variance = std::move(pass.variance);
     if (is_depth(feature)) remove_noise_of_sky(pass.mean, sky, variance);
     repaired += repair(variance, picture);
     make_non_negative(variance);
-    if (!pass.variance_is_estimated) scale(variance, 2);
+    scale(variance, of_half);
     return variance;
   }
   if (!pass.has_halves()) return {};
@@ -405,7 +413,7 @@ Prepared prepare(Frame& frame, const Preparation& preparation, const Image& vari
   out.pair.variance = variance;
   repair(out.pair.variance, out.pair.sampled);
   make_non_negative(out.pair.variance);
-  scale(out.pair.variance, 2);  // half the samples have twice the variance
+  scale(out.pair.variance, half_noise_of(frame.beauty));
   out.negative_pixels = negative_pixels(frame.beauty.mean);
   prepare_colors(frame, preparation.stream, with_alpha, out);
   prepare_features(frame, preparation, prefilter_params, out, progress);

@@ -31,6 +31,7 @@
 #include "io/choose_layers.h"
 #include "io/exr/bands.h"
 #include "io/exr/single_part.h"
+#include "io/half_split.h"
 #include "io/merge_sums.h"
 #include "io/renderers/known_names.h"
 #include "io/renderers/polyrecon.h"
@@ -317,16 +318,16 @@ struct DecodedRender {
 /// Makes the merged file band by band.
 class Merger {
  public:
-  /// first_b: index of the first render of half B; those before it are half A. 0: renders with an odd index are half B.
+  /// first_b: index of the first render of half B; those before it are half A. 0: as split_renders divides them.
   Merger(std::vector<Render> renders, const MergeOptions& options, std::size_t first_b)
       : renders_(std::move(renders)),
         samples_(options.samples),
         compress_(options.compress),
-        first_b_(first_b),
         overflows_(renders_.front().layers.size()) {
     choose_window(options.limits.max_pixels);
     for (std::size_t l = 0; l < first().layers.size(); ++l) sort_layer(l);
     find_weights();
+    choose_halves(first_b);
     report_.files = static_cast<int>(renders_.size());
   }
 
@@ -517,6 +518,58 @@ class Merger {
     }
   }
 
+  /// first_b: as in the constructor.
+  void choose_halves(std::size_t first_b) {
+    half_b_.resize(renders_.size());
+    halves_weigh_alike_ = first_b > 0;
+    if (halves_weigh_alike_) {
+      std::fill(half_b_.begin() + static_cast<std::ptrdiff_t>(first_b), half_b_.end(), true);
+      return;
+    }
+    for (const Render& region : renders_) {
+      if (region.rank > 0) continue;
+      std::vector<std::size_t> indices;
+      for (std::size_t k = 0; k < renders_.size(); ++k)
+        if (renders_[k].region == region.region) indices.push_back(k);
+      const std::vector<double> samples = mean_samples(indices);
+      const std::vector<bool> half_b = split_renders(samples);
+      std::array<double, 2> sums{};
+      for (std::size_t i = 0; i < indices.size(); ++i) {
+        half_b_[indices[i]] = half_b[i];
+        sums[half_b[i] ? 1 : 0] += samples[i];
+      }
+      note_uneven_halves(sums);
+    }
+  }
+
+  void note_uneven_halves(const std::array<double, 2>& samples) {
+    constexpr double uneven = 2;
+    if (counted_.empty() || std::max(samples[0], samples[1]) <= uneven * std::min(samples[0], samples[1])) return;
+    report_.notes.push_back(fmt::format(
+        "the halves have {:.3g} and {:.3g} samples per pixel, so the estimated error will be too high; merge "
+        "renders of similar length",
+        samples[0], samples[1]));
+  }
+
+  /// Mean samples per pixel of some renders, from a few lines of their sample-count pass; all the same if unknown.
+  std::vector<double> mean_samples(const std::vector<std::size_t>& renders) const {
+    std::vector<double> means(renders.size(), 1);
+    if (counted_.empty() || renders.size() < 2) return means;
+    in_parallel(renders.size(), [&](std::size_t i) {
+      const Render& render = renders_[renders[i]];
+      constexpr int lines = 5;
+      double sum = 0;
+      for (int line = 0; line < lines; ++line) {
+        Rect area = render.region;
+        area.y0 += (2 * line + 1) * area.height() / (2 * lines);
+        area.y1 = area.y0 + 1;
+        for (const double n : read_counts(render, counted_.front(), area)) sum += n;
+      }
+      means[i] = sum / (lines * static_cast<double>(render.region.width()));
+    });
+    return means;
+  }
+
   enum class FirstSamples { Shared, Apart, Unknown };
 
   /// Whether the first two renders both have the first sample of a sequence: by the depth of that sample, in the lines
@@ -668,15 +721,13 @@ class Merger {
       return;
     }
     sums.all[i].add(x, weight);
-    (is_half_b(k) ? sums.half_b : sums.half_a)[i].add(x, weight);
+    (half_b_[k] ? sums.half_b : sums.half_a)[i].add(x, weight);
   }
 
   static void put(NativeChannel& channel, std::size_t i, double value) {
     const auto narrow = static_cast<float>(value);
     std::memcpy(channel.samples.data() + i * sizeof narrow, &narrow, sizeof narrow);
   }
-
-  bool is_half_b(std::size_t k) const { return first_b_ > 0 ? k >= first_b_ : renders_[k].rank % 2 == 1; }
 
   struct Moments {
     double mean;
@@ -693,7 +744,7 @@ class Merger {
         !is_covered(band.x0 + static_cast<int>(i % width), band.y0 + static_cast<int>(i / width)))
       return {0, 0};
     if (all.renders == 0) return {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
-    if (first_b_ == 0 || a.renders == 0 || b.renders == 0) return {all.mean, all.variance_of_mean()};
+    if (!halves_weigh_alike_ || a.renders == 0 || b.renders == 0) return {all.mean, all.variance_of_mean()};
     const double of_a_sample = all.variance_of_mean() * all.weight;
     return {(a.mean + b.mean) / 2, of_a_sample * (1 / a.weight + 1 / b.weight) / 4};
   }
@@ -808,10 +859,11 @@ class Merger {
   std::vector<Render> renders_;
   double samples_;  ///< Samples of each render; 0: as the files say.
   bool compress_;
-  std::size_t first_b_;       ///< As in the constructor.
-  Rect window_;               ///< Of the result: all regions.
-  bool has_regions_ = false;  ///< The renders show more than one region of the frame.
-  bool joins_ = false;        ///< Some region has one render only: the regions are put side by side, nothing else.
+  bool halves_weigh_alike_ = false;  ///< The halves were given.
+  std::vector<bool> half_b_;         ///< For each render whether it is of half B.
+  Rect window_;                      ///< Of the result: all regions.
+  bool has_regions_ = false;         ///< The renders show more than one region of the frame.
+  bool joins_ = false;  ///< Some region has one render only: the regions are put side by side, nothing else.
   std::vector<std::size_t> merged_, kept_;  ///< Indices of layers.
   std::vector<Slot> slots_;                 ///< The channels of all merged layers.
   std::vector<std::string> counted_;        ///< View layers whose sample counts are known.

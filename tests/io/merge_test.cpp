@@ -13,6 +13,7 @@
 #include <cmath>
 #include <initializer_list>
 #include <limits>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -165,6 +166,26 @@ TEST(MergeRenders, LongRendersWeighMoreInTheVarianceThanShortOnes) {
   merge(write_all(folder, {render(0, "1"), render(4, "1"), render(2, "2")}), out);
   EXPECT_THAT(stored_floats(out, 0, "V.Combined.R"), Each(2.f));
   EXPECT_THAT(stored_floats(out, 0, "V.Combined Variance.R"), Each(::testing::FloatEq(0.8f)));
+}
+
+TEST(MergeRenders, HalvesHaveAboutTheSameSamples) {
+  const TemporaryFolder folder;
+  const std::string out = folder / "out.exr";
+  const auto counted = [](double value, double samples) {
+    TestPart part;
+    part.channels = join({flat_layer("V.Combined", "RGB", value), flat_layer("V.Sample Count", "X", samples)});
+    return part;
+  };
+  const auto halves = [&](const std::vector<TestPart>& renders) {
+    const MergeResult result = merge(write_all(folder, renders), out);
+    EXPECT_THAT(stored_floats(out, 0, "V.Combined A.R"), Each(stored_floats(out, 0, "V.Combined A.R").front()));
+    return std::tuple(stored_floats(out, 0, "V.Combined A.R").front(), stored_floats(out, 0, "V.Combined B.R").front(),
+                      result.notes.size());
+  };
+  EXPECT_EQ(halves({counted(1, 4), counted(3, 4), counted(5, 4), counted(7, 4)}), std::tuple(3.F, 5.F, 0U));
+  EXPECT_EQ(halves({counted(1, 1), counted(3, 1), counted(5, 1), counted(7, 1), counted(9, 4)}),
+            std::tuple(9.F, 4.F, 0U));
+  EXPECT_EQ(halves({counted(1, 2), counted(3, 8)}), std::tuple(1.F, 3.F, 1U));  // the note: they cannot be even
 }
 
 TEST(MergeRenders, SamplesGivenByHandReplaceTheMetadata) {
