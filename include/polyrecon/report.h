@@ -32,7 +32,7 @@ struct Report {
   int width = 0, height = 0;  ///< Pixels.
   std::vector<StageTime> stages;
   std::vector<Decision> decisions;
-  std::string variance_source;  ///< "from the file", "from half buffers" or "estimated from the image".
+  std::string variance_source;  ///< "from the file", "from the half buffers" or "estimated from the image".
 
   std::size_t windows = 0;                         ///< Fits of windows.
   std::array<std::size_t, 6> windows_per_order{};  ///< [0]: constant only; [k]: order k - 1 with features, k = 1..5.

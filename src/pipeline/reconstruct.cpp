@@ -28,7 +28,8 @@
 #include "temporal/join.h"
 #include "temporal/neighbour.h"
 
-// The order of the stages of a reconstruction. This is the only file that knows it.
+// The order of the stages of a reconstruction. The steps of the first one, before the frame is split into halves, are
+// in pipeline/survey.cpp, which `inspect` uses too.
 namespace polyrecon {
 namespace {
 

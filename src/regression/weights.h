@@ -17,10 +17,9 @@ constexpr Real cut_exponent = 7;
 /// between a centre and every pixel of its window:
 ///     mean over the patch of  (|a - b|^2 - (va + min(va, vb))) / (va + vb + eps (|a|^2 + |b|^2))
 /// with colours a, b and their noise variances va, vb summed over RGB. The distance of two pixels of the same true
-/// colour is about 0, whatever the noise. Patches repeat the pixels at the border of the image, and of
-/// the picture in it. The term of a pixel other
-/// than the middle one is limited to PatchParams::most_around, so that one lamp in the corner of a patch does not make
-/// the patch unlike all others.
+/// colour is about 0, whatever the noise. Patches repeat the pixels at the border of the image, and of the picture in
+/// it. The term of a pixel other than the middle one is limited to PatchParams::most_around, so that one lamp in the
+/// corner of a patch does not make the patch unlike all others.
 ///
 /// The terms of one row of patches are summed along the row once and serve all centres of an image column whose patches
 /// contain that row. So window_of is fastest where it is called column by column.

@@ -110,7 +110,7 @@ def apart(function, *arguments):
 
 
 class Shots:
-    """Sequences of links to one frame, made when asked for."""
+    """Sequences of links to one frame, made on request."""
 
     def __init__(self, program, folder):
         self.program, self.folder = program, folder

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Times `polyrecon denoise` on frames of growing size and prints Markdown tables of seconds and memory.
 
-The frames are a real render, a shipped sample with all its layers, tiled in mirror image to the size asked for. Seconds
+The frames are a real render, a shipped sample with all its layers, tiled in mirror image to the size requested. Seconds
 by stage are the program's own (--report); CPU seconds and peak memory are what the kernel counted for the process.
 """
 

@@ -31,8 +31,8 @@ struct FrameLimits {
   double relative_mse = 0;  ///< Largest mean relative MSE.
 };
 
-/// The work that a command line of `denoise` requests. Everything is decided: whoever takes a job needs no option and
-/// looks up no name.
+/// The work that a command line of `denoise` requests. Everything is decided, except the settings that a pilot chooses
+/// for each frame within the limits.
 struct Job {
   std::vector<FrameFiles> frames;
   bool is_sequence = false;  ///< Then a frame that fails does not end the run.

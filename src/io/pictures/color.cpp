@@ -57,7 +57,7 @@ ocio::ConstConfigRcPtr current_config() {
   return ocio::Config::CreateFromStream(text);
 }
 
-/// The view asked for, or the default one.
+/// The requested view, or the default one.
 std::string view_of(const ocio::Config& config, const std::string& display, const std::string& wanted) {
   if (wanted.empty()) return config.getDefaultView(display.c_str());
   std::string known;
