@@ -9,6 +9,7 @@
 #include "polyrecon/params.h"
 #include "polyrecon/progress.h"
 #include "polyrecon/report.h"
+#include "polyrecon/timed_neighbour.h"
 
 namespace polyrecon {
 
@@ -28,15 +29,6 @@ struct Result {
 /// out of its range, Error{CheckFailed} if the beauty has no finite pixel, Error{OutOfMemory} if not even the smallest
 /// tile fits, and Error{Interrupted} when progress asks to stop.
 Result reconstruct(Frame& frame, const Params& params, Progress& progress);
-
-/// What the frames before and after a frame need of it; made by prepare_neighbour.
-struct Neighbour;
-
-/// A neighbour in time.
-struct TimedNeighbour {
-  int offset = 0;                    ///< Frames after the one that is reconstructed; negative: before it.
-  const Neighbour* frame = nullptr;  ///< Must outlive the call.
-};
 
 /// The same with the help of frames before and after, which are averaged into the frame along its motion vectors. The
 /// neighbours have any order and are at most params.temporal.radius frames away. They count towards params.max_memory.

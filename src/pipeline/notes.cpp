@@ -59,8 +59,8 @@ void note_fits(const FitCounters& counters, Report& report) {
   report.windows = counters.windows;
   for (std::size_t m = 0; m < report.windows_per_order.size(); ++m) report.windows_per_order[m] = counters.per_model[m];
   report.rank_deficient_windows = counters.rank_deficient;
-  report.dropped_windows = counters.dropped;
-  report.pixels_fallen_back_to_input = counters.uncovered_pixels;
+  report.windows_not_finite = counters.dropped;
+  report.pixels_kept_noisy = counters.uncovered_pixels;
 }
 
 void note_result(Result& result) {

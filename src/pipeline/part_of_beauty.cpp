@@ -17,10 +17,9 @@ constexpr double least_noise = 0.01;
 /// An estimate of the noise of a pixel: that of the file, else its difference to the pixel on its left.
 double deviation(const Pass& pass, int x, int y, int c) {
   if (!pass.variance.empty()) return std::sqrt(std::max<double>(pass.variance.at(x, y, c), 0));
-  if (pass.has_halves())
-    return std::sqrt(variance_of_mean<double>(pass.half_a.at(x, y, c), pass.half_b.at(x, y, c)));
-  const int beside = x > 0 ? x - 1 : std::min(x + 1, pass.mean.width() - 1);
-  return std::abs(static_cast<double>(pass.mean.at(x, y, c)) - static_cast<double>(pass.mean.at(beside, y, c)));
+  if (pass.has_halves()) return std::sqrt(variance_of_mean<double>(pass.half_a.at(x, y, c), pass.half_b.at(x, y, c)));
+  const int adjacent = x > 0 ? x - 1 : std::min(x + 1, pass.mean.width() - 1);
+  return std::abs(static_cast<double>(pass.mean.at(x, y, c)) - static_cast<double>(pass.mean.at(adjacent, y, c)));
 }
 
 /// Whether the layer is noisy in a pixel in which no channel of the beauty is.

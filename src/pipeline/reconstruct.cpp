@@ -157,7 +157,7 @@ Image restore(const Frame& frame, const NoisyHalves& halves, const Candidate& so
   const HalfPair& pair = halves.prepared.pair;
   Image out = average(pair, solved);
   if (params.parts.raise_undershoot)
-    report.raised_pixels = raise_undershoot(mean_of_halves(pair.color, out.channels()), out);
+    report.pixels_raised_to_input = raise_undershoot(mean_of_halves(pair.color, out.channels()), out);
   restore_energy(halves.outliers, pair.variance, max_restored_gain, out);
   if (bound.pixels > 0) restore_everywhere(bound.energy, pair.variance, max_restored_gain, out);
   if (params.parts.restore_totals)
@@ -279,7 +279,7 @@ Result reconstruct(Frame& frame, const std::vector<TimedNeighbour>& neighbours, 
   const BoundEnergy bound = stages.run("noise bound", 1, [&](Progress&) {
     return halves.bound.empty() ? BoundEnergy() : bind_to_noise(pair, halves.bound, max_total_gain, solved);
   });
-  report.bound_pixels = bound.pixels;
+  report.pixels_clamped_to_noise = bound.pixels;
   result.error =
       stages.run("error map", 1, [&](Progress&) { return make_error_map(pair, noise.variance, solved, picture); });
   result.order = solved.order;

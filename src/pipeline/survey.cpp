@@ -13,7 +13,7 @@ namespace {
 Decision decide_on_void(const Image& picture) {
   const std::size_t all = picture.pixels();
   const double share = 1 - static_cast<double>(picture_pixels(picture, all)) / static_cast<double>(all);
-  return {"void pixels left alone", true,
+  return {"void pixels skipped", true,
           fmt::format("{:.1f} % of the frame: alpha, features and all colours are 0", 100 * share)};
 }
 

@@ -3,7 +3,7 @@
 #include <cstddef>
 
 #include "core/half_pair.h"
-#include "polyrecon/reconstruct.h"
+#include "polyrecon/timed_neighbour.h"
 #include "temporal/geometry.h"
 
 namespace polyrecon {

@@ -15,6 +15,7 @@
 
 #include "blend/blend_windows.h"
 #include "core/rect.h"
+#include "core/relmse.h"
 #include "features/prepare.h"
 #include "noise/variance.h"
 #include "polyrecon/params.h"
@@ -173,7 +174,7 @@ struct LimitSums {
         const double r = reference.mean.plane(c)[at], v = reference.variance.plane(c)[at],
                      d = fit(j, c) + origin(c) - r;
         const double weight_j = static_cast<double>(w.weight[static_cast<std::size_t>(j)]) / 3;
-        error += weight_j * (d * d - v) / (r * r + 0.01);
+        error += weight_j * (d * d - v) / relmse_denominator(r);
         weight += weight_j;
       }
   }

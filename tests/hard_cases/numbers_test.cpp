@@ -96,7 +96,7 @@ TEST(Case16, OneBadPixelIsFiniteAndStaysLocal) {
   params.levels = 1;
   params.radius = 2;
   params.parts.restore_totals = false;
-  const int reach = stage_halo(params) + 2 + 9;
+  const int halo = stage_halo(params) + 2 + 9;
   Scene scene = make_scene(96, 32, 0.2, 10);
   scene.frame.aovs = {{"Layer", test::times(scene.frame.beauty.mean, 0.5), {}, {}, {}}};
   const Result clean = run(scene.frame, params);
@@ -107,7 +107,7 @@ TEST(Case16, OneBadPixelIsFiniteAndStaysLocal) {
       where.image(frame)->at(4, 16, 0) = value;
       const Result result = run(frame, params);
       EXPECT_TRUE(finite(result));
-      const Rect far{4 + reach + 1, 0, 96, 32};
+      const Rect far{4 + halo + 1, 0, 96, 32};
       // Relative errors are divided by the mean brightness of the frame, which changes with one pixel of 3072.
       EXPECT_LT(test::max_difference(crop(result.beauty, far), crop(clean.beauty, far)), 1e-4);
       EXPECT_LT(test::max_difference(result.beauty, clean.beauty), 2);

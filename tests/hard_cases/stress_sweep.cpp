@@ -168,8 +168,8 @@ std::string fault_of(std::uint64_t seed, Totals& totals) {
   const Report& report = one.result.report;
   totals.windows += report.windows;
   totals.rank_deficient += report.rank_deficient_windows;
-  totals.dropped += report.dropped_windows;
-  totals.fallen_back += report.pixels_fallen_back_to_input;
+  totals.dropped += report.windows_not_finite;
+  totals.fallen_back += report.pixels_kept_noisy;
   totals.repaired += report.repaired_pixels;
   totals.outliers += report.outliers;
   return {};

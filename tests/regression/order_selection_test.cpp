@@ -245,9 +245,9 @@ TEST(SelectOrder, TakesTheModelOfLeastEstimatedErrorAndSaysHowLargeThatIs) {
           const double product = s.bias_product(h, y.col(c), guess.col(c)) + s.bias_square(whole, guess.col(c)) -
                                  s.bias_product(whole, y.col(c), guess.col(c));
           const double chosen_by = first_stage ? square - s.noise_in_bias(h, c) : product;
-          const double told_by = first_stage ? chosen_by : 0.9 * product + 0.1 * square;
+          const double squared_bias = first_stage ? chosen_by : 0.9 * product + 0.1 * square;
           sum += chosen_by + v[k];
-          e[k] = std::max(told_by, 0.0) + v[k];
+          e[k] = std::max(squared_bias, 0.0) + v[k];
         }
         if (sum < least - 1e-9) {
           least = sum;

@@ -89,8 +89,8 @@ std::string report_text(const RunReport& run) {
   text += line("corrections",
                fmt::format("{} windows rank-deficient, {} not finite; {} pixels kept noisy, {} clamped to the noise, "
                            "{} raised to the input",
-                           r.rank_deficient_windows, r.dropped_windows, r.pixels_fallen_back_to_input, r.bound_pixels,
-                           r.raised_pixels));
+                           r.rank_deficient_windows, r.windows_not_finite, r.pixels_kept_noisy,
+                           r.pixels_clamped_to_noise, r.pixels_raised_to_input));
   text += line("input pixels", fmt::format("{} repaired, {} negative", r.repaired_pixels, r.negative_pixels));
   text += line("fireflies", fmt::format("{}, redistributed energy {}", r.outliers, rgb_text(r.outlier_energy)));
   text += line("energy (mean RGB)", fmt::format("{} -> {} ({:+.3f} %)", rgb_text(r.energy_before),
@@ -133,10 +133,10 @@ Json report_json(const RunReport& run, const FrameSource& source) {
             {"shared_noise", number(r.neighbour_shared_noise)}}},
           {"windows", windows_json(r)},
           {"corrections",
-           {{"windows_not_finite", r.dropped_windows},
-            {"pixels_kept_noisy", r.pixels_fallen_back_to_input},
-            {"pixels_clamped_to_noise", r.bound_pixels},
-            {"pixels_raised_to_input", r.raised_pixels}}},
+           {{"windows_not_finite", r.windows_not_finite},
+            {"pixels_kept_noisy", r.pixels_kept_noisy},
+            {"pixels_clamped_to_noise", r.pixels_clamped_to_noise},
+            {"pixels_raised_to_input", r.pixels_raised_to_input}}},
           {"repaired_pixels", r.repaired_pixels},
           {"negative_pixels", r.negative_pixels},
           {"fireflies", {{"count", r.outliers}, {"energy", rgb(r.outlier_energy)}}},

@@ -142,7 +142,7 @@ class ReadAhead {
 };
 
 /// The limit of memory for a frame while the next one, which is assumed to have the same size, is read.
-std::size_t memory_beside_next(const Frame& frame, const Params& params) {
+std::size_t memory_with_next(const Frame& frame, const Params& params) {
   const FrameShape shape = shape_of(frame);
   const std::size_t next = shape.pixels * static_cast<std::size_t>(channels_ahead(shape, params)) * sizeof(Real);
   return params.max_memory > next ? params.max_memory - next : 0;
@@ -157,8 +157,7 @@ void denoise_frame(const Job& job, const FrameFiles& files, bool is_last, Loaded
     run.plan(loaded);
     const auto next = run.next();
     next ? ahead.begin(files, *next) : begin_next();
-    const std::size_t memory =
-        is_last && !next ? job.params.max_memory : memory_beside_next(loaded.in.frame, job.params);
+    const std::size_t memory = is_last && !next ? job.params.max_memory : memory_with_next(loaded.in.frame, job.params);
     run.denoise(std::move(loaded), memory, progress);
     if (!next) break;
     loaded = *ahead.take();

@@ -1,0 +1,15 @@
+// A frame before or after the one that is reconstructed.
+#pragma once
+
+namespace polyrecon {
+
+/// What the frames before and after a frame need of it; made by prepare_neighbour (polyrecon/reconstruct.h).
+struct Neighbour;
+
+/// A neighbour in time.
+struct TimedNeighbour {
+  int offset = 0;                    ///< Frames after the one that is reconstructed; negative: before it.
+  const Neighbour* frame = nullptr;  ///< Must outlive the call.
+};
+
+}  // namespace polyrecon
