@@ -69,9 +69,8 @@ class Installed(unittest.TestCase):
                     imported |= {alias.name.split(".")[0] for alias in node.names}
                 elif isinstance(node, ast.ImportFrom) and node.level == 0:
                     imported.add(node.module.split(".")[0])
-        siblings = {
-            path.stem for path in PIPELINES.rglob("*.py")
-        }  # scripts that a renderer runs import each other by these names
+        # Scripts that a renderer runs import each other, and folders, by these names.
+        siblings = {name for path in PIPELINES.rglob("*.py") for name in (path.stem, path.parent.name)}
         foreign = imported - set(sys.stdlib_module_names) - GIVEN_BY_THE_RENDERER - siblings
         self.assertLessEqual({MODULES.get(name, name) for name in foreign}, set(PROJECT["dependencies"]))
 

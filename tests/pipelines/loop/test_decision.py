@@ -10,7 +10,7 @@ from pipelines.loop.journal import HALVES, Part, State
 
 def part(samples, seconds, masked=False, half="a", round_number=0, cost_weighted_samples=None):
     weighted = samples if cost_weighted_samples is None else cost_weighted_samples
-    return Part("part.exr", half, round_number, 0, samples, weighted, seconds, masked)
+    return Part("part.exr", half, round_number, 0, samples, weighted, seconds, masked, sha256="")
 
 
 class Seconds(unittest.TestCase):
