@@ -187,7 +187,7 @@ class FrameBuilder {
       result_.notes.push_back(fmt::format(
           "{}: columns do not wrap around: the data window is not as wide as the picture", result_.source.path));
     else if (options_.wrap == Wrap::Auto)
-      result_.notes.push_back("a panorama (envmap latlong): columns wrap around; --wrap none if they should not");
+      result_.notes.emplace_back("a panorama (envmap latlong): columns wrap around; --wrap none if they should not");
     return whole;
   }
 

@@ -8,7 +8,8 @@
 namespace polyrecon {
 
 /// The passes that say which surface a pixel shows.
-enum Surface { AlbedoSurface, NormalSurface, DepthSurface, surfaces };
+enum Surface { AlbedoSurface, NormalSurface, DepthSurface };
+inline constexpr std::size_t surfaces = 3;
 
 /// What tells where the points of a frame are in another frame, and whether a pixel shows the same surface there.
 struct Geometry {
