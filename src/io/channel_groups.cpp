@@ -80,7 +80,8 @@ std::string take_view(const PartViews& views, std::string& name) {
 /// The eye that a part has by its name where another part is that of the other eye: "rgba_left" next to "rgba_right".
 std::string eye_by_name(const FileInfo& file, const PartInfo& part) {
   for (std::size_t e = 0; e < eyes.size(); ++e) {
-    const std::string eye(eyes[e]), other(eyes[1 - e]), rest = without_view(part.name, eye);
+    std::string eye(eyes[e]);
+    const std::string other(eyes[1 - e]), rest = without_view(part.name, eye);
     if (rest == part.name) continue;
     for (const PartInfo& candidate : file.parts)
       if (candidate.name != part.name && without_view(candidate.name, other) == rest) return eye;
@@ -294,7 +295,7 @@ std::vector<Layer> group_channels(const FileInfo& file) {
 }
 
 std::string word_of(const Layer& layer, const std::string& channel) {
-  const std::string word(after_last_dot(channel));
+  std::string word(after_last_dot(channel));
   if (word.size() < channel.size() || word.compare(0, layer.pass.size(), layer.pass) != 0) return word;
   std::size_t begin = layer.pass.size();
   while (begin < word.size() && is_separator(word[begin])) ++begin;
