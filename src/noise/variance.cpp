@@ -36,7 +36,7 @@ double degrees_of_freedom(const NestedFactor& factor, const Window& window) {
 /// The pixels of an area that are in a window: their places in it, row by row; -1 for pixels outside the picture.
 struct Places {
   Rect area;
-  std::array<int, (2 * fit_radius + 1) * (2 * fit_radius + 1)> place;
+  std::array<int, std::size_t{2 * fit_radius + 1} * std::size_t{2 * fit_radius + 1}> place;
 };
 
 /// Calls body(i, j) for each pair of horizontal or vertical neighbours of a window. Returns the number of pairs.
