@@ -52,7 +52,9 @@ using Samples = std::function<double(int x, int y)>;  ///< In file coordinates.
 
 /// Values that every type holds exactly: multiples of 1/8 (of 1 for uint) below 64, unlike from channel to channel.
 inline Samples pattern(int seed) {
-  return [seed](int x, int y) { return static_cast<double>(((x * 7 + y * 13 + seed * 5) % 61 + 61) % 61); };
+  return [seed](std::int64_t x, std::int64_t y) {
+    return static_cast<double>(((x * 7 + y * 13 + seed * 5) % 61 + 61) % 61);
+  };
 }
 
 inline Samples constant(double value) {
