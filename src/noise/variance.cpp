@@ -37,25 +37,34 @@ double degrees_of_freedom(const NestedFactor& factor, const Window& window) {
 struct Places {
   Rect area;
   std::array<int, std::size_t{2 * fit_radius + 1} * std::size_t{2 * fit_radius + 1}> place;
+  bool whole = true;  ///< No pixel is outside the picture, so each place is its index.
 };
 
-/// Calls body(i, j) for each pair of horizontal or vertical neighbours of a window. Returns the number of pairs.
-template <typename Body>
-int for_neighbours(const Places& places, const Body& body) {
-  const int width = places.area.width(), height = places.area.height();
-  int pairs = 0;
-  const auto visit = [&](int a, int b) {
-    const int i = places.place[static_cast<std::size_t>(a)], j = places.place[static_cast<std::size_t>(b)];
-    if (i < 0 || j < 0) return;
-    body(static_cast<std::size_t>(i), static_cast<std::size_t>(j));
-    ++pairs;
-  };
+template <typename Visit>
+void for_pairs(int width, int height, const Visit& visit) {
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x) {
       const int i = y * width + x;
       if (x + 1 < width) visit(i, i + 1);
       if (y + 1 < height) visit(i, i + width);
     }
+}
+
+/// Calls body(i, j) for each pair of horizontal or vertical neighbours of a window. Returns the number of pairs.
+template <typename Body>
+int for_neighbours(const Places& places, const Body& body) {
+  const int width = places.area.width(), height = places.area.height();
+  if (places.whole) {
+    for_pairs(width, height, [&](int i, int j) { body(static_cast<std::size_t>(i), static_cast<std::size_t>(j)); });
+    return (width - 1) * height + width * (height - 1);
+  }
+  int pairs = 0;
+  for_pairs(width, height, [&](int a, int b) {
+    const int i = places.place[static_cast<std::size_t>(a)], j = places.place[static_cast<std::size_t>(b)];
+    if (i < 0 || j < 0) return;
+    body(static_cast<std::size_t>(i), static_cast<std::size_t>(j));
+    ++pairs;
+  });
   return pairs;
 }
 
@@ -116,12 +125,15 @@ void fit_noise(const Image& y, const Image& features, const Image& picture, int 
   window.reserve(fit_radius, layout.columns(), y.channels());
   s.weight.assign(static_cast<std::size_t>(window.stride), Real(0));
   window.count = 0;
-  Places places{intersect(grow({cx, cy, cx + 1, cy + 1}, fit_radius), y.bounds()), {}};
+  Places places{intersect(grow({cx, cy, cx + 1, cy + 1}, fit_radius), y.bounds()), {}, true};
   auto place = places.place.begin();
   for (int v = places.area.y0; v < places.area.y1; ++v)
     for (int u = places.area.x0; u < places.area.x1; ++u) {
       *place = in_picture(picture, y.index(u, v)) ? window.count : -1;
-      if (*place++ < 0) continue;
+      if (*place++ < 0) {
+        places.whole = false;
+        continue;
+      }
       const auto j = static_cast<std::size_t>(window.count++);
       window.x[j] = u;
       window.y[j] = v;
