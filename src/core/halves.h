@@ -19,7 +19,8 @@ Image mean_of_halves(const std::array<Image, 2>& halves, int channels);
 
 /// The noise variance of a half, averaged over both, relative to that of `mean`: 2 for halves of equal sample counts.
 /// If half A has the share w of the samples, mean = w A + (1 - w) B, and the result is (1 / w + 1 / (1 - w)) / 2. One w
-/// is fitted to all pixels and channels. The images have the same size; samples that are not finite do not count.
+/// is fitted to all pixels and channels; halves that contradict the mean count as equal. The images have the same
+/// size; samples that are not finite do not count.
 double half_noise(const Image& mean, const Image& half_a, const Image& half_b);
 
 }  // namespace polyrecon
