@@ -6,42 +6,56 @@ LEFT, TOP, COLUMN, ROW = 110, 64, 280, 132  # of the first box; distances of box
 
 # Phase, its steps as (function, folder), and the type of what it hands on.
 PHASES = [
-    ("read", [("read_frame", "src/io")], "Frame"),
+    ("read", [("read_frame", "src/io"), ("wrap", "src/core; panoramas only")], "Frame"),
     (
-        "prepare",
+        "survey",
         [
+            ("picture_of, hide_void", "src/core; void pixels"),
             ("noise_variance", "src/noise"),
-            ("look_at, prepare", "src/features"),
-            ("remove_outliers", "src/outliers"),
+            ("look_at", "src/features"),
         ],
-        "HalfPair",
+        "Frame, NoiseVariance, Preparation",
     ),
     (
         "prepare",
-        [("floor_variance", "src/noise"), ("join_neighbours", "src/temporal")],
+        [("prepare", "src/features"), ("remove_outliers", "src/outliers"), ("floor_variance", "src/noise")],
         "HalfPair",
     ),
+    ("join", [("join_neighbours", "src/temporal")], "HalfPair"),
     (
         "fit",
+        [("fit_and_blend", "src/regression, src/blend"), ("select", "src/blend"), ("add_coarse", "src/blend")],
+        "Candidate",
+    ),
+    (
+        "finish",
+        [("empty_void", "src/core"), ("bind_to_noise", "src/blend"), ("make_error_map", "src/maps")],
+        "Candidate, ErrorMap",
+    ),
+    (
+        "finish",
         [
-            ("fit windows, blend", "src/regression, src/blend"),
-            ("select", "src/blend"),
-            ("add_coarse", "src/blend"),
+            ("add_prior", "src/blend"),
+            ("raise_undershoot", "src/blend; mean of both halves"),
+            ("restore_energy", "src/outliers"),
         ],
-        "Candidate",
-    ),
-    (
-        "finish",
-        [("bind_to_noise", "src/blend"), ("make_error_map", "src/maps"), ("add_prior", "src/blend")],
-        "Candidate",
-    ),
-    (
-        "finish",
-        [("average", "src/pipeline"), ("raise_undershoot", "src/blend"), ("restore_energy", "src/outliers")],
         "Result",
     ),
-    ("write", [("make_sample_map", "src/maps"), ("write_result, write_maps", "src/io")], None),
+    (
+        "write",
+        [("unwrapped", "src/core; panoramas only"), ("make_sample_map", "src/maps"), ("write_result", "src/io")],
+        None,
+    ),
 ]
+
+# What stands at the frame around a phase.
+FRAMES = {
+    "survey": "survey_frame, src/pipeline; inspect runs it too",
+    "fit": "repeated for each level and stage: run_stage, src/pipeline",
+}
+
+# What enters a phase from beside.
+INPUTS = {"join": ("Neighbour", "frames before and after, prepared alike: prepare_neighbour")}
 
 STYLE = """
   .card { fill: #ffffff; stroke: #d0d7de; }
@@ -96,15 +110,24 @@ def row(number, phase, steps, handed_on, is_first_of_phase):
     return lines
 
 
-def repeat():
-    """A frame around the fits, which are made again for each level and stage."""
-    number = next(k for k, (phase, *_) in enumerate(PHASES) if phase == "fit")
+def frame(number, steps, label):
+    """A frame around the boxes of a phase."""
     y = TOP + number * ROW
-    left, right = LEFT - 16, LEFT + 2 * COLUMN + BOX_WIDTH + 16
+    left, right = LEFT - 16, LEFT + (len(steps) - 1) * COLUMN + BOX_WIDTH + 16
     return [
         f'<rect class="frame" x="{left}" y="{y - 14}" width="{right - left}" height="{BOX_HEIGHT + 28}" rx="8"/>',
-        f'<text class="folder" x="{right}" y="{y - 22}" text-anchor="end">repeated for each level and stage: '
-        "run_stage, src/pipeline</text>",
+        f'<text class="folder" x="{right}" y="{y - 22}" text-anchor="end">{label}</text>',
+    ]
+
+
+def side_input(number, steps, kind, label):
+    """An arrow from the right into the last box of a phase."""
+    x = LEFT + (len(steps) - 1) * COLUMN + BOX_WIDTH
+    middle = TOP + number * ROW + BOX_HEIGHT / 2
+    return [
+        *arrow(f"M {x + 480} {middle} H {x + 7}"),
+        f'<text class="type" x="{x + 24}" y="{middle - 8}">{kind}</text>',
+        f'<text class="folder" x="{x + 24}" y="{middle + 20}">{label}</text>',
     ]
 
 
@@ -124,8 +147,12 @@ def draw():
     previous = None
     for number, (phase, steps, handed_on) in enumerate(PHASES):
         lines += row(number, phase, steps, handed_on, phase != previous)
+        if phase in FRAMES:
+            lines += frame(number, steps, FRAMES[phase])
+        if phase in INPUTS:
+            lines += side_input(number, steps, *INPUTS[phase])
         previous = phase
-    return "\n".join([*lines, *repeat(), "</svg>"])
+    return "\n".join([*lines, "</svg>"])
 
 
 if __name__ == "__main__":
