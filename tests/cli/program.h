@@ -38,6 +38,10 @@ inline OIIO::ImageBuf load(const std::string& path) {
   return buffer;
 }
 
+/// The program, and the library that makes its system calls fail, of this build.
+const char* program_path();
+const char* failing_calls_path();
+
 /// What a run of the program left.
 struct Outcome {
   int code = -1;  ///< Exit code; 128 + signal where one ended it.
@@ -78,7 +82,7 @@ class ProgramTest : public ::testing::Test {
     const int err = ::open(path("stderr").c_str(), O_CREAT | O_TRUNC | O_WRONLY, 0600);
     ::dup2(out, STDOUT_FILENO);
     ::dup2(err, STDERR_FILENO);
-    std::vector<char*> argv{const_cast<char*>(POLYRECON_PROGRAM)};
+    std::vector<char*> argv{const_cast<char*>(program_path())};
     for (const std::string& a : arguments) argv.push_back(const_cast<char*>(a.c_str()));
     argv.push_back(nullptr);
     if (::chdir(folder_.c_str()) == 0) ::execv(argv[0], argv.data());

@@ -14,7 +14,8 @@ namespace {
 TEST(FuzzCorpus, EveryFileIsReadOrRefused) {
   const testing::TemporaryFolder folder;
   std::vector<std::filesystem::path> files;
-  for (const auto& entry : std::filesystem::directory_iterator(POLYRECON_FUZZ_CORPUS)) files.push_back(entry.path());
+  for (const auto& entry : std::filesystem::directory_iterator(POLYRECON_SOURCE_DIR "/tests/fuzz/corpus"))
+    files.push_back(entry.path());
   std::sort(files.begin(), files.end());
   ASSERT_GT(files.size(), 30u);
   for (const auto& file : files) EXPECT_NO_THROW(read_untrusted(file.string(), folder / "")) << file;

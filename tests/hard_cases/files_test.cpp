@@ -282,7 +282,7 @@ TEST_F(Case09File, InspectShowsTheViewsAndTheirRoles) {
 class Failing {
  public:
   Failing(const char* call, int at, const std::string& mark) {
-    ::setenv("LD_PRELOAD", POLYRECON_FAILING_CALLS, 1);
+    ::setenv("LD_PRELOAD", testing::failing_calls_path(), 1);
     ::setenv("FAIL_CALL", call, 1);
     ::setenv("FAIL_AT", std::to_string(at).c_str(), 1);
     ::setenv("FAIL_MARK", mark.c_str(), 1);

@@ -616,7 +616,7 @@ TEST(Case27, MoreSamplesNeverMakeItWorse) {
 
 /// Merged renders of one scene with 8, 12 and 16 samples per pixel, against a reference of 2048.
 TEST(Case27, MoreSamplesOfARealRenderNeverMakeItWorse) {
-  const std::string samples = std::string(POLYRECON_SAMPLES_DIR) + "/";
+  const std::string samples = std::string(POLYRECON_SOURCE_DIR) + "/samples/";
   const testing::TemporaryFolder folder;
   const Image reference = half_resolution(read_frame(samples + "study_ref.exr").frame.beauty.mean);
   double before = 1e9;

@@ -18,7 +18,7 @@ using nlohmann::json;
 
 /// The examples that the drivers' tests read too.
 const json& examples() {
-  static const json read = json::parse(std::ifstream(std::string(POLYRECON_INPUTS_DIR) + "/frame_names.json"));
+  static const json read = json::parse(std::ifstream(POLYRECON_SOURCE_DIR "/tests/inputs/frame_names.json"));
   return read;
 }
 
