@@ -53,11 +53,11 @@ Image mean_of_channels(const Image& image) {
   return out;
 }
 
-/// Layers of three channels are shown as pictures, all others in false colours, as on request are all.
+/// Radiance and layers of three channels are shown as pictures, all others in false colours, as on request are all.
 Panel make_panel(const std::string& path, const PreviewOptions& o) {
   const LayeredFile file = open_layers(path);
   const Layer& layer = wanted_layer(file, o.layer);
-  const Image image = read_layer(file, layer);
+  const Image image = is_color(layer) ? read_radiance(file, layer) : read_layer(file, layer);
   Panel panel;
   if (image.channels() == 3 && !o.false_color) {
     panel.rgb = to_display(image, o.display);

@@ -69,7 +69,7 @@ std::string file_name(const std::string& path) { return std::filesystem::path(pa
 /// The main colour layer of a file: width x height must be the reference's.
 Image read_color(const LayeredFile& file, const Image& reference) {
   const Layer& layer = require_color_layer(file);
-  Image image = read_layer(file, layer);
+  Image image = read_radiance(file, layer);
   if (!reference.empty() && !image.same_shape(reference))
     throw Error(ExitCode::BadInput,
                 fmt::format("{}: layer '{}' has {} x {} pixels, the reference has {} x {}", file.info.path, layer.name,

@@ -154,6 +154,18 @@ TEST_F(Compare, AddsTheOtherColourLayersOfBothFiles) {
   EXPECT_NEAR(result["results"][1]["relMSE"], 0.25 / 1.01, 1e-6);
 }
 
+TEST_F(Compare, GreyIsTakenForThreeEqualColours) {
+  write_exr(path("grey.exr"), 4, 4, {"Y"}, [](int, int, int) { return 1.5; });
+  write_exr(path("color.exr"), 4, 4, rgb, [](int, int, int) { return 1.5; });
+  write_exr(path("ref.exr"), 4, 4, {"Y"}, [](int, int, int) { return 1.0; });
+  const Outcome o = run({"compare", "grey.exr", "color.exr", "ref.exr", "--json"});
+  ASSERT_EQ(o.code, 0) << o.err;
+  const auto result = nlohmann::json::parse(o.out);
+  EXPECT_NEAR(result["results"][0]["relMSE"], 0.25 / 1.01, 1e-6);
+  EXPECT_EQ(result["results"][0]["relMSE"], result["results"][1]["relMSE"]);
+  EXPECT_EQ(result["results"][0]["FLIP"], result["results"][1]["FLIP"]);
+}
+
 TEST_F(Compare, RefusesWhatCannotBeCompared) {
   write_exr(path("a.exr"), 4, 4, rgb, [](int, int, int) { return 1.0; });
   write_exr(path("b.exr"), 5, 4, rgb, [](int, int, int) { return 1.0; });

@@ -59,9 +59,14 @@ const Layer* find_layer(const LayeredFile& file, const std::string& name) {
   return nullptr;
 }
 
+bool is_color(const Layer& layer) {
+  return (layer.channels.size() == 3 || layer.channels.size() == 1) && layer.companion == Companion::Mean &&
+         info_of(layer.role).values == Values::Radiance;
+}
+
 const Layer* color_layer(const LayeredFile& file) {
   const Layer* picture = picture_layer(file.layers);
-  return picture && picture->channels.size() == 3 ? picture : nullptr;
+  return picture && is_color(*picture) ? picture : nullptr;
 }
 
 const Layer& require_color_layer(const LayeredFile& file) {
@@ -74,6 +79,8 @@ const Layer& require_color_layer(const LayeredFile& file) {
 Image read_layer(const LayeredFile& file, const Layer& layer) {
   return read_channels(file.info, layer.part, layer.channels);
 }
+
+Image read_radiance(const LayeredFile& file, const Layer& layer) { return with_channels(read_layer(file, layer), 3); }
 
 KnownVariance read_variance(const LayeredFile& file, const Layer& layer, const Image& mean) {
   const Layer* found = variance_layer(file, layer);

@@ -21,7 +21,10 @@ LayeredFile open_layers(const std::string& path);
 /// The layer of this whole name, or nullptr.
 const Layer* find_layer(const LayeredFile& file, const std::string& name);
 
-/// The picture (io/channel_names.h) if it has three channels, else nullptr.
+/// Whether a layer holds radiance, in three channels or in one of grey.
+bool is_color(const Layer& layer);
+
+/// The picture (io/channel_names.h) if it is_color, else nullptr.
 const Layer* color_layer(const LayeredFile& file);
 
 /// The same; throws Error{Missing} where there is none.
@@ -29,6 +32,9 @@ const Layer& require_color_layer(const LayeredFile& file);
 
 /// All channels of a layer.
 Image read_layer(const LayeredFile& file, const Layer& layer);
+
+/// A layer that is_color, in three channels: grey is repeated.
+Image read_radiance(const LayeredFile& file, const Layer& layer);
 
 /// The variance of a layer's mean as far as its file tells it.
 struct KnownVariance {

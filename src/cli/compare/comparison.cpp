@@ -11,14 +11,9 @@
 namespace polyrecon {
 namespace {
 
-bool is_color(const Layer& layer) {
-  return layer.channels.size() == 3 && layer.companion == Companion::Mean &&
-         info_of(layer.role).values == Values::Radiance;
-}
-
 Comparison compare_layers(const LayeredFile& image, const Layer& layer, const LayeredFile& reference,
                           const Layer& reference_layer, bool with_images, Progress& progress) {
-  Image x = read_layer(image, layer), r = read_layer(reference, reference_layer);
+  Image x = read_radiance(image, layer), r = read_radiance(reference, reference_layer);
   if (!x.same_shape(r))
     throw Error(ExitCode::BadInput,
                 fmt::format("{}: layer '{}' has {} x {} pixels, the reference has {} x {}", image.info.path, layer.name,
