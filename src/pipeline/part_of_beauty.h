@@ -1,5 +1,8 @@
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "polyrecon/frame.h"
 
 namespace polyrecon {
@@ -8,5 +11,11 @@ namespace polyrecon {
 /// the beauty do nothing there, so a layer that is no part of it (a shadow catcher, ambient occlusion) needs its own.
 /// The pass must have the size of the beauty, with 3 channels.
 bool is_part_of_beauty(const Frame& frame, const Pass& layer);
+
+/// The names of the frame's further layers that are no part of the beauty.
+std::vector<std::string> layers_beside_beauty(const Frame& frame);
+
+/// What the user is told of such a layer.
+std::string note_of_layer_beside_beauty(const std::string& name);
 
 }  // namespace polyrecon

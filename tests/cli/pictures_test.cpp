@@ -193,6 +193,10 @@ TEST_F(OwnWindows, ALayerThatIsNoPartOfTheBeautyIsDenoisedByItself) {
   ASSERT_EQ(r["others"].size(), 1U);
   EXPECT_EQ(r["others"][0]["layer"], "shadow");
   EXPECT_THAT(o.out, HasSubstr("note                       shadow gets windows of its own"));
+
+  const Outcome before = run({"inspect", "in.exr", "--aov", "key", "--aov", "shadow"});
+  EXPECT_THAT(before.out, HasSubstr("shadow gets windows of its own"));
+  EXPECT_THAT(before.out, Not(HasSubstr("key gets")));
 }
 
 TEST_F(OwnWindows, LayersThatAddUpAreTheSameWithAndWithoutIt) {

@@ -71,9 +71,7 @@ void keep_name(Pass& pass) {
 
 /// Takes the layers that are no part of the beauty out of the frame. Returns their names.
 std::vector<std::string> take_own_windows(Frame& frame) {
-  std::vector<std::string> names;
-  for (const Pass& aov : frame.aovs)
-    if (!is_part_of_beauty(frame, aov)) names.push_back(aov.name);
+  std::vector<std::string> names = layers_beside_beauty(frame);
   frame.aovs.erase(
       std::remove_if(frame.aovs.begin(), frame.aovs.end(),
                      [&](const Pass& aov) { return std::find(names.begin(), names.end(), aov.name) != names.end(); }),
@@ -91,8 +89,7 @@ void FileRun::plan(LoadedFrame& loaded) {
   }
   for (const std::string& layer : take_own_windows(loaded.in.frame)) {
     add({loaded.picture.place, layer});
-    loaded.in.notes.push_back(fmt::format(
-        "{} gets windows of its own: it is noisy where the beauty has no noise, so it is no part of it", layer));
+    loaded.in.notes.push_back(note_of_layer_beside_beauty(layer));
   }
 }
 

@@ -7,6 +7,7 @@
 #include "cli/common/checks.h"
 #include "cli/common/read_limits.h"
 #include "cli/inspect/report.h"
+#include "pipeline/part_of_beauty.h"
 #include "pipeline/savings.h"
 #include "pipeline/survey.h"
 #include "polyrecon/error.h"
@@ -36,6 +37,8 @@ void run(const InspectOptions& o) {
   require_readable(o.input);
   InspectReport report{inspect(o.input, o.read), {}};
   if (report.file.frame) try {
+      for (const std::string& layer : layers_beside_beauty(*report.file.frame))
+        report.file.notes.push_back(note_of_layer_beside_beauty(layer));
       report.steps = decide_steps(*report.file.frame);
     } catch (const Error& problem) {
       if (problem.code() != ExitCode::CheckFailed) throw;
@@ -56,6 +59,8 @@ void setup_inspect(CLI::App& app, Command& chosen) {
       ->type_name("NAME");
   sub->add_option("--view", o->read.view, "Stereo view whose layers get roles, in place of the first one")
       ->type_name("NAME");
+  sub->add_option("-l,--aov", o->read.aovs, "Colour layer that denoise is to take too (repeatable)")
+      ->type_name("LAYER");
   OptionSet set(*sub);
   add_read_limits(set, o->read.limits);
   sub->footer(
