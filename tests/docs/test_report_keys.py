@@ -1,5 +1,5 @@
-"""docs/reference/report.md has a row for each key that the program and the drivers print, with its type, and each row's
-key is printed in one of the runs made here."""
+"""The pages of docs/reference have a row for each key that the program and the drivers print, with its type, and each
+row's key is printed in one of the runs made here."""
 
 import json
 import os
@@ -22,7 +22,7 @@ from . import tree
 PROGRAM = os.environ["POLYRECON"]
 SAMPLES = pathlib.Path(os.environ["POLYRECON_SAMPLES"])
 SMALL = SAMPLES / "study_small_0.exr"
-PAGE = "docs/reference/report.md"
+REFERENCE = "docs/reference"
 
 
 def run(*words):
@@ -56,11 +56,10 @@ def is_of_type(value, name):
     return isinstance(value, kinds[name])
 
 
-def documented(heading):
-    """{key: type} of the table below a heading of the page."""
-    text = re.split(rf"^## {re.escape(heading)}$", tree.read(PAGE), flags=re.M)[1]
-    rows = tree.table(re.split(r"^## ", text, flags=re.M)[0], "key")
-    return {row[0].strip("`"): row[1] for row in rows}
+def documented(page):
+    """{key: type} of all tables of keys of a page."""
+    sections = re.split(r"^## ", tree.read(f"{REFERENCE}/{page}"), flags=re.M)
+    return {row[0].strip("`"): row[1] for text in sections for row in tree.table(text, "key")}
 
 
 class StoppingRenderer(SyntheticRenderer):
@@ -79,19 +78,19 @@ class Keys(unittest.TestCase):
         self.addCleanup(folder.cleanup)
         self.folder = pathlib.Path(folder.name)
 
-    def check(self, heading, *printed):
-        """All documents of one kind, printed by different runs, against the table."""
-        table, seen = documented(heading), set()
+    def check(self, page, *printed):
+        """All documents of one kind, printed by different runs, against the page."""
+        table, seen = documented(page), set()
         for path, value in (leaf for document in printed for leaf in leaves(document)):
             seen.add(path)
             key = next((key for key in table if re.fullmatch(re.escape(key).replace("NAME", ".+"), path)), None)
-            self.assertIsNotNone(key, f"{PAGE}, {heading}: no row for `{path}`")
+            self.assertIsNotNone(key, f"{page}: no row for `{path}`")
             fits = any(is_of_type(value, name) for name in table[key].split(" or "))
-            self.assertTrue(fits, f"{PAGE}, {heading}: `{key}` is {value!r}, documented as {table[key]}")
+            self.assertTrue(fits, f"{page}: `{key}` is {value!r}, documented as {table[key]}")
             seen.add(key)
         # An object that may be null has a row of its own; where it is one, its keys were seen.
         never = [key for key in table if key not in seen and not any(path.startswith(key + ".") for path in seen)]
-        self.assertEqual([], never, f"{PAGE}, {heading}: documented, but not printed")
+        self.assertEqual([], never, f"{page}: documented, but not printed")
 
     def denoise(self, *options):
         report = self.folder / "report.json"
@@ -101,24 +100,24 @@ class Keys(unittest.TestCase):
     def test_report_of_denoise(self):
         plain = self.denoise("--quality", "draft")
         ample, scarce = (self.denoise("--time-budget", seconds) for seconds in ("60", "0.001"))
-        self.check("Report of denoise", plain, ample, scarce)
+        self.check("report.md", plain, ample, scarce)
 
     def test_inspect(self):
         merged = self.folder / "merged.exr"
         run("merge", *sorted(SAMPLES.glob("study_small_*.exr"))[:2], "-o", merged, "--quiet")
         found = [json.loads(run("inspect", path, "--json").stdout) for path in (merged, SMALL)]
-        self.check("inspect --json", *found)
+        self.check("inspect_json.md", *found)
 
     def test_compare(self):
         done = run("compare", SMALL, SAMPLES / "study_small_1.exr", "--json")
-        self.check("compare --json", json.loads(done.stdout))
+        self.check("compare.md", json.loads(done.stdout))
 
     def test_progress(self):
         for frame in (1, 2):
             (self.folder / f"shot.{frame}.exr").symlink_to(SMALL)
         words = ["-i", self.folder / "shot.#.exr", "-o", self.folder / "clean.#.exr", "--quality", "draft"]
         lines = run("denoise", *words, "--frames", "1-2", "--progress", "json").stderr.splitlines()
-        self.check("Progress lines", *map(json.loads, lines))
+        self.check("progress.md", *map(json.loads, lines))
 
     def test_journal_of_the_loop(self):
         """Of a loop whose renderer fails in the first round, and of one that runs to its end."""
@@ -126,7 +125,7 @@ class Keys(unittest.TestCase):
             loop(self.folder / "stopped", Budget(samples=24), renderer=StoppingRenderer())
         loop(self.folder / "finished", Budget(samples=24))
         journals = [self.folder / name / "passes" / "journal.json" for name in ("stopped", "finished")]
-        self.check("Journal of the adaptive loop", *(json.loads(path.read_text()) for path in journals))
+        self.check("journal.md", *(json.loads(path.read_text()) for path in journals))
 
     def test_report_of_a_farm(self):
         """Two of three frames are there, so that the report has a reason and a failed attempt to tell."""
@@ -139,7 +138,7 @@ class Keys(unittest.TestCase):
             command = [sys.executable, "-B", tree.ROOT / "pipelines" / "farm" / program, *words]
             done = subprocess.run(command, capture_output=True, text=True)
             self.assertEqual(4, done.returncode, done.stderr)
-        self.check("Report of a farm", json.loads((self.folder / "job" / "report.json").read_text()))
+        self.check("farm.md", json.loads((self.folder / "job" / "report.json").read_text()))
 
 
 class TheCheckItself(unittest.TestCase):

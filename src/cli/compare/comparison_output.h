@@ -13,7 +13,7 @@ namespace polyrecon {
 /// A line for each comparison.
 std::string comparison_text(const std::vector<Comparison>& comparisons);
 
-/// The same as JSON (docs/reference/report.md). Figures that are not finite are null.
+/// The same as JSON (docs/reference/compare.md). Figures that are not finite are null.
 nlohmann::ordered_json comparison_json(const std::string& reference, const std::vector<Comparison>& comparisons);
 
 /// The names of the layers, each once, in their order.

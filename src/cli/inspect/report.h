@@ -18,7 +18,7 @@ struct InspectReport {
 /// The report as lines of text.
 std::string inspect_text(const InspectReport& report);
 
-/// The report as JSON (docs/reference/report.md).
+/// The report as JSON (docs/reference/inspect_json.md).
 nlohmann::ordered_json inspect_json(const InspectReport& report);
 
 }  // namespace polyrecon
