@@ -36,7 +36,7 @@ struct FitSource {
   const Image* guide_variance = nullptr;  ///< Noise variance of guide.
   const Image* guess = nullptr;           ///< The previous stage's guess of mu, 3 channels; null in stage 1.
   double epsilon = 0;                     ///< As in HalfPair; see BlendedFit.
-  const Image* picture = nullptr;         ///< HalfPair::picture: other pixels are in no window. Null: all are in it.
+  const Image* picture = nullptr;         ///< HalfPair::sampled: other pixels are in no window. Null: all may be.
 };
 
 /// The overlapping windows of one bandwidth, blended by equation (3). The bias is the weighted mean of the biases of

@@ -18,12 +18,12 @@ namespace polyrecon {
 Image picture_of(const Frame& frame);
 
 /// The mask of the pixels that are samples of the picture: it and the void pixels around its soft borders, where alpha
-/// is a part of 1. There the picture ends in the void by itself, which is as good a sample as any. At a hard border,
-/// such as that of a render region, it was cut off, and the void says nothing of it. Without alpha borders count as
-/// soft. picture: of the frame, by picture_of.
+/// is between 0 and 1. There the picture ends by itself, so the void next to it is a sample like any other. At a hard
+/// border, such as that of a render region, the picture was cut off, and the void says nothing of it. Without alpha,
+/// borders count as soft. picture: of the frame, by picture_of.
 Image sampled_of(const Image& picture, const Frame& frame);
 
-/// Makes NaN of all samples outside of a mask, alpha and prior excepted, so that statistics leave them out.
+/// Sets all samples outside of a mask to NaN, except alpha and the prior, so that statistics leave them out.
 void hide_void(const Image& picture, Frame& frame);
 
 /// Sets void pixels of a pair and of a result to 0.

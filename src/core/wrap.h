@@ -4,8 +4,8 @@
 
 namespace polyrecon {
 
-/// Columns that a panorama is extended by at both ends. Twice the radius of the usual windows at a quarter of the
-/// resolution is less, and blocks of centres (blend/blend_windows.h) stay where they are.
+/// Columns by which a panorama is extended at both ends: more than a default window is wide at a quarter of the
+/// resolution (84 pixels), and twice a block of centres (blend/blend_windows.h), so that blocks stay where they are.
 constexpr int wrap_margin = 128;
 
 /// The columns of an image with those of the other end beyond both ends. An empty image stays empty.

@@ -25,8 +25,8 @@ struct JoinCounts {
 /// changes cancel, or one of them where the point is not seen in the other. The weights come from the other half,
 ///     w_g = Var(B) / (Var(B_g) + e^2 + K r^2) x exp(-(change - accept) / softness) x (1 - s).
 /// e^2 is the part of (B - B_g)^2 around the pixel that noise does not explain. r^2 is the squared change of radiance
-/// that the albedo, normal and depth of both frames let expect: it is known almost without noise, so it counts as in
-/// the fitted image, whose noise variance is K times smaller than the pixel's. The change is
+/// to expect from the change of albedo, normal and depth. It is known almost without noise, so it is compared with the
+/// noise variance of the fitted image, which is K times smaller than the pixel's. The change is
 ///     z^2 = sum_rgb (G_s * (B - B_g))^2 / sum_rgb (G_s^2 * (Var(B) + Var(B_g)))
 /// at single pixels and under Gaussians G_s of several sizes: large ones find a small change of radiance that no single
 /// pixel shows, small ones find a moving edge. The weights depend smoothly on the noise and are the same for all

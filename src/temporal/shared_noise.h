@@ -10,14 +10,14 @@
 // Frames that are rendered with one random seed repeat their noise where nothing moves.
 namespace polyrecon {
 
-/// Squared differences between the means of the halves of two frames, in units of what independent noise makes, from
-/// which on they share no noise, and up to which they surely do.
+/// Limits of the squared difference between the means of the halves of two frames, in units of what independent noise
+/// makes: from `none` on they share no noise, up to `full` they surely do.
 struct Sharing {
   double none, full;
 };
 
-/// How to judge a frame: where a good part of it repeats the noise of its neighbours all frames have one seed, and what
-/// moves repeats the noise in part. radius: the largest distance of a neighbour, in frames.
+/// The limits for a frame: higher ones where a good part of it repeats the noise of its neighbours, since then all
+/// frames have one seed, and what moves repeats the noise in part. radius: the largest distance of a neighbour, frames.
 const Sharing& sharing_of(const HalfPair& pair, const std::vector<Places>& places, int radius);
 
 /// Whether an estimate repeats the noise of the current frame, 0 to 1, 1 channel: an average around each pixel.

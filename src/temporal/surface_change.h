@@ -7,9 +7,9 @@
 
 namespace polyrecon {
 
-/// The squared change of radiance, relative to it, that the surfaces of two frames let expect, 1 channel: that of the
-/// albedo, as if the light stayed the same, and that of the normal, as if the light came from the side. Another depth
-/// is another surface. Surfaces that one frame lacks are left out; the change is 0 where both lack all.
+/// The relative squared change of radiance to expect from the change between the surfaces of two frames, 1 channel: of
+/// the albedo, as if the light stayed the same, and of the normal, as if the light came from the side. Another depth is
+/// another surface. Surfaces that one frame lacks are left out; the change is 0 where both lack all.
 /// a: surfaces of the current frame (Geometry::surface), of the given size.
 /// noise: surface_noise of a.
 /// b: the same surfaces in other frames, at the places of the pixels of a.
