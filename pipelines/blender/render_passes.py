@@ -20,7 +20,7 @@ if not __package__:  # run as a script from a checkout
     sys.path[0] = str(pathlib.Path(__file__).resolve().parents[2])
     __package__ = "pipelines.blender"
 
-from ..common import own_folder, process
+from ..common import folder_lock, process
 from ..common.command import each_frame
 from ..common.errors import run_main
 from ..common.files import remove_temporaries
@@ -51,11 +51,11 @@ def work(words):
 
 
 def one_frame(options, renderer, frame, output, passes, polyrecon, progress):
-    with own_folder.claimed(passes):
+    with folder_lock.claimed(passes):
         remove_temporaries(passes, re.compile(r"part_[0-9]+\.exr").fullmatch)
         render_parts(options, renderer, frame, output, passes, polyrecon, progress)
-    if not options.keep_parts and os.listdir(passes) == [own_folder.LOCK]:
-        (passes / own_folder.LOCK).unlink()
+    if not options.keep_parts and os.listdir(passes) == [folder_lock.LOCK]:
+        (passes / folder_lock.LOCK).unlink()
         passes.rmdir()
 
 

@@ -5,7 +5,7 @@ import dataclasses
 import pathlib
 import re
 
-from ..common import own_folder
+from ..common import folder_lock
 from ..common.errors import DriverError, ExitCode
 from ..common.files import remove_temporaries
 
@@ -45,7 +45,7 @@ class PassFolder:
     @contextlib.contextmanager
     def claimed(self):
         """A context in which this process alone works in the folder. What a killed run was writing is removed first."""
-        with own_folder.claimed(self.path, sign=self.journal.name):
+        with folder_lock.claimed(self.path, sign=self.journal.name):
             remove_temporaries(self.path, _FILE.fullmatch)
             for entry in self.path.iterdir():
                 if _ROUND.fullmatch(entry.name) and entry.is_dir():

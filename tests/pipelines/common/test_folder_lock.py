@@ -9,11 +9,12 @@ import unittest.mock
 from pathlib import Path
 
 from pipelines.common.errors import DriverError, ExitCode
-from pipelines.common.own_folder import LOCK, claimed
+from pipelines.common.folder_lock import LOCK, claimed
 
 ROOT = Path(__file__).resolve().parents[3]
 HOLD = (
-    "import sys; from pipelines.common.own_folder import claimed\nwith claimed(sys.argv[1]): print(1, flush=1); input()"
+    "import sys; from pipelines.common.folder_lock import claimed\n"
+    "with claimed(sys.argv[1]): print(1, flush=1); input()"
 )
 
 
