@@ -1,5 +1,5 @@
-"""The scripts that the marks in docs/results name write the tables between them. accuracy.py is tried with made-up
-figures on a copy of its page: the four tables are right and nothing else of the page changes."""
+"""The scripts that the marks in docs/results and docs/reference name write the tables between them. accuracy.py is
+tried with made-up figures on a copy of its page: the four tables are right and nothing else of the page changes."""
 
 import pathlib
 import re
@@ -12,9 +12,11 @@ from unittest import mock
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 RESULTS = ROOT / "docs" / "results"
+INPUTS = ROOT / "docs" / "reference" / "inputs.md"
 sys.path.append(str(ROOT / "tests" / "bench"))
 
 import accuracy  # noqa: E402
+import inputs  # noqa: E402
 
 from tests.bench.blender import report  # noqa: E402
 
@@ -37,7 +39,7 @@ def row(text, name):
 class Results(unittest.TestCase):
     def test_each_mark_is_closed_and_names_a_script(self):
         names = []
-        for page in sorted(RESULTS.glob("*.md")):
+        for page in [*sorted(RESULTS.glob("*.md")), INPUTS]:
             text = page.read_text(encoding="utf-8")
             marks = MARK.findall(text)
             self.assertEqual(len(re.findall("^<!-- .*made by", text, re.MULTILINE)), len(marks), page)
@@ -46,8 +48,13 @@ class Results(unittest.TestCase):
                 self.assertTrue((ROOT / script).is_file(), f"{page}: {script}")
                 names.append((page.name, begin))
         written = [("accuracy.md", name) for name in ("budget", "parts", "numbers", "steps")]
-        written += [("adaptive.md", "bench"), ("reliability.md", "reliability")]
+        written += [("adaptive.md", "bench"), ("reliability.md", "reliability"), ("inputs.md", "inputs")]
         self.assertEqual(sorted(written), sorted(names))
+
+    def test_every_kind_of_file_has_a_row(self):
+        [(_, _, text, _)] = MARK.findall(INPUTS.read_text(encoding="utf-8"))
+        rows = [line.strip("| ").split(" | ")[0] for line in text.splitlines()[2:]]
+        self.assertEqual([kind.__doc__ for kind in inputs.KINDS], rows)
 
     def test_accuracy_writes_its_four_tables_and_nothing_else(self):
         with tempfile.TemporaryDirectory() as folder:
