@@ -4,7 +4,7 @@
 WIDTH, BOX_WIDTH, BOX_HEIGHT = 960, 200, 62
 LEFT, TOP, COLUMN, ROW = 110, 64, 280, 132  # of the first box; distances of boxes
 
-# Phase, its steps as (function, folder), and the type of what it hands on.
+# Phase, its steps as (function, folder), and the types that go to the next phase.
 PHASES = [
     ("read", [("read_frame", "src/io"), ("wrap", "src/core; panoramas only")], "Frame"),
     (
@@ -92,7 +92,7 @@ def arrow(path):
     return [f'<path class="line" d="{path}" marker-end="url(#head)"/>']
 
 
-def row(number, phase, steps, handed_on, is_first_of_phase):
+def row(number, phase, steps, result, is_first_of_phase):
     y = TOP + number * ROW
     middle = y + BOX_HEIGHT / 2
     lines = [f'<text class="phase" x="16" y="{middle + 5}">{phase}</text>'] if is_first_of_phase else []
@@ -101,12 +101,12 @@ def row(number, phase, steps, handed_on, is_first_of_phase):
         lines += box(x, y, step)
         if k + 1 < len(steps):
             lines += arrow(f"M {x + BOX_WIDTH} {middle} H {x + COLUMN - 7}")
-    if handed_on:
+    if result:
         x = LEFT + (len(steps) - 1) * COLUMN + BOX_WIDTH / 2
         turn = y + BOX_HEIGHT + 40
         end = LEFT + BOX_WIDTH / 2
         lines += arrow(f"M {x} {y + BOX_HEIGHT} V {turn} H {end} V {y + ROW - 7}")
-        lines.append(f'<text class="type" x="{end + 12}" y="{turn - 7}">{handed_on}</text>')
+        lines.append(f'<text class="type" x="{end + 12}" y="{turn - 7}">{result}</text>')
     return lines
 
 
@@ -145,8 +145,8 @@ def draw():
         *arrow(f"M {LEFT + 66} 31 H {LEFT + BOX_WIDTH / 2} V {TOP - 7}"),
     ]
     previous = None
-    for number, (phase, steps, handed_on) in enumerate(PHASES):
-        lines += row(number, phase, steps, handed_on, phase != previous)
+    for number, (phase, steps, result) in enumerate(PHASES):
+        lines += row(number, phase, steps, result, phase != previous)
         if phase in FRAMES:
             lines += frame(number, steps, FRAMES[phase])
         if phase in INPUTS:
