@@ -12,6 +12,7 @@
 #include "core/parallel.h"
 #include "core/picture_mask.h"
 #include "core/repair.h"
+#include "noise/feature_noise.h"
 #include "noise/fission.h"
 #include "polyrecon/error.h"
 #include "regression/basis.h"
@@ -300,6 +301,17 @@ void append(const std::array<Image, 2>& halves, std::array<Image, 2>& to, int& c
   channel += halves[0].channels();
 }
 
+/// Prefilters the halves of a feature, and flattens them where the prefilter would leave noise that is fitted to the
+/// noise of the beauty.
+std::array<Image, 2> prefiltered(std::array<Image, 2> halves, const Image& variance, const FeatureUse& use,
+                                 const PrefilterParams& params, const Image& picture, Progress& progress) {
+  if (!use.flatten) return prefilter(halves, variance, params, progress, picture);
+  const Image part = noise_in_variation(halves[0], variance, picture);
+  halves = prefilter(halves, variance, params, progress, picture);
+  for (Image& half : halves) half = flattened(std::move(half), part, picture);
+  return halves;
+}
+
 std::array<Image, 2> prepared_feature(Feature feature, const FeatureUse& use, double sky, std::size_t stream,
                                       const PrefilterParams& prefilter_params, const Image& picture,
                                       std::size_t& repaired, Progress& progress) {
@@ -310,7 +322,7 @@ std::array<Image, 2> prepared_feature(Feature feature, const FeatureUse& use, do
     repair(feature.pass.mean, picture);
     transform_variance(use, feature.pass.mean, variance);
     for (Image& half : halves) transform(use, half);
-    return prefilter(halves, variance, prefilter_params, progress, picture);
+    return prefiltered(std::move(halves), variance, use, prefilter_params, picture, progress);
   }
   for (Image& half : halves) transform(use, half);
   return halves;
@@ -396,6 +408,7 @@ Preparation look_at(const Frame& frame, const Steps& steps, const Image& sampled
     use.index = i;
     const Decision prefilter = decide_on_prefilter(decision.step, feature.pass, look, steps);
     use.prefilter = prefilter.run;
+    use.flatten = feature.pass.variance_is_estimated && !frame.beauty.noise_is_known();
     if (const double largest = look.usual.largest(); largest > 0) use.scale = std::exp2(-std::ilogb(largest));
     if (is_depth(feature)) use.half_depth = median_depth(feature.pass.mean, frame.sky_depth);
     out.features.push_back(use);

@@ -16,6 +16,8 @@ namespace polyrecon {
 struct FeatureUse {
   std::size_t index = 0;   ///< Index into Frame::features.
   bool prefilter = false;  ///< Whether it is prefiltered (features/prefilter.h).
+  bool flatten = false;    ///< Whether variations that are noise give way to their blur (noise/feature_noise.h): in
+                           ///< renders whose noise is all estimated, where the same samples make all of it.
   double scale = 1;        ///< Factor that brings its values, except spikes, to order 1.
   double half_depth = 0;   ///< If > 0, a depth z enters as z / (z + half_depth), which is below 1 even for the sky.
 };
@@ -49,8 +51,8 @@ struct Prepared {
 };
 
 /// Channels that prepare holds for the feature pass in work in addition to the frame and the pair: its two halves, the
-/// same prefiltered, and its widened noise variance.
-constexpr std::size_t feature_in_preparation_channels = std::size_t{3} * (2 + 2 + 1);
+/// same prefiltered, its widened noise variance, and the part of its variation that is noise.
+constexpr std::size_t feature_in_preparation_channels = std::size_t{3} * (2 + 2 + 1 + 1);
 
 /// Repairs the passes, splits those without halves (noise/fission.h), and transforms and prefilters the features.
 /// variance: noise variance of the beauty's mean, 3 channels (noise/variance.h). To save memory, the halves and

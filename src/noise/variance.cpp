@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 #include <vector>
 
 #include "core/gaussian.h"
@@ -11,6 +12,7 @@
 #include "core/real.h"
 #include "core/rect.h"
 #include "core/repair.h"
+#include "noise/feature_noise.h"
 #include "noise/spike_variance.h"
 #include "regression/least_squares.h"
 
@@ -149,21 +151,30 @@ void fit_noise(const Image& y, const Image& features, const Image& picture, int 
   }
 }
 
-/// The features that fit into the local model, in the frame's order, repaired.
-Image repaired_features(const Frame& frame) {
-  std::vector<const Image*> used;
+/// A feature that explains the beauty, repaired. Where a variation is noise, it would explain the beauty's noise, as
+/// the same samples make both.
+Image explaining(const Pass& feature, const Image& picture) {
+  Image mean = feature.mean;
+  repair_nonfinite(mean, 1);
+  if (!feature.variance_is_estimated) return mean;
+  const Image part = noise_in_variation(mean, feature.variance, picture);
+  return flattened(std::move(mean), part, picture);
+}
+
+/// The features that fit into the local model, in the frame's order.
+Image explaining_features(const Frame& frame, const Image& picture) {
+  std::vector<const Pass*> used;
   int channels = 0;
   for (const Feature& feature : frame.features) {
-    const Image& mean = feature.pass.mean;
-    if (channels + mean.channels() > BasisLayout::max_features) continue;
-    channels += mean.channels();
-    used.push_back(&mean);
+    const int more = feature.pass.mean.channels();
+    if (channels + more > BasisLayout::max_features) continue;
+    channels += more;
+    used.push_back(&feature.pass);
   }
   Image out(frame.width(), frame.height(), channels);
   int channel = 0;
-  for (const Image* feature : used) {
-    Image mean = *feature;
-    repair_nonfinite(mean, 1);
+  for (const Pass* feature : used) {
+    const Image mean = explaining(*feature, picture);
     for (int c = 0; c < mean.channels(); ++c, ++channel)
       std::copy(mean.plane(c), mean.plane(c) + mean.pixels(), out.plane(channel));
   }
@@ -231,7 +242,8 @@ NoiseVariance noise_variance(const Frame& frame, Progress& progress, const Image
   if (frame.beauty.has_halves()) return {variance_from_halves(frame.beauty, picture), "from the half buffers", true};
   Image y = frame.beauty.mean;
   repair_nonfinite(y, 2);
-  return {estimate_variance(y, repaired_features(frame), progress, picture), "estimated from the image", false};
+  return {estimate_variance(y, explaining_features(frame, picture), progress, picture), "estimated from the image",
+          false};
 }
 
 void estimate_feature_variance(Frame& frame, Progress& progress, const Image& picture) {

@@ -17,7 +17,8 @@ struct NoiseVariance {
 bool noise_is_measured(const Frame& frame);
 
 /// The noise variance of the beauty: the variance in the file; without one the smoothed variance of the half buffers
-/// (variance_of_mean, core/halves.h); without these estimate_variance.
+/// (variance_of_mean, core/halves.h); without these estimate_variance, with features whose own noise, where it is
+/// estimated, explains nothing (noise/feature_noise.h).
 /// picture: mask of the pixels that take part (core/picture_mask.h), here and below.
 NoiseVariance noise_variance(const Frame& frame, Progress& progress, const Image& picture = {});
 

@@ -148,6 +148,39 @@ TEST(NoiseVariance, FromTheImageOfASceneWithFeaturesIsOfTheRightSize) {
   EXPECT_LT(ratio, 1.5);
 }
 
+/// A beauty and a feature whose noise is of the same samples, with a texture in both: waves of the sea, or blades of
+/// grass behind a wide-open lens.
+Frame of_same_samples(double texture, double sigma) {
+  test::Random random(12);
+  const Image noise = test::image_of(width, height, 3, [&](int, int, int) { return random.normal(); });
+  const auto pattern = [&](int x, int y) { return texture * std::sin(0.9 * x) * std::cos(0.7 * y); };
+  const auto image = [&](double level, double own) {
+    return test::image_of(width, height, 3, [&](int x, int y, int c) {
+      return level + pattern(x, y) + own * static_cast<double>(noise.at(x, y, c));
+    });
+  };
+  Frame frame;
+  frame.beauty.mean = image(1, sigma);
+  frame.features.push_back({Role::Normal, {"Normal", image(0.2, sigma), {}, {}, {}}});
+  estimate_feature_variance(frame, silent_progress());
+  return frame;
+}
+
+/// The fit to the noisy feature would leave nothing. The estimate is the median of about 1.0 (test of the plane), of
+/// channels whose spikes count: within 15 %.
+TEST(NoiseVariance, NoiseOfAFeatureDoesNotExplainThatOfTheBeauty) {
+  const double sigma = 0.1;
+  const Image truth(width, height, 3, Real(sigma * sigma));
+  EXPECT_NEAR(mean_ratio(variance_of(of_same_samples(0, sigma)).variance, truth), 1, 0.15);
+}
+
+TEST(NoiseVariance, TextureOfANoisyFeatureStillExplains) {
+  // The texture's variance is 0.3^2 / 4 = 22 times that of the noise, which is in both.
+  const double sigma = 0.03;
+  const Image texture(width, height, 3, Real(0.3 * 0.3 / 4));
+  EXPECT_LT(mean_ratio(variance_of(of_same_samples(0.3, sigma)).variance, texture), 0.1);
+}
+
 TEST(NoiseVariance, FeaturesBeyondWhatTheModelHoldsAreLeftOut) {
   // The scene has 7 channels and each further pass 3, so the fourth of these does not fit into 16.
   Frame frame = test::make_scene(40, 36, 0.2, 8).frame;
