@@ -23,7 +23,7 @@ constexpr double pi = 3.14159265358979323846;
 constexpr double ratio_sigma = 2;  // pixels; variances are averaged before they are compared, as single ones are noisy
 // K: variance of a pixel over that of the fitted image; about the number of pixels that a fit averages.
 constexpr double noise_of_fit = 30;
-constexpr double agreement_sigma = 8;  // pixels
+constexpr double agreement_sigma = 16;  // pixels
 constexpr double tiny = 1e-30;
 constexpr int band_rows = 256;  // height of a band of the frame
 
@@ -133,7 +133,7 @@ struct Trust {
   double none, full;
 };
 // Some pixels agree by chance: after a cut, and in patterns that move without vectors. Vectors make this rare.
-constexpr Trust with_vectors{0.25, 0.5}, without_vectors{0.5, 0.75};
+constexpr Trust with_vectors{0.25, 0.5}, without_vectors{0.6, 0.8};
 
 /// Whether there are vectors that are not all 0; such ones say no more than none.
 bool has_vectors(const Image& motion) {
@@ -187,7 +187,6 @@ struct Part {
   Geometry geometry;
   std::array<Image, surfaces> noise;
   Trust trust;
-  Sharing sharing;
 };
 
 Image maximum(Image a, const Image& b) {
@@ -206,17 +205,13 @@ std::array<Sums, 2> join_area(const Part& part, const std::vector<Places>& place
     const Estimate estimate = estimate_at(places, k, area);
     if (estimate.valid.empty()) break;
     // Frames that are further away share their noise too, though less of the scene stands still between them.
-    shared = maximum(shared_noise(pair, estimate, part.sharing), shared);
+    shared = maximum(shared_noise(pair, estimate), shared);
     const Image change =
         surface_change(pair.width(), pair.height(), part.geometry.surface, part.noise, estimate.surface);
     for (std::size_t half = 0; half < 2; ++half)
       add_estimate(estimate, half, weight_of(pair, estimate, half, change, shared, part.trust, params), sums[half]);
   }
   return sums;
-}
-
-bool is_noisy(const Image& variance, int x, int y) {
-  return variance.at(x, y, 0) > 0 || variance.at(x, y, 1) > 0 || variance.at(x, y, 2) > 0;
 }
 
 /// Divides the sums by their weights. Pixels without noise keep their value, which is exact.
@@ -265,19 +260,20 @@ int halo_of(const TemporalParams& params) {
 JoinCounts join_neighbours(const Geometry& geometry, const std::array<Image, surfaces>& noise,
                            const std::vector<TimedNeighbour>& neighbours, const TemporalParams& params, HalfPair& pair,
                            Progress& progress) {
-  const std::vector<Places> places = follow(geometry, pair, neighbours);
+  std::vector<Places> places = follow(geometry, pair, neighbours);
   JoinCounts counts{places.size(), 0, 0};
   if (places.empty()) return counts;
   const Trust& trust = has_vectors(geometry.motion) ? with_vectors : without_vectors;
   const HalfPair before{pair.color, pair.variance, {}, pair.epsilon};
-  const Sharing& sharing = sharing_of(before, places, params.radius);
+  double hidden = 0;
+  for (Places& neighbour : places) hidden += hide_repeated_noise(before, neighbour);
   double noisy = 0;
   // In bands, since the estimates and their blurs take several times the memory of the frame.
   for (int y = 0; y < pair.height(); y += band_rows) {
     if (progress.cancelled()) throw Error(ExitCode::Interrupted, "interrupted");
     const Rect band{0, y, pair.width(), std::min(y + band_rows, pair.height())};
     const Rect area = intersect(grow(band, halo_of(params)), pair.variance.bounds());
-    Part part{crop(before, area), crop(geometry, area), {}, trust, sharing};
+    Part part{crop(before, area), crop(geometry, area), {}, trust};
     for (std::size_t s = 0; s < surfaces; ++s)
       if (!noise[s].empty()) part.noise[s] = crop(noise[s], area);
     Image shared;
@@ -293,6 +289,7 @@ JoinCounts join_neighbours(const Geometry& geometry, const std::array<Image, sur
     counts.weight /= noisy;
     counts.shared_noise /= noisy;
   }
+  counts.shared_noise = std::min(1.0, counts.shared_noise + hidden / static_cast<double>(places.size()));
   return counts;
 }
 

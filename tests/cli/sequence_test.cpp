@@ -236,7 +236,7 @@ TEST_F(Sequence, FramesOfOneSeedBringNothingAndANoteSaysSo) {
   ASSERT_EQ(o.code, 0) << o.err;
   EXPECT_THAT(o.out, HasSubstr("animate the seed"));
   const auto report = nlohmann::json::parse(read_text(path("out/0002.json")));
-  EXPECT_THAT(report["notes"].dump(), HasSubstr("the same noise in 100 % of the noisy pixels"));
+  EXPECT_THAT(report["notes"].dump(), HasSubstr("in 100 % of the noisy pixels the frames before and after repeat"));
   EXPECT_EQ(report["neighbours"]["shared_noise"], 1);
   EXPECT_EQ(report["neighbours"]["mean_weight"], 0);
   const OIIO::ImageBuf joined = load(path("out/shot.0002.exr"));

@@ -17,7 +17,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr double least_shared_noise = 0.02;  // share of the noisy pixels; below it chance may be the cause
+constexpr double least_shared_noise = 0.1;  // share of the noisy pixels; below it chance may be the cause
 constexpr double least_seconds = 1e-3;       // a budget that is spent still selects the fastest settings
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
@@ -32,8 +32,8 @@ void print(bool quiet, const std::string& text) {
 void note_shared_noise(const Report& report, std::vector<std::string>& notes) {
   if (report.neighbour_shared_noise < least_shared_noise) return;
   notes.push_back(
-      fmt::format("the frames before and after have the same noise in {:.0f} % of the noisy pixels, and bring "
-                  "nothing there: animate the seed, so that each frame has its own",
+      fmt::format("in {:.0f} % of the noisy pixels the frames before and after repeat this frame's noise and bring "
+                  "nothing: animate the seed, so that each frame has its own",
                   100 * report.neighbour_shared_noise));
 }
 
