@@ -55,7 +55,7 @@ FRAMES = {
 }
 
 # What enters a phase from beside.
-INPUTS = {"join": ("Neighbour", "frames before and after, prepared alike: prepare_neighbour")}
+INPUTS = {"join": ("Neighbour", "frames before and after, by the same steps from survey to prepare: prepare_neighbour")}
 
 STYLE = """
   .card { fill: #ffffff; stroke: #d0d7de; }

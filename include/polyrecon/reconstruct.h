@@ -38,7 +38,6 @@ Result reconstruct(Frame& frame, const std::vector<TimedNeighbour>& neighbours, 
 /// Prepares a frame for the reconstruction of its neighbours in time, once for all of them. number: the frame's number.
 /// Frames that are used together need different numbers: a frame without half buffers is split into halves with random
 /// numbers that depend on it. Throws as reconstruct does.
-std::shared_ptr<const Neighbour> prepare_neighbour(const Frame& frame, int number, const Params& params,
-                                                   Progress& progress);
+std::shared_ptr<const Neighbour> prepare_neighbour(Frame frame, int number, const Params& params, Progress& progress);
 
 }  // namespace polyrecon

@@ -391,7 +391,10 @@ Preparation look_at(const Frame& frame, const Steps& steps, const Image& sampled
   const double brightness = mean_brightness(frame.beauty.mean, sampled);
   out.epsilon = brightness > 0 ? 0.09 * brightness * brightness : 1;
   std::vector<FeatureLook> looks(frame.features.size());
-  in_parallel(looks.size(), [&](std::size_t i) { looks[i] = look_at_feature(frame.features[i], frame.sky_depth); });
+  in_parallel(looks.size(), [&](std::size_t i) {
+    const Feature& feature = frame.features[i];
+    if (steps.features.has(feature.role)) looks[i] = look_at_feature(feature, frame.sky_depth);
+  });
   int channels = 0;
   for (std::size_t i = 0; i < frame.features.size(); ++i) {
     const Feature& feature = frame.features[i];

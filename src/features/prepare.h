@@ -22,12 +22,14 @@ struct FeatureUse {
   double half_depth = 0;   ///< If > 0, a depth z enters as z / (z + half_depth), which is below 1 even for the sky.
 };
 
+constexpr std::uint64_t streams_per_frame = 64;  ///< Random streams for the splits of a frame's passes.
+
 /// The decisions about a frame before it is reconstructed.
 struct Preparation {
   std::vector<FeatureUse> features;
-  double epsilon = 1;  ///< HalfPair::epsilon: (0.3 x mean brightness)^2, so that exposure does not matter.
-  std::uint64_t stream =
-      0;  ///< Random stream of the first of up to 64 splits. Frames that are joined need different ones.
+  double epsilon = 1;        ///< HalfPair::epsilon: (0.3 x mean brightness)^2, so that exposure does not matter.
+  std::uint64_t stream = 0;  ///< Random stream of the first of streams_per_frame splits, at most. Frames that are
+                             ///< joined need different ones.
   std::vector<Decision> decisions;
   Image picture = {};  ///< Mask of the pixels that hold a picture; the others stay 0 (core/picture.h).
   Image sampled = {};  ///< Mask of the pixels that are samples of it; the others are hidden.

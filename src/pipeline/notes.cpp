@@ -23,10 +23,9 @@ void note_input(const Frame& frame, Report& report) {
   report.energy_before = energy_of(frame.beauty.mean);
 }
 
-void note_preparation(const NoiseVariance& noise, const Preparation& preparation, const Prepared& prepared,
-                      Report& report) {
-  report.variance_source = noise.source;
-  report.decisions = preparation.decisions;
+void note_preparation(const Survey& survey, const Prepared& prepared, Report& report) {
+  report.variance_source = survey.noise.source;
+  report.decisions = survey.preparation.decisions;
   report.repaired_pixels = prepared.repaired_pixels;
   report.negative_pixels = prepared.negative_pixels;
 }

@@ -5,8 +5,8 @@
 
 #include "blend/blend_windows.h"
 #include "features/prepare.h"
-#include "noise/variance.h"
 #include "outliers/outlier.h"
+#include "pipeline/survey.h"
 #include "polyrecon/frame.h"
 #include "polyrecon/params.h"
 #include "polyrecon/reconstruct.h"
@@ -18,8 +18,7 @@ namespace polyrecon {
 
 /// The size and energy of the frame.
 void note_input(const Frame& frame, Report& report);
-void note_preparation(const NoiseVariance& noise, const Preparation& preparation, const Prepared& prepared,
-                      Report& report);
+void note_preparation(const Survey& survey, const Prepared& prepared, Report& report);
 void note_outliers(const std::vector<Outlier>& outliers, const Steps& steps, Report& report);
 void note_neighbours(const JoinCounts& counts, bool with_motion, Report& report);
 void note_fits(const FitCounters& counters, Report& report);

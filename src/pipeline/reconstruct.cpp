@@ -16,20 +16,18 @@
 #include "features/prepare.h"
 #include "maps/error_map.h"
 #include "noise/variance.h"
-#include "noise/variance_floor.h"
-#include "outliers/remove.h"
 #include "outliers/restore.h"
 #include "pipeline/memory.h"
+#include "pipeline/noisy_halves.h"
 #include "pipeline/notes.h"
 #include "pipeline/savings.h"
 #include "pipeline/stage.h"
 #include "pipeline/stages.h"
-#include "pipeline/survey.h"
 #include "temporal/join.h"
 #include "temporal/neighbour.h"
 
-// The order of the stages of a reconstruction. The steps of the first one, before the frame is split into halves, are
-// in pipeline/survey.cpp, which `inspect` uses too.
+// The order of the steps of a reconstruction. Those before the fit are in pipeline/noisy_halves.cpp, which neighbours
+// in time share.
 namespace polyrecon {
 namespace {
 
@@ -38,8 +36,6 @@ constexpr double max_restored_gain = 0.001;  // a tenth of the least visible ste
 constexpr double max_total_gain = 0.05;      // above what is lost because weights favour ordinary pixels
 constexpr double most_noise_in_prior = 0.9;  // above it the prior is the input, which would validate itself
 
-std::size_t rows_of(const Frame& frame) { return static_cast<std::size_t>(frame.height()); }
-
 /// The parameters for a frame: an estimated noise variance needs other patches than a measured one.
 Params params_for_frame(const Frame& frame, Params params) {
   validate(params);
@@ -47,35 +43,15 @@ Params params_for_frame(const Frame& frame, Params params) {
   return params;
 }
 
-Survey survey_input(Frame& frame, const Params& params, Stages& stages) {
-  return stages.run("noise variance", rows_of(frame) * 2 * (1 + frame.features.size()),
-                    [&](Progress& progress) { return survey_frame(frame, params.steps, progress); });
-}
-
-/// A frame as two noisy halves without outliers, ready for the fit.
-struct NoisyHalves {
-  Prepared prepared;
-  Image bound;  ///< See noise_bound; empty where results are not bound.
-  std::vector<Outlier> outliers;
-};
-
-NoisyHalves split_into_halves(Frame& frame, const Preparation& preparation, const NoiseVariance& noise,
-                              const Params& params, Stages& stages) {
-  NoisyHalves out;
-  out.prepared = stages.run("features", rows_of(frame) / 4, [&](Progress& progress) {
-    return prepare(frame, preparation, noise.variance, params.prefilter, params.reconstruct_alpha, progress);
+/// Averages the neighbours into the halves, and frees what only that needs.
+void join(const std::vector<TimedNeighbour>& neighbours, bool with_motion, const TemporalParams& params,
+          NoisyHalves& halves, Stages& stages, Report& report) {
+  const JoinCounts joined = stages.run("neighbours in time", 2, [&](Progress& progress) {
+    return join_neighbours(halves.geometry, halves.surfaces_noise, neighbours, params, halves.prepared.pair, progress);
   });
-  HalfPair& pair = out.prepared.pair;
-  // The bound is that of the measured variance, before outliers are removed: where an outlier is removed from one half,
-  // the other half may still be wrong by this much. An estimated variance is not exact enough for single pixels.
-  if (params.parts.noise_bound && noise.measured) out.bound = noise_bound(pair.variance);
-  out.outliers = stages.run("fireflies", rows_of(frame) * 2, [&](Progress& progress) {
-    const PairNoise known{out.prepared.independent_halves, noise.measured};
-    return params.steps.fireflies ? remove_outliers(pair, known, params.outliers, progress) : std::vector<Outlier>();
-  });
-  // After the removal, so that the variance of an outlier does not spread to its neighbours.
-  if (params.parts.variance_floor) pair.variance = floor_variance(pair.variance);
-  return out;
+  halves.geometry = {};
+  halves.surfaces_noise = {};
+  note_neighbours(joined, with_motion, report);
 }
 
 /// Sections 2.1 and 2.2 of the method on one level and, through add_coarse, on the coarser ones.
@@ -205,28 +181,13 @@ Result reconstruct_panorama(Frame& frame, const std::vector<TimedNeighbour>& nei
 
 }  // namespace
 
-std::shared_ptr<const Neighbour> prepare_neighbour(const Frame& frame, int number, const Params& params,
-                                                   Progress& progress) {
-  if (frame.wraps) {
-    Frame wide = frame;
-    wrap(wide);
-    return prepare_neighbour(wide, number, params, progress);
-  }
-  require_usable(frame);
+std::shared_ptr<const Neighbour> prepare_neighbour(Frame frame, int number, const Params& params, Progress& progress) {
+  if (frame.wraps) wrap(frame);
   Report not_kept;
   Stages stages(progress, not_kept);
-  Preparation preparation;
-  preparation.sampled = sampled_of(picture_of(frame), frame);
-  const NoiseVariance noise = noise_variance(frame, progress, preparation.sampled);
-  Frame colors;  // the features of a neighbour are not used
-  colors.beauty = frame.beauty;
-  colors.aovs = frame.aovs;
-  colors.alpha = frame.alpha;
-  preparation.stream = 64 * (std::uint64_t{static_cast<std::uint32_t>(number)} + 1);
-  Params without_bound = params;
-  without_bound.parts.noise_bound = false;
-  NoisyHalves halves = split_into_halves(colors, preparation, noise, without_bound, stages);
-  return std::make_shared<Neighbour>(Neighbour{std::move(halves.prepared.pair), geometry_of(frame)});
+  const std::uint64_t stream = streams_per_frame * (std::uint64_t{static_cast<std::uint32_t>(number)} + 1);
+  NoisyHalves halves = make_noisy_halves(frame, HalvesFor::Neighbour, stream, params, stages);
+  return std::make_shared<Neighbour>(Neighbour{std::move(halves.prepared.pair), std::move(halves.geometry)});
 }
 
 Result reconstruct(Frame& frame, const Params& params, Progress& progress) {
@@ -246,33 +207,19 @@ Result reconstruct(Frame& frame, const std::vector<TimedNeighbour>& neighbours, 
   note_input(frame, report);
 
   // The input as two halves of known noise, and the features that describe the scene (equations 1 and 2).
-  const Survey survey = survey_input(frame, params, stages);
-  const NoiseVariance& noise = survey.noise;
-  Geometry geometry;
-  std::array<Image, surfaces> surfaces_noise;
-  if (!neighbours.empty()) {  // before the features are taken from the frame
-    geometry = geometry_of(frame);
-    surfaces_noise = surface_noise(frame);
-  }
-  NoisyHalves halves = split_into_halves(frame, survey.preparation, noise, params, stages);
+  NoisyHalves halves =
+      make_noisy_halves(frame, neighbours.empty() ? HalvesFor::Fit : HalvesFor::FitWithNeighbours, 0, params, stages);
   HalfPair& pair = halves.prepared.pair;
-  note_preparation(noise, survey.preparation, halves.prepared, report);
+  note_preparation(halves.survey, halves.prepared, report);
   note_outliers(halves.outliers, params.steps, report);
-  if (!neighbours.empty()) {
-    const JoinCounts joined = stages.run("neighbours in time", 2, [&](Progress& p) {
-      return join_neighbours(geometry, surfaces_noise, neighbours, params.temporal, pair, p);
-    });
-    geometry = {};
-    surfaces_noise = {};
-    note_neighbours(joined, !frame.motion.empty(), report);
-  }
+  if (!neighbours.empty()) join(neighbours, !frame.motion.empty(), params.temporal, halves, stages, report);
 
   // Polynomials around every centre, of the order with the least estimated error, blended (equations 3 to 9).
   const std::size_t max_bytes = tile_memory(shape, params);
   Candidate solved = fit_polynomials(frame, pair, params, max_bytes, stages, report);
 
   // Nothing was rendered there, and nothing comes out.
-  const Image& picture = survey.preparation.picture;
+  const Image& picture = halves.survey.preparation.picture;
   empty_void(picture, pair, solved);
 
   // The noise bound, the estimate of the error that is left, and the prior where its error is smaller.
@@ -280,8 +227,8 @@ Result reconstruct(Frame& frame, const std::vector<TimedNeighbour>& neighbours, 
     return halves.bound.empty() ? BoundEnergy() : bind_to_noise(pair, halves.bound, max_total_gain, solved);
   });
   report.pixels_clamped_to_noise = bound.pixels;
-  result.error =
-      stages.run("error map", 1, [&](Progress&) { return make_error_map(pair, noise.variance, solved, picture); });
+  result.error = stages.run(
+      "error map", 1, [&](Progress&) { return make_error_map(pair, halves.survey.noise.variance, solved, picture); });
   result.order = solved.order;
   if (!frame.prior.mean.empty())
     solved = stages.run("prior", 1, [&](Progress&) {

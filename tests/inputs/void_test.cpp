@@ -10,6 +10,7 @@
 #include "pipeline/memory.h"
 #include "support/reconstruction.h"
 #include "support/scene.h"
+#include "temporal/neighbour.h"
 
 namespace polyrecon {
 namespace {
@@ -179,6 +180,28 @@ TEST(Void, ResultsDoNotDependOnTiles) {
   const Result tiled = test::run(scene.frame, params);
   EXPECT_TRUE(test::same_bits(whole.beauty, tiled.beauty));
   EXPECT_TRUE(test::same_bits(whole.error.mse, tiled.error.mse));
+}
+
+/// What a renderer leaves in void pixels (0, NaN, the depth of the sky) is hidden before anything is measured, in
+/// neighbours in time too.
+TEST(Void, OfNeighboursMayHoldAnythingThatMeansNothing) {
+  Frame zeros = cut_to(region, 72, 50).frame;
+  zeros.beauty.variance = zeros.beauty.half_a = zeros.beauty.half_b = {};  // the noise is estimated
+  Frame others = zeros;
+  for (int y = 0; y < 50; ++y)
+    for (int x = 0; x < 72; ++x) {
+      if (region.contains(x, y)) continue;
+      for (int c = 0; c < 3; ++c) others.beauty.mean.at(x, y, c) = nan;
+      others.features[2].pass.mean.at(x, y, 0) = Real(1e10);
+    }
+  const auto a = prepare_neighbour(zeros, 1, test::quick(), silent_progress());
+  const auto b = prepare_neighbour(others, 1, test::quick(), silent_progress());
+  EXPECT_FALSE(a->pair.sampled.empty());
+  EXPECT_TRUE(test::same_bits(a->pair.sampled, b->pair.sampled));
+  EXPECT_TRUE(test::same_bits(a->pair.variance, b->pair.variance));
+  for (std::size_t h = 0; h < 2; ++h) EXPECT_TRUE(test::same_bits(a->pair.color[h], b->pair.color[h]));
+  for (std::size_t s = 0; s < surfaces; ++s)
+    EXPECT_TRUE(test::same_bits(a->geometry.surface[s], b->geometry.surface[s])) << s;
 }
 
 TEST(Void, RepairedPixelsAreThoseOfThePicture) {

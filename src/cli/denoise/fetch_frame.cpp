@@ -112,8 +112,8 @@ FrameFetcher::Prepared FrameFetcher::neighbour(const NeighbourFile& file, Loaded
   Cancellable progress(cancelled_);
   try {
     return wait_for(file.path, patience, [&] {
-      const LoadedFrame frame = load_frame(file.path, with_picture(read_options_for(job_, file.frame), loaded.picture));
-      return prepare_neighbour(frame.in.frame, file.number, job_.params, progress);
+      LoadedFrame frame = load_frame(file.path, with_picture(read_options_for(job_, file.frame), loaded.picture));
+      return prepare_neighbour(std::move(frame.in.frame), file.number, job_.params, progress);
     });
   } catch (const Error& error) {
     if (error.code() == ExitCode::Interrupted) throw;
