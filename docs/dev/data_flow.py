@@ -12,7 +12,7 @@ PHASES = [
         [
             ("picture_of, hide_void", "src/core; void pixels"),
             ("noise_variance", "src/noise"),
-            ("look_at", "src/features"),
+            ("choose_features", "src/features"),
         ],
         "Frame, NoiseVariance, Preparation",
     ),

@@ -65,7 +65,7 @@ struct Range {
 };
 
 /// Statistics of a feature's values and noise over the frame. Its usual values are those without spikes.
-struct FeatureLook {
+struct FeatureStatistics {
   Range all, usual;     ///< The range of all values, and of the usual ones.
   double variance = 0;  ///< Variance of the usual values over the frame, averaged over the channels.
   double noise = 0;     ///< Mean noise variance of the usual values.
@@ -107,8 +107,8 @@ Range usual_range(const Feature& feature, double sky, int channel) {
 }
 
 /// sky: Frame::sky_depth.
-FeatureLook look_at_feature(const Feature& feature, double sky) {
-  FeatureLook look;
+FeatureStatistics statistics_of(const Feature& feature, double sky) {
+  FeatureStatistics found;
   const Image& mean = feature.pass.mean;
   for (int c = 0; c < mean.channels(); ++c) {
     const Range usual = usual_range(feature, sky, c);
@@ -119,10 +119,10 @@ FeatureLook look_at_feature(const Feature& feature, double sky) {
       const auto v = static_cast<double>(values[i]);
       if (!usable_value(feature, sky, values[i])) continue;
       ++pixels;
-      look.all.add(v);
+      found.all.add(v);
       if (!usual.contains(v)) continue;
       ++count;
-      look.usual.add(v);
+      found.usual.add(v);
       sum += v;
       square += v * v;
       const double variance = noise_at(feature.pass, c, i);
@@ -131,12 +131,12 @@ FeatureLook look_at_feature(const Feature& feature, double sky) {
     }
     if (count == 0) continue;
     const double n = static_cast<double>(count), m = sum / n;
-    look.variance += std::max(0.0, square / n - m * m) / mean.channels();
-    look.noise += noise / n / mean.channels();
-    look.usable_pixels = std::max(look.usable_pixels, pixels);
-    look.noisy_pixels = std::max(look.noisy_pixels, noisy);
+    found.variance += std::max(0.0, square / n - m * m) / mean.channels();
+    found.noise += noise / n / mean.channels();
+    found.usable_pixels = std::max(found.usable_pixels, pixels);
+    found.noisy_pixels = std::max(found.noisy_pixels, noisy);
   }
-  return look;
+  return found;
 }
 
 double median_depth(const Image& depth, double sky) {
@@ -152,16 +152,16 @@ double median_depth(const Image& depth, double sky) {
 }
 
 /// Whether a feature takes part in the fit, and why.
-Decision decide_on_feature(const FeatureLook& look, const Feature& feature, const Steps& steps) {
+Decision decide_on_feature(const FeatureStatistics& found, const Feature& feature, const Steps& steps) {
   const std::string step = std::string("feature ") + name_of(feature.role);
   const Image& mean = feature.pass.mean;
   if (!steps.features.has(feature.role)) return {step, false, "not requested"};
-  if (look.usable_pixels == 0) return {step, false, "no finite value"};
+  if (found.usable_pixels == 0) return {step, false, "no finite value"};
   if (!steps.decide) return {step, true, "requested"};
-  const bool has_sky = is_depth(feature) && look.usable_pixels < mean.pixels();
-  if (look.all.high - look.all.low <= 1e-6 * look.all.largest() && !has_sky)
+  const bool has_sky = is_depth(feature) && found.usable_pixels < mean.pixels();
+  if (found.all.high - found.all.low <= 1e-6 * found.all.largest() && !has_sky)
     return {step, false, "constant", Spared::Columns, mean.channels()};
-  if (look.noise > 0.9 * look.variance) return {step, false, "nothing but noise", Spared::Columns, mean.channels()};
+  if (found.noise > 0.9 * found.variance) return {step, false, "nothing but noise", Spared::Columns, mean.channels()};
   return {step, true, "varies over the frame"};
 }
 
@@ -329,15 +329,15 @@ std::array<Image, 2> prepared_feature(Feature feature, const FeatureUse& use, do
 }
 
 /// Whether a feature is prefiltered, and why.
-Decision decide_on_prefilter(const std::string& feature, const Pass& pass, const FeatureLook& look,
+Decision decide_on_prefilter(const std::string& feature, const Pass& pass, const FeatureStatistics& found,
                              const Steps& steps) {
   const std::string step = feature + " prefilter";
   if (!steps.prefilter) return {step, false, "not requested"};
   if (!pass.noise_is_known()) return {step, false, "its noise is unknown"};
   if (!steps.decide) return {step, true, "requested"};
-  const bool noisy = look.noise > noise_floor * look.variance;
+  const bool noisy = found.noise > noise_floor * found.variance;
   if (!noisy) return {step, false, "the pass has no noise", Spared::Prefilter, pass.mean.channels()};
-  const double share = static_cast<double>(look.noisy_pixels) / static_cast<double>(pass.mean.pixels());
+  const double share = static_cast<double>(found.noisy_pixels) / static_cast<double>(pass.mean.pixels());
   return {step, true, fmt::format("the pass is noisy in {:.0f} % of its pixels", 100 * share)};
 }
 
@@ -385,21 +385,21 @@ void require_usable(const Frame& frame) {
     throw Error(ExitCode::CheckFailed, "layer '" + frame.beauty.name + "': no finite pixel; render the frame again");
 }
 
-Preparation look_at(const Frame& frame, const Steps& steps, const Image& sampled) {
+Preparation choose_features(const Frame& frame, const Steps& steps, const Image& sampled) {
   require_usable(frame);
   Preparation out;
   const double brightness = mean_brightness(frame.beauty.mean, sampled);
   out.epsilon = brightness > 0 ? 0.09 * brightness * brightness : 1;
-  std::vector<FeatureLook> looks(frame.features.size());
-  in_parallel(looks.size(), [&](std::size_t i) {
+  std::vector<FeatureStatistics> statistics(frame.features.size());
+  in_parallel(statistics.size(), [&](std::size_t i) {
     const Feature& feature = frame.features[i];
-    if (steps.features.has(feature.role)) looks[i] = look_at_feature(feature, frame.sky_depth);
+    if (steps.features.has(feature.role)) statistics[i] = statistics_of(feature, frame.sky_depth);
   });
   int channels = 0;
   for (std::size_t i = 0; i < frame.features.size(); ++i) {
     const Feature& feature = frame.features[i];
-    const FeatureLook& look = looks[i];
-    Decision decision = decide_on_feature(look, feature, steps);
+    const FeatureStatistics& found = statistics[i];
+    Decision decision = decide_on_feature(found, feature, steps);
     if (decision.run && channels + feature.pass.mean.channels() > BasisLayout::max_features) {
       decision.run = false;
       decision.reason = "the model is full: " + std::to_string(BasisLayout::max_features) + " channels";
@@ -409,10 +409,10 @@ Preparation look_at(const Frame& frame, const Steps& steps, const Image& sampled
     channels += feature.pass.mean.channels();
     FeatureUse use;
     use.index = i;
-    const Decision prefilter = decide_on_prefilter(decision.step, feature.pass, look, steps);
+    const Decision prefilter = decide_on_prefilter(decision.step, feature.pass, found, steps);
     use.prefilter = prefilter.run;
     use.flatten = feature.pass.variance_is_estimated && !frame.beauty.noise_is_known();
-    if (const double largest = look.usual.largest(); largest > 0) use.scale = std::exp2(-std::ilogb(largest));
+    if (const double largest = found.usual.largest(); largest > 0) use.scale = std::exp2(-std::ilogb(largest));
     if (is_depth(feature)) use.half_depth = median_depth(feature.pass.mean, frame.sky_depth);
     out.features.push_back(use);
     out.decisions.push_back(prefilter);

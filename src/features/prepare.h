@@ -39,7 +39,7 @@ struct Preparation {
 /// constant, or nothing but noise are dropped, and so are those beyond the number of channels that the model holds.
 /// Without steps.decide every allowed feature with a finite value takes part and is prefiltered. Throws
 /// Error{CheckFailed} if the beauty has no finite pixel. sampled: as Preparation::sampled, which is not set here.
-Preparation look_at(const Frame& frame, const Steps& steps = {}, const Image& sampled = {});
+Preparation choose_features(const Frame& frame, const Steps& steps = {}, const Image& sampled = {});
 
 /// Throws Error{CheckFailed} if the beauty has no finite pixel.
 void require_usable(const Frame& frame);

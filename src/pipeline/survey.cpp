@@ -26,7 +26,7 @@ Survey survey_frame(Frame& frame, const Steps& steps, Progress& progress) {
   hide_void(sampled, frame);
   if (steps.prefilter) estimate_feature_variance(frame, progress, sampled);
   survey.noise = noise_variance(frame, progress, sampled);
-  survey.preparation = look_at(frame, steps, sampled);
+  survey.preparation = choose_features(frame, steps, sampled);
   if (!picture.empty()) survey.preparation.decisions.push_back(decide_on_void(picture));
   survey.preparation.picture = std::move(picture);
   survey.preparation.sampled = std::move(sampled);

@@ -6,24 +6,20 @@
 #include <cmath>
 #include <map>
 
+#include "html/page.h"
+#include "html/plot.h"
 #include "io/pictures/preview.h"
-#include "sweep/pareto.h"
+#include "presets/pareto.h"
 #include "sweep/pictures.h"
-#include "sweep/plot.h"
 
 namespace polyrecon {
 namespace {
 
 constexpr std::size_t pictured_points = 4;  // settings of the front that get a picture, the first and last included
 
-constexpr const char* style = R"(
-:root{color-scheme:light dark;--ground:#fff;--text:#1d2129;--soft:#69707d;--line:#d9dde3;--shade:#f4f6f8}
-@media (prefers-color-scheme:dark){:root{--ground:#16181c;--text:#e4e6ea;--soft:#9aa1ad;--line:#363b44;--shade:#1f2228}}
-*{box-sizing:border-box}
-body{margin:2rem auto;max-width:1080px;padding:0 1rem;background:var(--ground);color:var(--text);
- font:15px/1.5 system-ui,"Segoe UI","DejaVu Sans",sans-serif}
-h1{font-size:1.5rem;margin:0 0 .2rem}h2{font-size:1.15rem;margin:2.4rem 0 .4rem}
-p{margin:.3rem 0}.soft,figcaption{color:var(--soft)}
+constexpr int page_width = 1080;  // CSS pixels
+
+constexpr const char* rules = R"(
 svg{width:100%;height:auto;display:block}
 svg text{fill:var(--text);font-size:12px}svg .label{font-size:11px;text-anchor:middle}svg .tick{fill:var(--soft)}
 .grid{stroke:var(--line);stroke-width:1}.level{stroke:var(--soft);stroke-dasharray:5 4}
@@ -31,12 +27,10 @@ svg text{fill:var(--text);font-size:12px}svg .label{font-size:11px;text-anchor:m
 .leader{stroke-width:.8;opacity:.6}.point{stroke:var(--ground);stroke-width:1}
 .legend span{margin-right:1.1rem;white-space:nowrap}.legend i{display:inline-block;width:.75rem;height:.75rem;
  border-radius:2px;margin-right:.35rem}
-.table{overflow-x:auto}table{border-collapse:collapse;width:100%;font-variant-numeric:tabular-nums}
-th,td{padding:.25rem .7rem;text-align:right;border-bottom:1px solid var(--line);white-space:nowrap}
-th{color:var(--soft);font-weight:600}th:first-child,td:first-child,th.text,td.text{text-align:left}
-tr.front td{background:var(--shade);font-weight:600}
+table{width:100%}tr.front td{background:var(--shade);font-weight:600}
 .pictures{display:grid;grid-template-columns:repeat(auto-fill,minmax(300px,1fr));gap:1rem}
 figure{margin:0}figure img{width:100%;display:block;image-rendering:pixelated;margin-bottom:3px}
+figcaption{color:var(--soft)}
 )";
 
 CostPoint cost_of(const Trial& trial) { return {trial.seconds, trial.score.relative_mse}; }
@@ -61,14 +55,14 @@ std::string price_text(const CostPoint& cheap, const CostPoint& dear, const char
 
 std::string header(const Sweep& sweep, const std::string& version) {
   const SweptInput& input = sweep.inputs.front();
-  return fmt::format(
-      "<!DOCTYPE html>\n<html lang='en'><head><meta charset='utf-8'>"
-      "<meta name='viewport' content='width=device-width,initial-scale=1'><title>Sweep of {0}</title>"
-      "<style>{1}</style></head><body>\n<h1>What accuracy costs: {0}</h1>\n<p class='soft'>{2} x {3} pixels{4}; "
-      "measured against {5}; polyrecon {6}, {7} threads; seconds of the reconstruction, without files</p>\n",
-      escaped(input.name), style, input.beauty.width(), input.beauty.height(),
-      input.samples > 0 ? ", " + samples_text(input.samples) : "", escaped(sweep.reference_name), escaped(version),
-      sweep.threads);
+  return page_head("Sweep of " + input.name, page_width, rules) +
+         fmt::format(
+             "<h1>What accuracy costs: {}</h1>\n<p class='soft'>{} x {} pixels{}; measured against {}; polyrecon {}, "
+             "{} "
+             "threads; seconds of the reconstruction, without files</p>\n",
+             escaped(input.name), input.beauty.width(), input.beauty.height(),
+             input.samples > 0 ? ", " + samples_text(input.samples) : "", escaped(sweep.reference_name),
+             escaped(version), sweep.threads);
 }
 
 std::string details_of(const Trial& trial) {
@@ -249,7 +243,7 @@ std::string figures_section(const Sweep& sweep) {
 std::string page_of(const Sweep& sweep, const std::string& version) {
   const SweptInput& input = sweep.inputs.front();
   return header(sweep, version) + front_section(sweep) + price_section(input) + samples_section(sweep) +
-         stages_section(input) + pictures_section(sweep) + figures_section(sweep) + "</body></html>\n";
+         stages_section(input) + pictures_section(sweep) + figures_section(sweep) + page_end();
 }
 
 }  // namespace polyrecon

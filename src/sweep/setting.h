@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <string>
 #include <vector>
 
@@ -28,15 +27,5 @@ std::vector<Setting> settings_for(const Frame& frame, const std::vector<std::str
 
 /// A copy of the frame without the passes that the setting ignores.
 Frame frame_for(const Frame& frame, const Setting& setting);
-
-/// Named parameters that --time-budget and --target choose from (sweep/settings_choice.h).
-struct Preset {
-  std::string name;  ///< "draft, stages 2"
-  Params params;
-};
-constexpr std::size_t preset_count = 8;
-
-/// All presets, roughly from fast to accurate. One of them is Quality::Standard.
-std::array<Preset, preset_count> presets();
 
 }  // namespace polyrecon

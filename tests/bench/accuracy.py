@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Measures what every setting and every part of the method brings on the samples, in error and in time. Runs
 `polyrecon sweep` on each sample, writes the tables of docs/results/accuracy.md, and writes the figures that
---time-budget and --target choose by into src/sweep/preset_figures.cpp, which the next build compiles in. The
+--time-budget and --target choose by into src/presets/preset_figures.cpp, which the next build compiles in. The
 reports of the sweeps stay in out/accuracy/.
 
 Build the release preset first; let nothing else run meanwhile. Under ten minutes on two cores.
@@ -175,7 +175,7 @@ def main():
     options.out.mkdir(parents=True, exist_ok=True)
     found = {sample: sweep(options, sample) for sample in SAMPLES}
     write_tables(ROOT / "docs" / "results" / "accuracy.md", found)
-    write_figures(ROOT / "src" / "sweep" / "preset_figures.cpp", found)
+    write_figures(ROOT / "src" / "presets" / "preset_figures.cpp", found)
 
 
 if __name__ == "__main__":

@@ -22,14 +22,14 @@ constexpr Real nan = std::numeric_limits<Real>::quiet_NaN();
 
 Prepared prepared(const Frame& frame, bool with_alpha = true) {
   Frame taken = frame;
-  return prepare(taken, look_at(frame), frame.beauty.variance, PrefilterParams{}, with_alpha, silent_progress());
+  return prepare(taken, choose_features(frame), frame.beauty.variance, PrefilterParams{}, with_alpha, silent_progress());
 }
 
 /// The reason for which the only feature of the scene was dropped; empty if it was not.
 std::string reason_of(const Image& mean, Role kind, const Image& variance = {}) {
   Frame frame = make_scene(width, height, 0.1, 1).frame;
   frame.features = {{kind, {"f", mean, variance, {}, {}}}};
-  const Preparation out = look_at(frame);
+  const Preparation out = choose_features(frame);
   EXPECT_EQ(out.features.empty(), !out.decisions.front().run);
   return out.features.empty() ? out.decisions.front().reason : "";
 }
@@ -61,12 +61,12 @@ TEST(LookAt, ASpikeIsNeitherTheScaleOfAFeatureNorItsNoise) {
   Feature& albedo = frame.features.front();
   ASSERT_EQ(albedo.role, Role::Albedo);
   albedo.pass.variance = Image(width, height, 3, Real(1e-4));
-  const Preparation before = look_at(frame);
+  const Preparation before = choose_features(frame);
   for (int c = 0; c < 3; ++c) {
     albedo.pass.mean.at(5, 5, c) = Real(1000);
     albedo.pass.variance.at(5, 5, c) = Real(1e6);
   }
-  const Preparation after = look_at(frame);
+  const Preparation after = choose_features(frame);
   ASSERT_EQ(after.features.size(), before.features.size());
   EXPECT_EQ(after.features.front().scale, before.features.front().scale);
 }
@@ -75,7 +75,7 @@ TEST(LookAt, PrefiltersOnlyNoisyFeatures) {
   Frame frame = make_scene(width, height, 0.1, 1).frame;
   frame.features.resize(2);
   frame.features[1].pass.variance = Image(width, height, 3, Real(0.001));
-  const Preparation out = look_at(frame);
+  const Preparation out = choose_features(frame);
   ASSERT_EQ(out.features.size(), 2u);
   EXPECT_FALSE(out.features[0].prefilter);
   EXPECT_TRUE(out.features[1].prefilter);
@@ -85,7 +85,7 @@ TEST(LookAt, ABeautyWithoutAFinitePixelFailsTheCheck) {
   Frame frame = make_scene(width, height, 0.1, 1).frame;
   frame.beauty.mean = Image(width, height, 3, nan);
   try {
-    look_at(frame);
+    choose_features(frame);
     FAIL();
   } catch (const Error& e) {
     EXPECT_EQ(e.code(), ExitCode::CheckFailed);
@@ -97,9 +97,9 @@ TEST(LookAt, EpsilonIsTheSquareOfThreeTenthsOfTheMeanBrightness) {
   Frame frame = make_scene(width, height, 0.1, 1).frame;
   frame.features.clear();
   frame.beauty.mean = Image(width, height, 3, Real(2));
-  EXPECT_NEAR(look_at(frame).epsilon, 0.36, 1e-9);
+  EXPECT_NEAR(choose_features(frame).epsilon, 0.36, 1e-9);
   frame.beauty.mean = Image(width, height, 3);
-  EXPECT_EQ(look_at(frame).epsilon, 1);  // all black: anything positive
+  EXPECT_EQ(choose_features(frame).epsilon, 1);  // all black: anything positive
 }
 
 TEST(LookAt, MoreFeaturesThanTheModelHoldsAreDropped) {
@@ -107,7 +107,7 @@ TEST(LookAt, MoreFeaturesThanTheModelHoldsAreDropped) {
   const Feature normal = frame.features[1];
   frame.features.assign(7, normal);
   int channels = 0;
-  const Preparation out = look_at(frame);
+  const Preparation out = choose_features(frame);
   for (const FeatureUse& use : out.features) channels += frame.features[use.index].pass.mean.channels();
   EXPECT_LE(channels, BasisLayout::max_features);
   EXPECT_EQ(out.features.size(), 5u);  // 5 x 3 = 15 of 16

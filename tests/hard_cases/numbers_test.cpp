@@ -414,7 +414,7 @@ TEST(Case23, HasTheSameBitsForAnyMemory) {
     Params params = quick();
     params.radius = radius;
     params.stride = stride;
-    const Preparation look = look_at(scene.frame);
+    const Preparation look = choose_features(scene.frame);
     Frame frame = scene.frame;
     const HalfPair pair =
         prepare(frame, look, scene.frame.beauty.variance, PrefilterParams{}, false, silent_progress()).pair;

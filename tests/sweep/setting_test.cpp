@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 
+#include "presets/preset.h"
 #include "support/scene.h"
 
 namespace polyrecon {

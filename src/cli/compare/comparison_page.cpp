@@ -9,35 +9,28 @@
 
 #include "cli/compare/comparison_output.h"
 #include "core/resample.h"
+#include "html/page.h"
 #include "io/pictures/false_color.h"
 #include "io/pictures/png_file.h"
-#include "sweep/plot.h"
 
 namespace polyrecon {
 namespace {
 
-constexpr int widest = 1920;
+constexpr int widest = 1920;  // pixels of a picture
 
-constexpr const char* style = R"(
-:root{color-scheme:light dark;--ground:#fff;--text:#1d2129;--soft:#69707d;--line:#d9dde3;--shade:#f4f6f8}
-@media (prefers-color-scheme:dark){:root{--ground:#16181c;--text:#e4e6ea;--soft:#9aa1ad;--line:#363b44;--shade:#1f2228}}
-*{box-sizing:border-box}
-body{margin:2rem auto;max-width:1280px;padding:0 1rem;background:var(--ground);color:var(--text);
- font:15px/1.5 system-ui,"Segoe UI","DejaVu Sans",sans-serif}
-h1{font-size:1.5rem;margin:0 0 .2rem}h2{font-size:1.15rem;margin:2.4rem 0 .4rem}
-p{margin:.3rem 0}.soft{color:var(--soft)}
-.table{overflow-x:auto}table{border-collapse:collapse;font-variant-numeric:tabular-nums}
-th,td{padding:.25rem .9rem;text-align:right;border-bottom:1px solid var(--line);white-space:nowrap}
-th{color:var(--soft);font-weight:600}th:first-child,td:first-child{text-align:left}td.best{font-weight:700}
+constexpr int page_width = 1280;  // CSS pixels
+
+constexpr const char* rules = R"(
+td.best{font-weight:700}
 .viewer{display:flex;flex-wrap:wrap;gap:.3rem;margin-top:.8rem}
 .viewer input{position:absolute;opacity:0}
 .viewer label{padding:.15rem .7rem;border:1px solid var(--line);border-radius:4px;cursor:pointer}
 .viewer input:checked+label{background:var(--text);color:var(--ground)}
 .viewer input:focus-visible+label{outline:2px solid #3b82f6;outline-offset:2px}
-.stage{flex-basis:100%;display:grid}
-.stage figure{grid-area:1/1;margin:0;visibility:hidden}
-.stage img{width:100%;display:block;image-rendering:pixelated}
-.stage .scale{height:.7rem;margin-top:.4rem}
+.shown{flex-basis:100%;display:grid}
+.shown figure{grid-area:1/1;margin:0;visibility:hidden}
+.shown img{width:100%;display:block;image-rendering:pixelated}
+.shown .scale{height:.7rem;margin-top:.4rem}
 .ends{display:flex;justify-content:space-between}
 )";
 
@@ -90,16 +83,16 @@ std::vector<View> views_of(const std::vector<const Comparison*>& images, const L
 
 /// Radio buttons above the picture of the selected one. The style sheet switches the pictures, without a script.
 std::string viewer(const std::vector<View>& views, std::size_t section) {
-  std::string buttons, figures, rules;
+  std::string buttons, figures, choices;
   for (std::size_t i = 0; i < views.size(); ++i) {
     const std::string id = fmt::format("view{}-{}", section, i);
     buttons += fmt::format("<input type='radio' name='view{0}' id='{1}'{2}><label for='{1}'>{3}</label>\n", section, id,
                            i == 0 ? " checked" : "", escaped(views[i].name));
     figures += fmt::format("<figure><img alt='{}' src='{}'>{}</figure>\n", escaped(views[i].name), views[i].picture,
                            views[i].below);
-    rules += fmt::format("#{}:checked~.stage figure:nth-child({}){{visibility:visible}}\n", id, i + 1);
+    choices += fmt::format("#{}:checked~.shown figure:nth-child({}){{visibility:visible}}\n", id, i + 1);
   }
-  return fmt::format("<style>{}</style>\n<div class='viewer'>{}<div class='stage'>{}</div></div>\n", rules, buttons,
+  return fmt::format("<style>{}</style>\n<div class='viewer'>{}<div class='shown'>{}</div></div>\n", choices, buttons,
                      figures);
 }
 
@@ -137,14 +130,13 @@ std::string table(const std::vector<const Comparison*>& images) {
 
 std::string comparison_page(const std::string& reference, const std::vector<Comparison>& comparisons,
                             const DisplayParams& display) {
-  std::string html = fmt::format(
-      "<!DOCTYPE html>\n<html lang='en'><head><meta charset='utf-8'>"
-      "<meta name='viewport' content='width=device-width,initial-scale=1'><title>Against {0}</title>"
-      "<style>{1}</style></head><body>\n<h1>Against {0}</h1>\n"
-      "<p class='soft'>relMSE: mean of ((x - r)² - Var r) / (r² + 0.01); trimmed: without the 0.1 % worst pixels; "
-      "energy: mean(x) / mean(r) - 1; FLIP: the difference that a viewer notices when the pictures alternate, 0 to 1. "
-      "Arrow keys alternate the pictures.</p>\n",
-      escaped(reference), style);
+  const std::string title = "Against " + reference;
+  std::string html =
+      page_head(title, page_width, rules) + "<h1>" + escaped(title) +
+      "</h1>\n<p class='soft'>relMSE: mean of ((x - r)² - Var r) / (r² + 0.01); trimmed: without the 0.1 % worst "
+      "pixels; energy: mean(x) / mean(r) - 1; FLIP: the difference that a viewer notices when the pictures alternate, "
+      "0 "
+      "to 1. Arrow keys alternate the pictures.</p>\n";
   std::size_t section = 0;
   for (const std::string& layer : layers_of(comparisons)) {
     std::vector<const Comparison*> images;
@@ -153,7 +145,7 @@ std::string comparison_page(const std::string& reference, const std::vector<Comp
     html += fmt::format("<h2>{}</h2>\n", escaped(shown_layer(*images.front()))) + table(images);
     html += viewer(views_of(images, error_range(comparisons, layer), display), section++);
   }
-  return html + "</body></html>\n";
+  return html + page_end();
 }
 
 }  // namespace polyrecon

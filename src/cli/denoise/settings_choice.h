@@ -5,7 +5,7 @@
 
 #include "cli/denoise/job.h"
 #include "polyrecon/frame.h"
-#include "sweep/settings_choice.h"
+#include "presets/settings_choice.h"
 
 namespace polyrecon {
 

@@ -12,7 +12,7 @@
 #include "pipeline/survey.h"
 #include "polyrecon/error.h"
 #include "polyrecon/progress.h"
-#include "sweep/settings_choice.h"
+#include "presets/settings_choice.h"
 
 namespace polyrecon {
 namespace {

@@ -45,9 +45,6 @@ struct StackedBars {
 std::string svg_of(const LogPlot& plot);
 std::string svg_of(const StackedBars& bars);
 
-/// Escapes text for HTML and SVG, also for the inside of attributes.
-std::string escaped(const std::string& text);
-
 /// One of ten colours that colour-blind readers can distinguish as well as is possible with ten.
 std::string plot_color(std::size_t index);
 

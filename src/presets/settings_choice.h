@@ -6,18 +6,9 @@
 
 #include "polyrecon/frame.h"
 #include "polyrecon/progress.h"
-#include "sweep/setting.h"
+#include "presets/preset.h"
 
 namespace polyrecon {
-
-/// Time and error of a preset, as factors of those of Quality::Standard.
-struct PresetFigures {
-  double seconds = 1;  ///< Of the reconstruction.
-  double error = 1;    ///< relMSE
-};
-
-/// Figures of all presets, measured on the samples by tests/bench/accuracy.py.
-const std::array<PresetFigures, preset_count>& measured_figures();
 
 /// What a trial run on a part of a frame predicts for the whole frame. The run uses the preset "draft, stages 2".
 struct Pilot {

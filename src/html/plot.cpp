@@ -1,10 +1,12 @@
-#include "sweep/plot.h"
+#include "html/plot.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+
+#include "html/page.h"
 
 namespace polyrecon {
 namespace {
@@ -171,30 +173,6 @@ std::string series_svg(const LogPlot& plot, const LogAxis& x, const LogAxis& y) 
 }
 
 }  // namespace
-
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      case '\'':
-        out += "&#39;";
-        break;
-      default:
-        out += c;
-    }
-  return out;
-}
 
 std::string plot_color(std::size_t index) {
   constexpr std::array<const char*, 10> colors{"#1f5fa8", "#d1495b", "#2a9d5c", "#b07d00", "#7a4fb5",

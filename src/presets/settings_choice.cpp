@@ -1,4 +1,4 @@
-#include "sweep/settings_choice.h"
+#include "presets/settings_choice.h"
 
 #include <algorithm>
 #include <cassert>
@@ -14,7 +14,7 @@
 #include "core/repair.h"
 #include "features/prepare.h"
 #include "polyrecon/reconstruct.h"
-#include "sweep/pareto.h"
+#include "presets/pareto.h"
 
 namespace polyrecon {
 namespace {

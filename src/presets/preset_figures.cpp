@@ -1,5 +1,5 @@
 // Written by tests/bench/accuracy.py: geometric means over the samples, in the order of presets().
-#include "sweep/settings_choice.h"
+#include "presets/preset.h"
 
 namespace polyrecon {
 

@@ -1,4 +1,4 @@
-#include "sweep/settings_choice.h"
+#include "presets/settings_choice.h"
 
 #include <gtest/gtest.h>
 

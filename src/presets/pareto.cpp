@@ -1,4 +1,4 @@
-#include "sweep/pareto.h"
+#include "presets/pareto.h"
 
 #include <algorithm>
 #include <cassert>

@@ -1,4 +1,4 @@
-#include "sweep/plot.h"
+#include "html/plot.h"
 
 #include <gtest/gtest.h>
 
