@@ -11,11 +11,11 @@ namespace polyrecon {
 class Progress {
  public:
   virtual ~Progress() = default;
-  /// A stage of the computation begins; it consists of this many steps.
-  virtual void begin(std::string_view stage, std::size_t steps);
-  /// This many more steps of the current stage are done.
-  virtual void advance(std::size_t steps);
-  /// The current stage ends.
+  /// A phase of the computation begins; it consists of this many units of work.
+  virtual void begin(std::string_view phase, std::size_t units);
+  /// This many more units of the current phase are done.
+  virtual void advance(std::size_t units);
+  /// The current phase ends.
   virtual void end();
   /// Whether to stop. The computation then throws Error{Interrupted}; this function itself must not throw.
   virtual bool cancelled() const;

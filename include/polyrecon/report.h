@@ -21,16 +21,19 @@ struct Decision {
   double saved_seconds = 0;  ///< Estimate of the time that the saved work would have taken on this machine.
 };
 
-/// Wall-clock seconds of one stage of the pipeline.
-struct StageTime {
-  std::string stage;
+/// Wall-clock seconds of one phase of the pipeline.
+struct PhaseTime {
+  std::string phase;  ///< "noise variance", "features", ...
   double seconds = 0;
 };
 
+/// The phase that fits polynomials, which takes nearly all of the time.
+inline constexpr const char* fit_phase = "polynomials";
+
 /// What a reconstruction did. Apart from estimates that are called so, everything is counted or measured.
 struct Report {
-  int width = 0, height = 0;  ///< Pixels.
-  std::vector<StageTime> stages;
+  int width = 0, height = 0;      ///< Pixels.
+  std::vector<PhaseTime> phases;  ///< In order.
   std::vector<Decision> decisions;
   std::string variance_source;  ///< "from the file", "from the half buffers" or "estimated from the image".
 

@@ -34,14 +34,14 @@ class Progress:
         if self.bar:
             self.bar.stop()
 
-    def update(self, stage, **figures):
-        """stage: what is being done. figures: frame, round, samples, error, seconds, seconds_left, done (0..1); None
+    def update(self, phase, **figures):
+        """phase: what is being done. figures: frame, round, samples, error, seconds, seconds_left, done (0..1); None
         where unknown."""
         figures = {key: value for key, value in figures.items() if value is not None}
         if self.style == "json":
-            print(json.dumps({"event": "progress", "stage": stage, **figures}), file=sys.stderr, flush=True)
+            print(json.dumps({"event": "progress", "phase": phase, **figures}), file=sys.stderr, flush=True)
         elif self.bar:
             known = [f"{figures['samples']:.3g} spp"] if "samples" in figures else []
             known += [f"relMSE {figures['error']:.3g}"] if "error" in figures else []
             known += [f"{figures['seconds_left']:.0f} s left"] if "seconds_left" in figures else []
-            self.bar.update(self.task, description=", ".join([stage, *known]), completed=figures.get("done", 0.0))
+            self.bar.update(self.task, description=", ".join([phase, *known]), completed=figures.get("done", 0.0))

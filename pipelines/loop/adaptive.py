@@ -218,7 +218,7 @@ class _Loop:
     def uniform_counts(self, samples):
         return uniform_counts(self.rendering.taken["a"].counts.shape, self.state.parts, samples)
 
-    def announce(self, stage, **figures):
+    def announce(self, phase, **figures):
         seconds, budget = self.journal.seconds(), self.budget
         done = left = None
         if budget.samples:
@@ -233,4 +233,4 @@ class _Loop:
             "seconds_left": left,
             "done": done,
         }
-        self.progress.update(stage, **{**known, **figures})
+        self.progress.update(phase, **{**known, **figures})

@@ -15,7 +15,7 @@ from .renderer import RENDER_SECONDS, SAMPLE_COUNT
 
 
 class PartRendering:
-    """announce(stage, **figures) is called before each part. `taken` holds the sums over the finished parts of each
+    """announce(phase, **figures) is called before each part. `taken` holds the sums over the finished parts of each
     half."""
 
     def __init__(self, renderer, folder, journal, announce):

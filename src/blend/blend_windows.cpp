@@ -274,16 +274,17 @@ void list_centers(const Rect& block, const IsCenter& is_center, Scratch& s) {
     }
 }
 
-/// Fits windows around all centres for which is_center holds. Blocks of the same phase (of four) never add to the same
-/// pixel, and the phases follow one another, so every pixel is summed in the same order for any number of threads.
+/// Fits windows around all centres for which is_center holds. Blocks of the same group (of block_groups) never add to
+/// the same pixel, and the groups follow one another, so every pixel is summed in the same order for any number of
+/// threads.
 template <typename IsCenter>
 void sweep(Blending& b, Progress& progress, const IsCenter& is_center) {
   const Rect bounds = b.source.response->bounds();
   const auto blocks = aligned_blocks(bounds, block_size);
-  for (int phase = 0; phase < 4; ++phase) {
+  for (int group = 0; group < block_groups; ++group) {
     std::vector<Rect> mine;
     for (const Rect& r : blocks)
-      if ((r.x0 / block_size) % 2 + 2 * ((r.y0 / block_size) % 2) == phase) mine.push_back(r);
+      if ((r.x0 / block_size) % 2 + 2 * ((r.y0 / block_size) % 2) == group) mine.push_back(r);
     parallel_for(mine.size(), progress, [&](std::size_t i) {
       thread_local Scratch scratch;
       list_centers(mine[i], is_center, scratch);

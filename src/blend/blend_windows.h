@@ -68,6 +68,7 @@ struct FitCounters {
 /// Centres are placed and pixels are summed in blocks aligned to this many pixels. The result for a crop that begins at
 /// a multiple of twice this size has the same bits as that part of the whole image's.
 constexpr int block_size = 64;
+constexpr int block_groups = 4;  // even or odd column, even or odd row of blocks; worked one group after the other
 
 /// Pixels around a region that its result depends on: window radius, radius of the windows that cover a pixel, and
 /// patch radius; more where there are many lattices, since the centres of each lattice depend on those before.

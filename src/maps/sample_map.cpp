@@ -22,7 +22,7 @@ struct Plane {
   const double* row(int y) const { return v.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(width); }
 };
 
-/// Forwards cancellation but reports no steps, as the rows of a helper are not steps of the sample map.
+/// Forwards cancellation but reports no work, as the rows of a helper are not those of the sample map.
 class CancelOnly final : public Progress {
  public:
   explicit CancelOnly(const Progress& outer) : outer_(outer) {}

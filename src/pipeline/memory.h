@@ -21,7 +21,7 @@ int neighbours_channels(const FrameShape& shape, int neighbours, const Params& p
 /// neighbours in time are used also two frames prepared as neighbours.
 int channels_ahead(const FrameShape& shape, const Params& params);
 
-/// Bytes that a reconstruction needs: program_bytes and the images that live at once, as each stage states them next to
+/// Bytes that a reconstruction needs: program_bytes and the images that live at once, as each step states them next to
 /// its own code, with an allowance for unused memory between images of unequal sizes.
 struct MemoryNeeds {
   std::size_t prepare = 0;  ///< While the passes are read and prepared.

@@ -24,10 +24,10 @@ Params params_for(HalvesFor purpose, const Frame& frame, Params params) {
 }  // namespace
 
 NoisyHalves make_noisy_halves(Frame& frame, HalvesFor purpose, std::uint64_t stream, const Params& requested,
-                              Stages& stages) {
+                              Phases& phases) {
   const Params params = params_for(purpose, frame, requested);
   NoisyHalves out;
-  out.survey = stages.run("noise variance", rows_of(frame) * 2 * (1 + frame.features.size()),
+  out.survey = phases.run("noise variance", rows_of(frame) * 2 * (1 + frame.features.size()),
                           [&](Progress& progress) { return survey_frame(frame, params.steps, progress); });
   const NoiseVariance& noise = out.survey.noise;
   Preparation& preparation = out.survey.preparation;
@@ -35,14 +35,14 @@ NoisyHalves make_noisy_halves(Frame& frame, HalvesFor purpose, std::uint64_t str
   // Before the features are taken from the frame.
   if (purpose != HalvesFor::Fit) out.geometry = geometry_of(frame);
   if (purpose == HalvesFor::FitWithNeighbours) out.surfaces_noise = surface_noise(frame);
-  out.prepared = stages.run("features", rows_of(frame) / 4, [&](Progress& progress) {
+  out.prepared = phases.run("features", rows_of(frame) / 4, [&](Progress& progress) {
     return prepare(frame, preparation, noise.variance, params.prefilter, params.reconstruct_alpha, progress);
   });
   HalfPair& pair = out.prepared.pair;
   // The bound is that of the measured variance, before outliers are removed: where an outlier is removed from one half,
   // the other half may still be wrong by this much. An estimated variance is not exact enough for single pixels.
   if (params.parts.noise_bound && noise.measured) out.bound = noise_bound(pair.variance);
-  out.outliers = stages.run("fireflies", rows_of(frame) * 2, [&](Progress& progress) {
+  out.outliers = phases.run("fireflies", rows_of(frame) * 2, [&](Progress& progress) {
     const PairNoise known{out.prepared.independent_halves, noise.measured};
     return params.steps.fireflies ? remove_outliers(pair, known, params.outliers, progress) : std::vector<Outlier>();
   });

@@ -6,7 +6,7 @@
 
 #include "features/prepare.h"
 #include "outliers/outlier.h"
-#include "pipeline/stages.h"
+#include "pipeline/phases.h"
 #include "pipeline/survey.h"
 #include "polyrecon/frame.h"
 #include "polyrecon/params.h"
@@ -34,6 +34,6 @@ struct NoisyHalves {
 /// Runs the steps before the fit, in the one order that frames and their neighbours in time share. Takes features,
 /// halves and variances out of the frame. stream: see Preparation::stream. Throws as survey_frame.
 NoisyHalves make_noisy_halves(Frame& frame, HalvesFor purpose, std::uint64_t stream, const Params& params,
-                              Stages& stages);
+                              Phases& phases);
 
 }  // namespace polyrecon

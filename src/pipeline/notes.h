@@ -13,7 +13,7 @@
 #include "polyrecon/report.h"
 #include "temporal/join.h"
 
-// What the stages of a reconstruction enter into its report.
+// What the steps of a reconstruction enter into its report.
 namespace polyrecon {
 
 /// The size and energy of the frame.

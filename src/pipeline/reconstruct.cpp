@@ -20,9 +20,9 @@
 #include "pipeline/memory.h"
 #include "pipeline/noisy_halves.h"
 #include "pipeline/notes.h"
+#include "pipeline/phases.h"
 #include "pipeline/savings.h"
 #include "pipeline/stage.h"
-#include "pipeline/stages.h"
 #include "temporal/join.h"
 #include "temporal/neighbour.h"
 
@@ -45,8 +45,8 @@ Params params_for_frame(const Frame& frame, Params params) {
 
 /// Averages the neighbours into the halves, and frees what only that needs.
 void join(const std::vector<TimedNeighbour>& neighbours, bool with_motion, const TemporalParams& params,
-          NoisyHalves& halves, Stages& stages, Report& report) {
-  const JoinCounts joined = stages.run("neighbours in time", 2, [&](Progress& progress) {
+          NoisyHalves& halves, Phases& phases, Report& report) {
+  const JoinCounts joined = phases.run("neighbours in time", 2, [&](Progress& progress) {
     return join_neighbours(halves.geometry, halves.surfaces_noise, neighbours, params, halves.prepared.pair, progress);
   });
   halves.geometry = {};
@@ -71,8 +71,8 @@ Candidate solve_level(const HalfPair& pair, int level, const Params& params, std
   return result;
 }
 
-/// Progress steps of solve_level, about: blocks x phases of all stages and levels for both halves.
-std::size_t fit_steps(const HalfPair& pair, const Params& params) {
+/// Units of work of solve_level, about: blocks, times their fits in all stages and levels for both halves.
+std::size_t fit_units(const HalfPair& pair, const Params& params) {
   const std::size_t blocks = aligned_blocks(pair.variance.bounds(), block_size).size();
   const std::size_t passes =
       1 + static_cast<std::size_t>(params.stages - 1) * (params.guided_bandwidths.empty() ? 1 : 2);
@@ -80,15 +80,15 @@ std::size_t fit_steps(const HalfPair& pair, const Params& params) {
 }
 
 Candidate fit_polynomials(const Frame& frame, const HalfPair& pair, const Params& params, std::size_t max_bytes,
-                          Stages& stages, Report& report) {
+                          Phases& phases, Report& report) {
   FitCounters counters;
-  Candidate result = stages.run("polynomials", fit_steps(pair, params), [&](Progress& progress) {
+  Candidate result = phases.run(fit_phase, fit_units(pair, params), [&](Progress& progress) {
     return solve_level(pair, 0, params, max_bytes, counters, progress);
   });
   note_fits(counters, report);
   const double skipped = skipped_share(pair, params);
   report.decisions.push_back(decide_on_pixels(skipped, params));
-  estimate_savings(frame, params.prefilter, skipped, report.stages.back().seconds, report.decisions);
+  estimate_savings(frame, params.prefilter, skipped, report.phases.back().seconds, report.decisions);
   return result;
 }
 
@@ -184,9 +184,9 @@ Result reconstruct_panorama(Frame& frame, const std::vector<TimedNeighbour>& nei
 std::shared_ptr<const Neighbour> prepare_neighbour(Frame frame, int number, const Params& params, Progress& progress) {
   if (frame.wraps) wrap(frame);
   Report not_kept;
-  Stages stages(progress, not_kept);
+  Phases phases(progress, not_kept);
   const std::uint64_t stream = streams_per_frame * (std::uint64_t{static_cast<std::uint32_t>(number)} + 1);
-  NoisyHalves halves = make_noisy_halves(frame, HalvesFor::Neighbour, stream, params, stages);
+  NoisyHalves halves = make_noisy_halves(frame, HalvesFor::Neighbour, stream, params, phases);
   return std::make_shared<Neighbour>(Neighbour{std::move(halves.prepared.pair), std::move(halves.geometry)});
 }
 
@@ -203,42 +203,42 @@ Result reconstruct(Frame& frame, const std::vector<TimedNeighbour>& neighbours, 
   require_memory("layer '" + frame.beauty.name + "'", shape, params);
   Result result;
   Report& report = result.report;
-  Stages stages(progress, report);
+  Phases phases(progress, report);
   note_input(frame, report);
 
   // The input as two halves of known noise, and the features that describe the scene (equations 1 and 2).
   NoisyHalves halves =
-      make_noisy_halves(frame, neighbours.empty() ? HalvesFor::Fit : HalvesFor::FitWithNeighbours, 0, params, stages);
+      make_noisy_halves(frame, neighbours.empty() ? HalvesFor::Fit : HalvesFor::FitWithNeighbours, 0, params, phases);
   HalfPair& pair = halves.prepared.pair;
   note_preparation(halves.survey, halves.prepared, report);
   note_outliers(halves.outliers, params.steps, report);
-  if (!neighbours.empty()) join(neighbours, !frame.motion.empty(), params.temporal, halves, stages, report);
+  if (!neighbours.empty()) join(neighbours, !frame.motion.empty(), params.temporal, halves, phases, report);
 
   // Polynomials around every centre, of the order with the least estimated error, blended (equations 3 to 9).
   const std::size_t max_bytes = tile_memory(shape, params);
-  Candidate solved = fit_polynomials(frame, pair, params, max_bytes, stages, report);
+  Candidate solved = fit_polynomials(frame, pair, params, max_bytes, phases, report);
 
   // Nothing was rendered there, and nothing comes out.
   const Image& picture = halves.survey.preparation.picture;
   empty_void(picture, pair, solved);
 
   // The noise bound, the estimate of the error that is left, and the prior where its error is smaller.
-  const BoundEnergy bound = stages.run("noise bound", 1, [&](Progress&) {
+  const BoundEnergy bound = phases.run("noise bound", 1, [&](Progress&) {
     return halves.bound.empty() ? BoundEnergy() : bind_to_noise(pair, halves.bound, max_total_gain, solved);
   });
   report.pixels_clamped_to_noise = bound.pixels;
-  result.error = stages.run(
+  result.error = phases.run(
       "error map", 1, [&](Progress&) { return make_error_map(pair, halves.survey.noise.variance, solved, picture); });
   result.order = solved.order;
   if (!frame.prior.mean.empty())
-    solved = stages.run("prior", 1, [&](Progress&) {
+    solved = phases.run("prior", 1, [&](Progress&) {
       return use_prior(std::move(frame.prior), pair, result.error, params.selection, max_bytes, std::move(solved),
                        report.decisions);
     });
 
   // The image, with the energy of the input (equations 10 and 11).
   const Image image =
-      stages.run("energy", 1, [&](Progress&) { return restore(frame, halves, solved, bound, params, report); });
+      phases.run("energy", 1, [&](Progress&) { return restore(frame, halves, solved, bound, params, report); });
   put_layers(image, frame.alpha, result);
   note_result(result);
   return result;

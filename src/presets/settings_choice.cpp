@@ -26,7 +26,6 @@ constexpr int tiles_per_thread = 8;      // the most, so that the pilot of a lar
 // "draft, stages 2". A preset of one stage would not do: the error that a single stage predicts for itself is about
 // three times too high.
 constexpr std::size_t pilot_preset = 2;
-constexpr int phases = 4;  // groups of blocks that are worked one after the other (blend/blend_windows.h)
 
 /// Mean relative variance of a tile's green channel: from the file's variance, else from the half buffers, else from
 /// the differences between neighbouring pixels.
@@ -109,7 +108,7 @@ Pilot run_pilot(const Frame& frame, Progress& progress) {
   // One thread's seconds per pixel, then the frame's seconds on as many threads as its blocks keep busy.
   const double busy = std::min<double>(threads, static_cast<double>(tiles.size()));
   const auto blocks = static_cast<double>(aligned_blocks({0, 0, frame.width(), frame.height()}, block_size).size());
-  pilot.seconds = pilot.spent * busy / tried * pixels / std::min<double>(threads, std::max(blocks / phases, 1.0));
+  pilot.seconds = pilot.spent * busy / tried * pixels / std::min<double>(threads, std::max(blocks / block_groups, 1.0));
   return pilot;
 }
 

@@ -151,7 +151,7 @@ std::string samples_section(const Sweep& sweep) {
          rows + "</table></div>\n";
 }
 
-std::string stages_section(const SweptInput& input) {
+std::string phases_section(const SweptInput& input) {
   StackedBars bars{"s", {}, {}};
   std::vector<std::size_t> shown = front_of(input);
   for (std::size_t i = 0; i < input.trials.size(); ++i)
@@ -159,15 +159,15 @@ std::string stages_section(const SweptInput& input) {
       shown.push_back(i);
   std::sort(shown.begin(), shown.end(),
             [&](std::size_t a, std::size_t b) { return input.trials[a].seconds < input.trials[b].seconds; });
-  for (const StageTime& stage : input.trials.front().stages) bars.parts.push_back(stage.stage);
+  for (const PhaseTime& phase : input.trials.front().phases) bars.parts.push_back(phase.phase);
   for (const std::size_t i : shown) {
     StackedBars::Row row{input.trials[i].name, std::vector<double>(bars.parts.size(), 0)};
-    for (const StageTime& stage : input.trials[i].stages)
+    for (const PhaseTime& phase : input.trials[i].phases)
       for (std::size_t k = 0; k < bars.parts.size(); ++k)
-        if (bars.parts[k] == stage.stage) row.values[k] += stage.seconds;
+        if (bars.parts[k] == phase.phase) row.values[k] += phase.seconds;
     bars.rows.push_back(std::move(row));
   }
-  return "<h2>Time by stage</h2>\n" + svg_of(bars);
+  return "<h2>Time by phase</h2>\n" + svg_of(bars);
 }
 
 /// The fastest and the most accurate setting of the front, and some between.
@@ -243,7 +243,7 @@ std::string figures_section(const Sweep& sweep) {
 std::string page_of(const Sweep& sweep, const std::string& version) {
   const SweptInput& input = sweep.inputs.front();
   return header(sweep, version) + front_section(sweep) + price_section(input) + samples_section(sweep) +
-         stages_section(input) + pictures_section(sweep) + figures_section(sweep) + page_end();
+         phases_section(input) + pictures_section(sweep) + figures_section(sweep) + page_end();
 }
 
 }  // namespace polyrecon

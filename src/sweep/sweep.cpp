@@ -10,13 +10,13 @@
 namespace polyrecon {
 namespace {
 
-/// The names of all stages, in the order of their first appearance.
-std::vector<std::string> stage_names(const Sweep& sweep) {
+/// The names of all phases, in the order of their first appearance.
+std::vector<std::string> phase_names(const Sweep& sweep) {
   std::vector<std::string> names;
   for (const SweptInput& input : sweep.inputs)
     for (const Trial& trial : input.trials)
-      for (const StageTime& stage : trial.stages)
-        if (std::find(names.begin(), names.end(), stage.stage) == names.end()) names.push_back(stage.stage);
+      for (const PhaseTime& phase : trial.phases)
+        if (std::find(names.begin(), names.end(), phase.phase) == names.end()) names.push_back(phase.phase);
   return names;
 }
 
@@ -62,28 +62,28 @@ Sweep run_sweep(const std::vector<SweepInput>& inputs, const std::vector<std::st
 }
 
 std::string csv_of(const Sweep& sweep) {
-  const std::vector<std::string> stages = stage_names(sweep);
+  const std::vector<std::string> phases = phase_names(sweep);
   std::string csv = "input,samples,group,setting,runs,seconds,relMSE,trimmed,energy,estimated relMSE";
-  for (const std::string& stage : stages) csv += "," + stage + " s";
+  for (const std::string& phase : phases) csv += "," + phase + " s";
   csv += "\n";
-  const std::string no_stages(stages.size(), ',');
+  const std::string no_phases(phases.size(), ',');
   for (const SweptInput& input : sweep.inputs) {
     const std::string head = quoted(input.name) + "," + (input.samples > 0 ? number(input.samples) : "") + ",";
-    csv += fmt::format("{}input,noisy,,,{},{}\n", head, score_fields(input.noisy), no_stages);
+    csv += fmt::format("{}input,noisy,,,{},{}\n", head, score_fields(input.noisy), no_phases);
     for (const Trial& trial : input.trials) {
       csv += head + fmt::format("{},{},{},{},{},{}", trial.group, quoted(trial.name), trial.runs, number(trial.seconds),
                                 score_fields(trial.score), number(trial.estimated_relative_mse));
-      for (const std::string& name : stages) {
-        const auto at = std::find_if(trial.stages.begin(), trial.stages.end(),
-                                     [&](const StageTime& stage) { return stage.stage == name; });
-        csv += "," + (at == trial.stages.end() ? std::string() : number(at->seconds));
+      for (const std::string& name : phases) {
+        const auto at = std::find_if(trial.phases.begin(), trial.phases.end(),
+                                     [&](const PhaseTime& phase) { return phase.phase == name; });
+        csv += "," + (at == trial.phases.end() ? std::string() : number(at->seconds));
       }
       csv += "\n";
     }
   }
   for (const Peer& peer : sweep.peers)
     csv += fmt::format("{},,peer,{},,{},{},{}\n", quoted(sweep.inputs.front().name), quoted(peer.name),
-                       number(peer.seconds), score_fields(peer.score), no_stages);
+                       number(peer.seconds), score_fields(peer.score), no_phases);
   return csv;
 }
 

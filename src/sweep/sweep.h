@@ -43,13 +43,13 @@ struct Sweep {
   int threads = 0;
 };
 
-/// Tries all settings of the groups on the first input and the qualities on the others, and scores the peers. The steps
+/// Tries all settings of the groups on the first input and the qualities on the others, and scores the peers. The units
 /// of progress are settings. Throws as reconstruct and score do.
 Sweep run_sweep(const std::vector<SweepInput>& inputs, const std::vector<std::string>& groups,
                 const Reference& reference, std::vector<Peer> peers, Progress& progress);
 
 /// A CSV line for each trial, noisy input and peer: input, samples, group, setting, runs, seconds, relMSE, trimmed,
-/// energy, estimated relMSE, seconds of each stage. Names are quoted as in RFC 4180.
+/// energy, estimated relMSE, seconds of each phase. Names are quoted as in RFC 4180.
 std::string csv_of(const Sweep& sweep);
 
 }  // namespace polyrecon

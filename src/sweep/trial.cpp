@@ -12,7 +12,7 @@ namespace {
 constexpr double enough_seconds = 2;
 constexpr std::size_t most_runs = 3;
 
-/// Forwards cancellation only: the steps of a sweep are settings, not the stages of a reconstruction.
+/// Forwards cancellation only: the units of a sweep are settings, not those of a reconstruction.
 class OnlyCancels : public Progress {
  public:
   explicit OnlyCancels(const Progress& of) : of_(of) {}
@@ -49,7 +49,7 @@ Trial run_trial(const Frame& frame, const Setting& setting, const Reference& ref
   trial.group = setting.group;
   trial.seconds = median.seconds;
   trial.runs = static_cast<int>(runs.size());
-  trial.stages = median.result.report.stages;
+  trial.phases = median.result.report.phases;
   trial.score = score(median.result.beauty, reference.mean, reference.variance);
   trial.estimated_relative_mse = median.result.report.estimated_relative_mse;
   trial.beauty = std::move(median.result.beauty);

@@ -23,7 +23,7 @@ struct Trial {
   std::string name, group;
   double seconds = 0;             ///< Wall-clock time of the reconstruction, without files; the median of all runs.
   int runs = 0;                   ///< Number of runs.
-  std::vector<StageTime> stages;  ///< Times of the median run.
+  std::vector<PhaseTime> phases;  ///< Times of the median run.
   Score score;
   double estimated_relative_mse = 0;  ///< Mean of the error map, which does not know the reference.
   Image beauty;                       ///< 3 channels.

@@ -2,7 +2,7 @@
 """Times `polyrecon denoise` on frames of growing size and prints Markdown tables of seconds and memory.
 
 The frames are a real render, a shipped sample with all its layers, tiled in mirror image to the size requested. Seconds
-by stage are the program's own (--report); CPU seconds and peak memory are what the kernel counted for the process.
+by phase are the program's own (--report); CPU seconds and peak memory are what the kernel counted for the process.
 """
 
 import argparse
@@ -27,7 +27,7 @@ EXAMPLES = """\
 examples:
   tests/bench/scaling.py                                    # draft and standard, 0.25 to 16 Mpx
   tests/bench/scaling.py --sizes 1920x1080 --quality draft standard best
-  tests/bench/scaling.py --sizes 640x400 --stages           # where the seconds go
+  tests/bench/scaling.py --sizes 640x400 --phases           # where the seconds go
   tests/bench/scaling.py --sizes 5120x3200 --quality draft --max-memory 4G 6G 12G
                                                             # memory is bounded, the picture stays the same to the bit
   tests/bench/scaling.py --sizes 1920x1080 --quality draft --max-memory least 4G --prior
@@ -68,7 +68,7 @@ def arguments():
     )
     parser.add_argument("--prior", action="store_true", help="give each frame its picture of quality draft as prior")
     parser.add_argument("--threads", type=int, default=0, help="threads of the program (default: all processors)")
-    parser.add_argument("--stages", action="store_true", help="print the seconds of each stage too")
+    parser.add_argument("--phases", action="store_true", help="print the seconds of each phase too")
     parser.add_argument("--sample", type=pathlib.Path, default=ROOT / "samples" / "study_16.exr", metavar="EXR")
     parser.add_argument(
         "--program", type=pathlib.Path, default=ROOT / "build" / "release" / "src" / "polyrecon", metavar="FILE"
@@ -184,17 +184,17 @@ def print_row(width, height, quality, max_memory, code, usage, report):
     row(*cells, f"{usage.ru_maxrss * 1024 / 1e6:.0f}")
 
 
-def print_stages(runs):
-    stages = [stage["stage"] for stage in runs[0][1]["stages"]]
+def print_phases(runs):
+    phases = [phase["phase"] for phase in runs[0][1]["phases"]]
     print()
-    row("frame, quality", "read", *stages, "write")
-    row("---", *["---:"] * (len(stages) + 2))
+    row("frame, quality", "read", *phases, "write")
+    row("---", *["---:"] * (len(phases) + 2))
     for name, report in runs:
         seconds = report["seconds"]
         row(
             name,
             f"{seconds['read']:.2f}",
-            *[f"{stage['seconds']:.2f}" for stage in report["stages"]],
+            *[f"{phase['seconds']:.2f}" for phase in report["phases"]],
             f"{seconds['write']:.2f}",
         )
 
@@ -233,8 +233,8 @@ def time_frames(args, folder):
             good = good and as_it_should
         frame.unlink()
         prior_of(frame).unlink(missing_ok=True)
-    if args.stages and reports:
-        print_stages(reports)
+    if args.phases and reports:
+        print_phases(reports)
     if good and len(args.max_memory) > 1:
         print("\nUnder every limit of memory that suffices the picture is the same, bit for bit.")
     return good

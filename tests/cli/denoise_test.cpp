@@ -275,7 +275,7 @@ TEST_F(Denoise, TheReportHasItsDocumentedKeys) {
                           "roles",
                           "variance_source",
                           "decisions",
-                          "stages",
+                          "phases",
                           "seconds",
                           "pixels_per_second",
                           "peak_memory_bytes",
@@ -305,15 +305,15 @@ TEST_F(Denoise, JsonProgressIsOneObjectPerLine) {
   const Outcome o = denoise({"--progress", "json"});
   ASSERT_EQ(o.code, 0);
   std::istringstream lines(o.err);
-  std::string line, open_stage;
+  std::string line, open_phase;
   int begun = 0;
   while (std::getline(lines, line)) {
     const auto event = nlohmann::json::parse(line);
-    for (const char* key : {"event", "stage", "done", "total", "seconds"}) ASSERT_TRUE(event.contains(key)) << line;
+    for (const char* key : {"event", "phase", "done", "total", "seconds"}) ASSERT_TRUE(event.contains(key)) << line;
     EXPECT_LE(event["done"], event["total"]) << line;
-    if (event["event"] == "begin") ++begun, open_stage = event["stage"];
+    if (event["event"] == "begin") ++begun, open_phase = event["phase"];
     if (event["event"] == "end") {
-      EXPECT_EQ(event["stage"], open_stage);
+      EXPECT_EQ(event["phase"], open_phase);
     }
   }
   EXPECT_GT(begun, 0);

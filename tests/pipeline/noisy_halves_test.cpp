@@ -13,8 +13,8 @@ class NoisyHalvesOf : public ::testing::TestWithParam<HalvesFor> {
  protected:
   NoisyHalves made(HalvesFor purpose, Frame frame) const {
     Report report;
-    Stages stages(silent_progress(), report);
-    return make_noisy_halves(frame, purpose, 3 * streams_per_frame, Params(), stages);
+    Phases phases(silent_progress(), report);
+    return make_noisy_halves(frame, purpose, 3 * streams_per_frame, Params(), phases);
   }
 };
 
@@ -55,9 +55,9 @@ INSTANTIATE_TEST_SUITE_P(ForNeighbours, NoisyHalvesOf,
 
 TEST(NoisyHalves, OfANeighbourHaveNoFeaturesAndNoBound) {
   Report report;
-  Stages stages(silent_progress(), report);
+  Phases phases(silent_progress(), report);
   Frame frame = test::make_scene(48, 32, 0.3, 1).frame;
-  const NoisyHalves halves = make_noisy_halves(frame, HalvesFor::Neighbour, 0, Params(), stages);
+  const NoisyHalves halves = make_noisy_halves(frame, HalvesFor::Neighbour, 0, Params(), phases);
   EXPECT_EQ(halves.prepared.pair.features[0].channels(), 0);
   EXPECT_TRUE(halves.bound.empty());
 }

@@ -67,11 +67,10 @@ TEST(Steps, EachDecisionHasAReasonAndWhatItSaves) {
   EXPECT_TRUE(sky.run);
   // 32 of 64 rows, less the two that get a variance from their neighbourhood (noise/variance_floor.h).
   EXPECT_EQ(sky.reason, "46.9 % of the frame has no noise");
-  const auto& stages = decided.report.stages;
-  const auto fits =
-      std::find_if(stages.begin(), stages.end(), [](const StageTime& s) { return s.stage == "polynomials"; });
-  ASSERT_NE(fits, stages.end());
-  EXPECT_GT(sky.saved_seconds, 0.1 * fits->seconds);  // of the fits' time, not of another stage's
+  const auto& phases = decided.report.phases;
+  const auto fits = std::find_if(phases.begin(), phases.end(), [](const PhaseTime& p) { return p.phase == fit_phase; });
+  ASSERT_NE(fits, phases.end());
+  EXPECT_GT(sky.saved_seconds, 0.1 * fits->seconds);  // of the fits' time, not of another phase's
   const Decision& prefilter = decision(decided.report, "feature albedo prefilter");
   EXPECT_FALSE(prefilter.run);
   EXPECT_EQ(prefilter.reason, "the pass has no noise");

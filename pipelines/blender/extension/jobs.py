@@ -27,7 +27,7 @@ class Job:
     def __init__(self, title, commands, results):
         self.title, self.results = title, results
         self.state = "running"  # later "done", "failed" or "cancelled"
-        self.stage, self.fraction = "starting", 0.0
+        self.phase, self.fraction = "starting", 0.0
         self.error = ""
         self.lines = collections.deque(maxlen=MAX_LINES)
         self.begin = time.monotonic()
@@ -71,7 +71,7 @@ class Job:
     def cancel(self):
         """Asks the command to stop. It is killed if it does not within GRACE_SECONDS."""
         if self.running and not self._cancelled_at:
-            self._cancelled_at, self.stage = time.monotonic(), "stopping"
+            self._cancelled_at, self.phase = time.monotonic(), "stopping"
             self._commands.clear()
             self._signal()
 
@@ -124,8 +124,8 @@ class Job:
             progress = json.loads(line)
         except ValueError:
             return False
-        if not self._cancelled_at and "stage" in progress:
-            self.stage = ", ".join([str(progress["stage"]), *_figures(progress)])
+        if not self._cancelled_at and "phase" in progress:
+            self.phase = ", ".join([str(progress["phase"]), *_figures(progress)])
             self.fraction = min(max(progress.get("done", 0) / (progress.get("total") or 1), 0.0), 1.0)
         return True
 
@@ -140,7 +140,7 @@ class Job:
 
     def _finish(self, state):
         self.state = state
-        self.stage = state
+        self.phase = state
 
 
 def _figures(progress):

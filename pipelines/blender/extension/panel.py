@@ -39,7 +39,7 @@ class POLYRECON_PT_render(bpy.types.Panel):
 def _draw_job(box, job):
     if job.running:
         row = box.row()
-        row.progress(factor=job.fraction, text=f"{job.title}: {job.stage}, {job.seconds:.0f} s")
+        row.progress(factor=job.fraction, text=f"{job.title}: {job.phase}, {job.seconds:.0f} s")
         row.operator("polyrecon.cancel", text="", icon="X")
     elif job.state == "failed":
         box.label(text=job.error, icon="ERROR")

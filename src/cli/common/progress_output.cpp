@@ -12,6 +12,7 @@
 #include <string>
 
 #include "cli/common/signals.h"
+#include "polyrecon/report.h"
 
 namespace polyrecon {
 namespace {
@@ -22,19 +23,19 @@ class SignalProgress : public RunProgress {
   bool cancelled() const override { return caught_signal() != 0; }
 };
 
-/// Counts the steps of all threads and shows them at intervals.
+/// Counts the work of all threads and shows them at intervals.
 class ShownProgress : public SignalProgress {
  public:
-  void begin(std::string_view stage, std::size_t steps) override {
+  void begin(std::string_view phase, std::size_t units) override {
     const std::lock_guard lock(mutex_);
-    stage_ = stage;
-    total_ = steps;
+    phase_ = phase;
+    total_ = units;
     done_ = 0;
     begun_ = shown_ = Clock::now();
     show(Event::Begin);
   }
-  void advance(std::size_t steps) override {
-    done_ += steps;
+  void advance(std::size_t units) override {
+    done_ += units;
     // If another thread is printing, this one continues with its work.
     const std::unique_lock lock(mutex_, std::try_to_lock);
     if (!lock || Clock::now() - shown_ < std::chrono::milliseconds(100)) return;
@@ -50,7 +51,7 @@ class ShownProgress : public SignalProgress {
   enum class Event { Begin, Progress, End };
   virtual void show(Event event) = 0;
 
-  const std::string& stage() const { return stage_; }
+  const std::string& phase() const { return phase_; }
   /// At most total(), which is an estimate.
   std::size_t done() const { return std::min<std::size_t>(done_, total_); }
   std::size_t total() const { return total_; }
@@ -60,7 +61,7 @@ class ShownProgress : public SignalProgress {
   using Clock = std::chrono::steady_clock;
 
   std::mutex mutex_;
-  std::string stage_;
+  std::string phase_;
   std::atomic<std::size_t> done_{0};
   std::size_t total_ = 0;
   Clock::time_point begun_, shown_;
@@ -80,7 +81,7 @@ class BarProgress final : public ShownProgress {
     const double part = finished ? 1.0 : total() ? static_cast<double>(done()) / static_cast<double>(total()) : 0.0;
     const auto filled = static_cast<std::size_t>(part * width);
     const std::string line =
-        fmt::format("{:<24} [{:<30}] {:3.0f} %  {:6.1f} s", stage(), std::string(filled, '#'), 100 * part, seconds());
+        fmt::format("{:<24} [{:<30}] {:3.0f} %  {:6.1f} s", phase(), std::string(filled, '#'), 100 * part, seconds());
     std::fputs(fmt::format("{}{}{}", terminal_ ? "\r" : "", line, finished ? "\n" : "").c_str(), stderr);
     std::fflush(stderr);
   }
@@ -99,7 +100,7 @@ class JsonProgress final : public ShownProgress {
   void show(Event event) override {
     const char* name = event == Event::Begin ? "begin" : event == Event::End ? "end" : "progress";
     const nlohmann::ordered_json line{{"event", name},
-                                      {"stage", stage()},
+                                      {"phase", phase()},
                                       {"done", event == Event::End ? total() : done()},
                                       {"total", total()},
                                       {"seconds", seconds()}};
@@ -119,9 +120,9 @@ class JsonProgress final : public ShownProgress {
 class OpenJdProgress final : public ShownProgress {
  protected:
   void show(Event event) override {
-    // The fits take nearly all of a frame's time; the stages before and after them get 5 % each.
+    // The fits take nearly all of a frame's time; the phases before and after them get 5 % each.
     constexpr double fits_begin = 0.05, fits_end = 0.95;
-    if (stage() != "polynomials" || !total()) return;
+    if (phase() != fit_phase || !total()) return;
     const double part = event == Event::End ? 1.0 : static_cast<double>(done()) / static_cast<double>(total());
     print((static_cast<double>(frames_done_) + fits_begin + part * (fits_end - fits_begin)) /
           static_cast<double>(frames_));

@@ -11,13 +11,13 @@ namespace polyrecon {
 enum class ProgressStyle {
   Auto,  ///< A bar where standard error is a terminal, else nothing.
   None,
-  Bar,    ///< A line for each stage, redrawn on a terminal; elsewhere printed at the end of the stage.
-  Json,   ///< A JSON object per line: {"event": "begin"|"progress"|"end", "stage", "done", "total", "seconds"}, and
+  Bar,    ///< A line for each phase, redrawn on a terminal; elsewhere printed at the end of the phase.
+  Json,   ///< A JSON object per line: {"event": "begin"|"progress"|"end", "phase", "done", "total", "seconds"}, and
           ///< {"event": "frame", "frame", "done", "total"} where a frame of a sequence begins.
   OpenJd  ///< Open Job Description: `openjd_progress: PERCENT`, `openjd_status: TEXT`, `openjd_fail: TEXT`.
 };
 
-/// Progress of a whole run: that of the stages, and of the frames.
+/// Progress of a whole run: that of the phases, and of the frames.
 class RunProgress : public Progress {
  public:
   /// Frame `done` of `total` begins; the first one is frame 0.

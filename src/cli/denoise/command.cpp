@@ -21,7 +21,7 @@ void denoise_file(const Job& job, const FrameFiles& files, LoadedFrame loaded, F
                   Progress& progress) {
   FileRun run(job, files);
   for (;;) {
-    run.plan(loaded);
+    run.list_others(loaded);
     run.denoise(std::move(loaded), job.params.max_memory, progress);
     const auto next = run.next();
     if (!next) break;

@@ -81,7 +81,7 @@ std::vector<std::string> take_own_windows(Frame& frame) {
 
 }  // namespace
 
-void FileRun::plan(LoadedFrame& loaded) {
+void FileRun::list_others(LoadedFrame& loaded) {
   if (count_ == 0) {
     count_ = 1;
     for (const LayerView& place : loaded.in.source.pictures)

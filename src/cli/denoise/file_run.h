@@ -29,11 +29,11 @@ class FileRun {
   /// The job and the files must outlive the run.
   FileRun(const Job& job, const FrameFiles& files) : job_(job), files_(files) {}
 
-  /// Looks which other pictures of the file are to be denoised, and takes layers that are none of the beauty's out of
+  /// Lists which other pictures of the file are to be denoised, and takes layers that are none of the beauty's out of
   /// the frame. Call it with each picture as it was loaded, before denoise.
-  void plan(LoadedFrame& loaded);
+  void list_others(LoadedFrame& loaded);
 
-  /// The picture to load after those that were planned; nothing when there is none left.
+  /// The picture to load after those that were listed; nothing when there is none left.
   std::optional<PictureChoice> next();
 
   /// Reconstructs a picture within max_memory bytes, of which the results of those before take their part. Prints the

@@ -25,7 +25,7 @@ double pixels_of(const Report& r) { return static_cast<double>(r.width) * static
 
 double reconstruction_seconds(const Report& r) {
   double sum = 0;
-  for (const StageTime& stage : r.stages) sum += stage.seconds;
+  for (const PhaseTime& phase : r.phases) sum += phase.seconds;
   return sum;
 }
 
@@ -74,7 +74,7 @@ std::string report_text(const RunReport& run) {
   std::string text = fmt::format("{} -> {}, {} x {}{}\n", run.input, run.output, r.width, r.height,
                                  run.title.empty() ? "" : ", " + run.title);
   text += line("read", fmt::format("{:.2f} s", run.read_seconds));
-  for (const StageTime& stage : r.stages) text += line(stage.stage, fmt::format("{:.2f} s", stage.seconds));
+  for (const PhaseTime& phase : r.phases) text += line(phase.phase, fmt::format("{:.2f} s", phase.seconds));
   text += line("write", fmt::format("{:.2f} s", run.write_seconds));
   text +=
       line("total", fmt::format("{:.2f} s, {:.0f} pixels/s in the reconstruction", run.seconds, pixels_per_second(r)));
@@ -104,8 +104,8 @@ std::string report_text(const RunReport& run) {
 
 Json report_json(const RunReport& run, const FrameSource& source) {
   const Report& r = run.reconstruction;
-  Json stages = Json::array();
-  for (const StageTime& stage : r.stages) stages.push_back({{"stage", stage.stage}, {"seconds", stage.seconds}});
+  Json phases = Json::array();
+  for (const PhaseTime& phase : r.phases) phases.push_back({{"phase", phase.phase}, {"seconds", phase.seconds}});
   return {{"polyrecon", run.version},
           {"input", run.input},
           {"output", run.output},
@@ -119,7 +119,7 @@ Json report_json(const RunReport& run, const FrameSource& source) {
           {"settings_choice", run.chosen ? settings_choice_json(*run.chosen, reconstruction_seconds(r)) : Json()},
           {"variance_source", r.variance_source},
           {"decisions", decisions_json(r.decisions)},
-          {"stages", stages},
+          {"phases", phases},
           {"seconds",
            {{"read", run.read_seconds},
             {"reconstruct", reconstruction_seconds(r)},

@@ -154,7 +154,7 @@ void denoise_frame(const Job& job, const FrameFiles& files, bool is_last, Loaded
                    const std::function<void()>& begin_next, Progress& progress) {
   FileRun run(job, files);
   for (;;) {
-    run.plan(loaded);
+    run.list_others(loaded);
     const auto next = run.next();
     next ? ahead.begin(files, *next) : begin_next();
     const std::size_t memory = is_last && !next ? job.params.max_memory : memory_with_next(loaded.in.frame, job.params);

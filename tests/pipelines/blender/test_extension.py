@@ -154,13 +154,13 @@ class Extension(unittest.TestCase):
     def test_renders_adaptively_and_goes_on(self):
         self.scene.polyrecon.limit, self.scene.polyrecon.spp = "SPP", 12
         self.assertEqual(bpy.ops.polyrecon.adaptive(), {"FINISHED"})
-        job, stages = self.jobs.current, set()
+        job, phases = self.jobs.current, set()
         while job.poll():
-            stages.add(job.stage)
+            phases.add(job.phase)
             self.assertTrue(0 <= job.fraction <= 1)
             time.sleep(0.05)
         self.assertEqual((job.state, job.error), ("done", ""))
-        self.assertTrue(any("spp" in stage for stage in stages), stages)
+        self.assertTrue(any("spp" in phase for phase in phases), phases)
         self.assertFalse([name for name, path in job.results.items() if not path.exists()])
         self.assertEqual(self.combined("clean_0001.exr").shape, (36, 64, 3))
         self.assertEqual(bpy.ops.polyrecon.show(which="NOISY"), {"FINISHED"})

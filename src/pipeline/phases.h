@@ -1,0 +1,34 @@
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <string>
+
+#include "polyrecon/progress.h"
+#include "polyrecon/report.h"
+
+namespace polyrecon {
+
+/// Runs the phases of the pipeline, announces each to progress, and notes in the report how long it took.
+class Phases {
+ public:
+  Phases(Progress& progress, Report& report) : progress_(progress), report_(report) {}
+
+  /// Runs a phase and returns its result. phase: a function of a Progress, to which it reports `units` units of work
+  /// in all.
+  template <typename Phase>
+  auto run(const std::string& name, std::size_t units, const Phase& phase) {
+    const auto start = std::chrono::steady_clock::now();
+    progress_.begin(name, units);
+    auto result = phase(progress_);
+    progress_.end();
+    report_.phases.push_back({name, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()});
+    return result;
+  }
+
+ private:
+  Progress& progress_;
+  Report& report_;
+};
+
+}  // namespace polyrecon
