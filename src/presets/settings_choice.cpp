@@ -131,7 +131,7 @@ SettingsChoice choose_settings(const Pilot& pilot, const SettingsRequest& reques
   std::size_t k = 0;
   while (k + 1 < predictions.size() && in_time(predictions[k + 1]) && !accurate(predictions[k])) ++k;
   SettingsChoice choice;
-  choice.params = presets()[front[k]].params;
+  choice.preset = front[k];
   choice.chosen = predictions[k];
   if (k + 1 < predictions.size()) choice.next = predictions[k + 1];
   choice.met = in_time(predictions[k]) && (!(request.relative_mse > 0) || accurate(predictions[k]));

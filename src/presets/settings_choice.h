@@ -39,7 +39,7 @@ struct Prediction {
 };
 
 struct SettingsChoice {
-  Params params;
+  std::size_t preset = 0;  ///< Index into presets().
   Prediction chosen;
   std::optional<Prediction> next;  ///< The next slower preset that is more accurate; none: the most accurate is chosen.
   bool met = true;                 ///< False where no preset keeps the limits.

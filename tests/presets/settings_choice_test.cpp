@@ -36,7 +36,7 @@ TEST(SettingsChoice, TakesTheMostAccuratePresetWithinTheSeconds) {
   ASSERT_TRUE(choice.next);
   EXPECT_EQ(choice.next->name, presets()[4].name);
   EXPECT_DOUBLE_EQ(choice.next->seconds, 8);
-  EXPECT_EQ(choice.params.stages, presets()[3].params.stages);
+  EXPECT_EQ(choice.preset, 3u);
 }
 
 TEST(SettingsChoice, TakesTheFastestPresetThatReachesTheError) {

@@ -38,10 +38,18 @@ void add_steps_option(OptionSet& set, std::string& text) {
       "--effects", [&text](const std::string& given) { text = given; }, "");
 }
 
-void apply_steps(const std::string& text, Params& params) {
-  if (text.empty() || text == "auto") return;
-  params.steps.decide = false;
-  if (text == "all") return;
+Params StepsChoice::applied_to(Params params) const {
+  params.steps = steps;
+  if (!levels) params.levels = 1;
+  if (!stages) params.stages = 1;
+  return params;
+}
+
+StepsChoice parse_steps(const std::string& text) {
+  StepsChoice choice;
+  if (text.empty() || text == "auto") return choice;
+  choice.steps.decide = false;
+  if (text == "all") return choice;
   const std::vector<std::string> words = words_of(text), names = step_names();
   for (const std::string& word : words)
     if (std::find(names.begin(), names.end(), word) == names.end())
@@ -49,11 +57,12 @@ void apply_steps(const std::string& text, Params& params) {
                   fmt::format("--steps: '{}' is no step; name auto, all, or some of {}", word, fmt::join(names, ", ")));
   const auto listed = [&](const char* name) { return std::find(words.begin(), words.end(), name) != words.end(); };
   for (const RoleInfo& info : role_table())
-    if (info.feature && !listed(info.name)) params.steps.features.erase(info.role);
-  params.steps.prefilter = listed("prefilter");
-  params.steps.fireflies = listed("fireflies");
-  if (!listed("levels")) params.levels = 1;
-  if (!listed("stages")) params.stages = 1;
+    if (info.feature && !listed(info.name)) choice.steps.features.erase(info.role);
+  choice.steps.prefilter = listed("prefilter");
+  choice.steps.fireflies = listed("fireflies");
+  choice.levels = listed("levels");
+  choice.stages = listed("stages");
+  return choice;
 }
 
 }  // namespace polyrecon

@@ -12,6 +12,7 @@
 #include "cli/common/steps_option.h"
 #include "pipeline/memory.h"
 #include "polyrecon/error.h"
+#include "presets/preset.h"
 
 namespace polyrecon {
 namespace {
@@ -37,6 +38,16 @@ ReadOptions read_options_of(const DenoiseOptions& o, const FrameList& list, cons
   return read;
 }
 
+/// The parameters of a preset with those that options set, whatever the preset.
+Params with_options(Params params, const DenoiseOptions& o, const StepsChoice& steps, int frame_radius) {
+  if (o.stages) params.stages = *o.stages;
+  if (o.order) params.max_order = *o.order;
+  if (o.max_memory) params.max_memory = *o.max_memory;
+  params.reconstruct_alpha = o.alpha;
+  params.temporal.radius = frame_radius;
+  return steps.applied_to(std::move(params));
+}
+
 std::string name_of(Quality quality) {
   const auto& names = quality_names();
   return std::find_if(names.begin(), names.end(), [&](const auto& entry) { return entry.second == quality; })->first;
@@ -53,16 +64,6 @@ std::string settings_of(const OptionSet& set, Quality quality, const Job& job) {
 
 }  // namespace
 
-Params with_overrides(Params params, const ParamOverrides& overrides) {
-  if (overrides.stages) params.stages = *overrides.stages;
-  if (overrides.order) params.max_order = *overrides.order;
-  if (overrides.max_memory) params.max_memory = *overrides.max_memory;
-  params.reconstruct_alpha = overrides.alpha;
-  params.temporal.radius = overrides.frame_radius;
-  apply_steps(overrides.steps, params);
-  return params;
-}
-
 Job make_job(const DenoiseOptions& o, const OptionSet& set) {
   Job job;
   job.limits = limits_of(o);
@@ -72,9 +73,11 @@ Job make_job(const DenoiseOptions& o, const OptionSet& set) {
   }
   FrameList list = list_frames(o);
   const Quality quality = o.quality.value_or(Quality::Standard);
-  job.overrides = {o.stages, o.order, o.max_memory, o.alpha, o.steps, list.radius};
-  job.params = with_overrides(params_for(quality), job.overrides);
+  const StepsChoice steps = parse_steps(o.steps);
+  job.params = with_options(params_for(quality), o, steps, list.radius);
   validate(job.params);
+  if (job.limits)
+    for (const Preset& preset : presets()) job.presets.push_back(with_options(preset.params, o, steps, list.radius));
   job.read = read_options_of(o, list, job.params);
   job.keep_noisy = o.keep_noisy;
   job.run = o.run;

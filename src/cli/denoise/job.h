@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,17 +13,6 @@
 
 namespace polyrecon {
 
-/// Parameters that options set whatever preset or quality provides the others.
-struct ParamOverrides {
-  std::optional<int> stages, order;
-  std::optional<std::size_t> max_memory;
-  bool alpha = false;
-  std::string steps;
-  int frame_radius = 0;
-};
-
-Params with_overrides(Params params, const ParamOverrides& overrides);
-
 /// Limits for which a pilot run chooses the settings of each frame; 0: no limit.
 struct FrameLimits {
   double seconds = 0;       ///< For a whole frame, reading and writing included.
@@ -37,9 +25,9 @@ struct Job {
   std::vector<FrameFiles> frames;
   bool is_sequence = false;  ///< Then a frame that fails does not end the run.
   ReadOptions read;
-  Params params;             ///< Where a pilot chooses the settings: what they start from.
-  ParamOverrides overrides;  ///< For the settings that a pilot chooses.
+  Params params;  ///< Where a pilot chooses the settings: those of standard quality.
   std::optional<FrameLimits> limits;
+  std::vector<Params> presets;  ///< What a pilot chooses from, in the order of presets(); empty without limits.
   std::optional<SampleMapOptions> sample_map;
   bool keep_noisy = false;
   RunOptions run;

@@ -31,7 +31,7 @@ ChosenSettings choose_settings_for(const Job& job, const FrameLimits& limits, co
         std::max(limits.seconds - (1 + write_over_read) * read_seconds - out.pilot.spent, least_seconds);
   out.request.relative_mse = limits.relative_mse;
   out.choice = choose_settings(out.pilot, out.request, measured_figures());
-  out.params = with_overrides(out.choice.params, job.overrides);
+  out.params = job.presets[out.choice.preset];
   out.params.enough = skipped_noise * out.request.relative_mse;
   return out;
 }

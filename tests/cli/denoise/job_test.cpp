@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "polyrecon/error.h"
+#include "presets/preset.h"
 
 namespace polyrecon {
 namespace {
@@ -196,10 +197,12 @@ TEST(Job, ATargetChoosesSettingsOnlyWithoutASampleMap) {
   ASSERT_TRUE(chosen.limits);
   EXPECT_EQ(chosen.limits->relative_mse, 0.01);
   EXPECT_FALSE(chosen.sample_map);
-  const Params params = with_overrides(params_for(Quality::Draft), chosen.overrides);
-  EXPECT_TRUE(params.reconstruct_alpha);
-  EXPECT_FALSE(params.steps.decide);
-  EXPECT_EQ(params.stages, params_for(Quality::Draft).stages);
+  ASSERT_EQ(chosen.presets.size(), preset_count);
+  for (std::size_t p = 0; p < preset_count; ++p) {
+    EXPECT_TRUE(chosen.presets[p].reconstruct_alpha);
+    EXPECT_FALSE(chosen.presets[p].steps.decide);
+    EXPECT_EQ(chosen.presets[p].stages, presets()[p].params.stages);
+  }
   const Job mapped = job_of({"--target", "0.01", "--sample-map", "m.exr"});
   EXPECT_FALSE(mapped.limits);
   ASSERT_TRUE(mapped.sample_map);
