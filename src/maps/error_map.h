@@ -6,9 +6,6 @@
 
 namespace polyrecon {
 
-/// Channels of an ErrorMap with all its images.
-constexpr std::size_t error_map_channels = 3 + 1 + 1 + 1;
-
 /// Estimates the error of a result. Per channel, with all terms relative to relmse_denominator(yhat),
 ///     error = min(bias^2 + variance, noise).
 /// - bias^2 is that of the windows (5), blended into the result (BlendedFit).

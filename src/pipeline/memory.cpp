@@ -7,7 +7,7 @@
 #include "core/color_layout.h"
 #include "core/wrap.h"
 #include "features/prepare.h"
-#include "maps/error_map.h"
+#include "maps/error_map_images.h"
 #include "outliers/restore.h"
 #include "pipeline/stage.h"
 #include "polyrecon/error.h"
@@ -52,7 +52,7 @@ std::size_t finishing_channels(const FrameShape& shape) {
   const std::size_t colors = count(shape.color_channels);
   constexpr std::size_t order_map = 1;
   const std::size_t prior = shape.prior_channels > 0 ? prior_work_channels : 0;
-  return pair_channels(shape) + candidate_channels(colors) + error_map_channels + order_map +
+  return pair_channels(shape) + candidate_channels(colors) + error_map_channels() + order_map +
          std::max(prior, restore_channels(colors));
 }
 

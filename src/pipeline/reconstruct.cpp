@@ -21,6 +21,7 @@
 #include "pipeline/noisy_halves.h"
 #include "pipeline/notes.h"
 #include "pipeline/phases.h"
+#include "pipeline/result_images.h"
 #include "pipeline/savings.h"
 #include "pipeline/stage.h"
 #include "temporal/join.h"
@@ -166,11 +167,10 @@ Result reconstruct_panorama(Frame& frame, const std::vector<TimedNeighbour>& nei
   note_input(frame, report);
   wrap(frame);
   Result result = reconstruct(frame, neighbours, params, progress);
-  for (Image* image :
-       {&result.beauty, &result.alpha, &result.order, &result.error.mse, &result.error.relative_mse,
-        &result.error.relative_variance, &result.error.relative_noise, &frame.alpha, &frame.sample_count})
-    *image = unwrapped(*image);
-  for (Image& aov : result.aovs) aov = unwrapped(aov);
+  const auto unwrap = [](Image& image) { image = unwrapped(image); };
+  for_images(result, unwrap);
+  unwrap(frame.alpha);
+  unwrap(frame.sample_count);
   frame.wraps = true;
   result.error.mean_relative_mse = mean_of(result.error.relative_mse);
   result.report.width = report.width;

@@ -7,6 +7,7 @@
 
 #include "core/rect.h"
 #include "io/exr/file.h"
+#include "maps/error_map_images.h"
 #include "polyrecon/error.h"
 #include "polyrecon/write_result.h"
 
@@ -55,9 +56,10 @@ std::vector<MapChannel> channels_for(const SampleMapFormat* format, const Sample
 
 void write_error_map(const std::string& target, const ErrorMap& map, const Image& sample_count,
                      const MapWindows& windows) {
-  std::vector<MapChannel> channels{{"mse.R", plane_of(map.mse, 0)},          {"mse.G", plane_of(map.mse, 1)},
-                                   {"mse.B", plane_of(map.mse, 2)},          {"relmse.Y", map.relative_mse},
-                                   {"relvariance.Y", map.relative_variance}, {"relnoise.Y", map.relative_noise}};
+  std::vector<MapChannel> channels;
+  for (const ErrorMapImage& entry : error_map_images)
+    for (std::size_t c = 0; c < entry.channels(); ++c)
+      channels.push_back({entry.names[c], plane_of(map.*entry.image, static_cast<int>(c))});
   if (!sample_count.empty()) channels.push_back({"samples.Y", sample_count});
   write_maps(target, channels, windows.data, windows.display);
 }
@@ -65,14 +67,18 @@ void write_error_map(const std::string& target, const ErrorMap& map, const Image
 ErrorMapFile read_error_map(const std::string& path) {
   const FileInfo file = describe_file(path);
   const PartInfo& part = file.parts.front();
-  for (const char* name : {"mse.R", "mse.G", "mse.B", "relmse.Y", "relvariance.Y"})
-    if (!has_channel(part, name))
-      throw Error(ExitCode::Missing, path + ": no channel " + name + "; name a file that denoise --error-map wrote");
   ErrorMapFile result;
-  result.map.mse = read_channels(file, 0, {"mse.R", "mse.G", "mse.B"});
-  result.map.relative_mse = read_channels(file, 0, {"relmse.Y"});
-  result.map.relative_variance = read_channels(file, 0, {"relvariance.Y"});
-  if (has_channel(part, "relnoise.Y")) result.map.relative_noise = read_channels(file, 0, {"relnoise.Y"});
+  for (const ErrorMapImage& entry : error_map_images) {
+    const std::vector<std::string> names(entry.names.begin(),
+                                         entry.names.begin() + static_cast<std::ptrdiff_t>(entry.channels()));
+    const auto missing =
+        std::find_if(names.begin(), names.end(), [&](const std::string& name) { return !has_channel(part, name); });
+    if (missing == names.end())
+      result.map.*entry.image = read_channels(file, 0, names);
+    else if (!entry.may_be_missing)
+      throw Error(ExitCode::Missing,
+                  path + ": no channel " + *missing + "; name a file that denoise --error-map wrote");
+  }
   if (has_channel(part, "samples.Y")) result.sample_count = read_channels(file, 0, {"samples.Y"});
   result.windows = {part.data_window, part.display_window};
   return result;

@@ -21,7 +21,7 @@ struct ErrorMapFile {
   MapWindows windows;
 };
 
-/// Writes the channels mse.R/G/B, relmse.Y, relvariance.Y, relnoise.Y and, if known, samples.Y.
+/// Writes the channels of error_map_images and, if known, samples.Y.
 void write_error_map(const std::string& target, const ErrorMap& map, const Image& sample_count,
                      const MapWindows& windows);
 

@@ -11,6 +11,7 @@
 #include "cli/denoise/write_outputs.h"
 #include "io/atomic_file.h"
 #include "pipeline/part_of_beauty.h"
+#include "pipeline/result_images.h"
 
 namespace polyrecon {
 namespace {
@@ -53,13 +54,10 @@ std::vector<TimedNeighbour> neighbours_of(const LoadedFrame& loaded) {
 }
 
 std::size_t bytes_of(const DonePicture& done) {
-  const ErrorMap& error = done.result.error;
   std::size_t samples = 0;
-  for (const Image* image :
-       {&done.result.beauty, &done.result.alpha, &done.result.order, &error.mse, &error.relative_mse,
-        &error.relative_variance, &error.relative_noise, &done.in.frame.sample_count})
-    samples += image->pixels() * static_cast<std::size_t>(image->channels());
-  for (const Image& aov : done.result.aovs) samples += aov.pixels() * static_cast<std::size_t>(aov.channels());
+  const auto add = [&](const Image& image) { samples += image.pixels() * static_cast<std::size_t>(image.channels()); };
+  for_images(done.result, add);
+  add(done.in.frame.sample_count);
   return samples * sizeof(Real);
 }
 
@@ -144,8 +142,7 @@ void FileRun::release_images(DonePicture& done) const {
   if (!job_.params.reconstruct_alpha) done.result.alpha = {};
   if (files_.outputs.order_map.empty()) done.result.order = {};
   if (files_.outputs.error_map.empty() && files_.outputs.sample_map.empty()) {
-    ErrorMap& error = done.result.error;
-    error.mse = error.relative_mse = error.relative_variance = error.relative_noise = {};
+    for (const ErrorMapImage& entry : error_map_images) done.result.error.*entry.image = {};
     frame.sample_count = {};
   }
 }

@@ -64,8 +64,9 @@ bool is_finished(const Job& job, const FrameFiles& files) {
         !has_attribute(picture, "polyrecon/input", input_identity(job, files, source)))
       return false;
     for (const OutputPaths& paths : of_pictures)
-      for (const std::string* path : {&paths.picture, &paths.error_map, &paths.order_map, &paths.sample_map})
-        if (!path->empty()) decode_file(*path);
+      for (const OutputOption& option : output_options())
+        if (const std::string& path = paths.*option.path; option.kind != OutputKind::Report && !path.empty())
+          decode_file(path);
   } catch (const Error&) {
     return false;  // a damaged output is written again
   }

@@ -26,7 +26,7 @@ std::string path_in_folder(const OutputOption& option, const std::string& folder
                 fmt::format("{} {}: with several inputs, name a folder that exists, or put #### into the file's name",
                             option.name, folder));
   fs::path file = fs::path(input).filename();
-  if (option.path == &OutputPaths::report) file.replace_extension(".json");
+  if (option.kind == OutputKind::Report) file.replace_extension(".json");
   return (fs::path(folder) / file).string();
 }
 
@@ -123,11 +123,11 @@ void require_different_outputs(const std::vector<FrameFiles>& frames) {
 }  // namespace
 
 const std::array<OutputOption, 5>& output_options() {
-  static const std::array<OutputOption, 5> options{{{"-o", &OutputPaths::picture},
-                                                    {"--error-map", &OutputPaths::error_map},
-                                                    {"--order-map", &OutputPaths::order_map},
-                                                    {"--sample-map", &OutputPaths::sample_map},
-                                                    {"--report", &OutputPaths::report}}};
+  static const std::array<OutputOption, 5> options{{{"-o", &OutputPaths::picture, OutputKind::Picture},
+                                                    {"--error-map", &OutputPaths::error_map, OutputKind::Map},
+                                                    {"--order-map", &OutputPaths::order_map, OutputKind::Map},
+                                                    {"--sample-map", &OutputPaths::sample_map, OutputKind::Map},
+                                                    {"--report", &OutputPaths::report, OutputKind::Report}}};
   return options;
 }
 

@@ -14,10 +14,17 @@ struct OutputPaths {
   std::string picture, error_map, order_map, sample_map, report;
 };
 
+enum class OutputKind {
+  Picture,  ///< All pictures of the input in one file.
+  Map,      ///< A file for each picture.
+  Report,   ///< JSON about all pictures.
+};
+
 /// An option that names an output, and the place of its path.
 struct OutputOption {
   const char* name;  ///< "--error-map"
   std::string OutputPaths::*path;
+  OutputKind kind;
 };
 
 const std::array<OutputOption, 5>& output_options();

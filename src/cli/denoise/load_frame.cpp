@@ -17,11 +17,12 @@ OutputPaths maps_of(OutputPaths outputs, const PictureChoice& picture) {
   for (const std::string& word : {picture.place.view_layer, picture.place.view, picture.layer})
     if (!word.empty()) label += "." + word;
   std::replace(label.begin(), label.end(), '/', '_');
-  for (std::string* path : {&outputs.error_map, &outputs.order_map, &outputs.sample_map})
-    if (!path->empty()) {
-      const std::filesystem::path file(*path);
-      *path = (file.parent_path() / (file.stem().string() + label + file.extension().string())).string();
-    }
+  for (const OutputOption& option : output_options()) {
+    std::string& path = outputs.*option.path;
+    if (option.kind != OutputKind::Map || path.empty()) continue;
+    const std::filesystem::path file(path);
+    path = (file.parent_path() / (file.stem().string() + label + file.extension().string())).string();
+  }
   return outputs;
 }
 

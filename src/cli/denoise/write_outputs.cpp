@@ -124,9 +124,10 @@ std::vector<std::string> write_outputs(const Job& job, const FrameFiles& files,
     const bool is_first = &done == &first;
     const OutputPaths outputs = is_first ? files.outputs : maps_of(files.outputs, done.report.picture);
     for (const std::string& note : write_maps_of(job, files, done, outputs, progress)) notes.push_back(note);
-    if (!is_first)
-      for (const std::string* map : {&outputs.error_map, &outputs.order_map, &outputs.sample_map})
-        if (!map->empty()) notes.push_back(fmt::format("map of {}: {}", done.report.picture.name(), *map));
+    if (is_first) continue;
+    for (const OutputOption& option : output_options())
+      if (const std::string& path = outputs.*option.path; option.kind == OutputKind::Map && !path.empty())
+        notes.push_back(fmt::format("map of {}: {}", done.report.picture.name(), path));
   }
   return notes;
 }
