@@ -46,6 +46,13 @@ enum class FeatureTransform {
   BoundedDepth  ///< z / (z + median of z): bounded, so that distances of the sky fit too.
 };
 
+/// What a layer holds in pixels where nothing was rendered, or where rays hit nothing.
+enum class EmptyValue {
+  Zero,
+  ZeroOrOne,  ///< Nothing occludes anything: a 1 does not tell what was rendered from what was not.
+  ZeroOrSky   ///< Distances of the sky: Frame::sky_depth or more, 1e10 or +Inf.
+};
+
 /// Numbers of channels that a layer of a role can have.
 class ChannelCounts {
  public:
@@ -75,6 +82,7 @@ struct RoleInfo {
   bool feature = false;             ///< f of equation (2): its channels are columns of the local model.
   bool noise_is_estimated = false;  ///< A feature whose noise is estimated where the file does not hold it.
   FeatureTransform transform = FeatureTransform::Scaled;
+  EmptyValue empty = EmptyValue::Zero;
 };
 
 /// A row for each role, in the order of the enumeration.

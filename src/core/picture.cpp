@@ -32,11 +32,12 @@ bool is_black(const Image& image, std::size_t i, bool without_light) {
 /// Whether a feature shows nothing at a pixel.
 bool is_nothing(const Feature& feature, double sky, std::size_t i) {
   const Image& mean = feature.pass.mean;
-  const bool depth = info_of(feature.role).transform == FeatureTransform::BoundedDepth;
+  const EmptyValue empty = info_of(feature.role).empty;
   for (int c = 0; c < mean.channels(); ++c) {
     const Real v = mean.plane(c)[i];
-    if (v == 0 || !usable(v) || (depth && static_cast<double>(v) >= sky)) continue;
-    if (feature.role == Role::Visibility && v == 1) continue;
+    if (v == 0 || !usable(v)) continue;
+    if (empty == EmptyValue::ZeroOrSky && static_cast<double>(v) >= sky) continue;
+    if (empty == EmptyValue::ZeroOrOne && v == 1) continue;
     return false;
   }
   return true;
@@ -45,7 +46,7 @@ bool is_nothing(const Feature& feature, double sky, std::size_t i) {
 /// The pixels in which all passes are 0; empty where no pass can tell.
 Mask empty_pixels(const Frame& frame) {
   const bool telling = std::any_of(frame.features.begin(), frame.features.end(),
-                                   [](const Feature& f) { return f.role != Role::Visibility; });
+                                   [](const Feature& f) { return info_of(f.role).empty != EmptyValue::ZeroOrOne; });
   if (frame.alpha.empty() && !telling) return {};
   Mask out(frame.beauty.mean.pixels(), 0);
   for_rows(frame.height(), [&](int y) {

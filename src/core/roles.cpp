@@ -8,10 +8,11 @@ namespace {
 enum class Noise { Estimated, IfKnown };
 
 constexpr RoleInfo feature(Role role, const char* name, int channels, ChannelCounts layer_channels, Noise noise,
-                           FeatureTransform transform = FeatureTransform::Scaled) {
+                           EmptyValue empty = EmptyValue::Zero, FeatureTransform transform = FeatureTransform::Scaled) {
   RoleInfo info{role, name, channels, layer_channels, Values::Average};
   info.expected = info.in_fit = info.feature = true;
   info.noise_is_estimated = noise == Noise::Estimated;
+  info.empty = empty;
   info.transform = transform;
   return info;
 }
@@ -42,8 +43,8 @@ constexpr std::array<RoleInfo, role_count> table{
     feature(Role::Normal, "normal", 3, {1, 3}, Noise::Estimated),
     feature(Role::Albedo, "albedo", 3, {1, 3}, Noise::Estimated),
     // An estimate of the depth's noise gains nothing.
-    feature(Role::Depth, "depth", 1, {1, 2, 3}, Noise::IfKnown, FeatureTransform::BoundedDepth),
-    feature(Role::Visibility, "visibility", 1, {1, 2, 3}, Noise::Estimated),
+    feature(Role::Depth, "depth", 1, {1, 2, 3}, Noise::IfKnown, EmptyValue::ZeroOrSky, FeatureTransform::BoundedDepth),
+    feature(Role::Visibility, "visibility", 1, {1, 2, 3}, Noise::Estimated, EmptyValue::ZeroOrOne),
     description(Role::SpecularAlbedo, "specular-albedo", 3, {3}),
     description(Role::Roughness, "roughness", 1, {1}),
     color(Role::Prior, "prior", true, false),

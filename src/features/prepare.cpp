@@ -81,11 +81,11 @@ double noise_at(const Pass& pass, int c, std::size_t i) {
   return std::isfinite(variance) ? variance : 0;
 }
 
-bool is_depth(const Feature& feature) { return info_of(feature.role).transform == FeatureTransform::BoundedDepth; }
+bool may_show_sky(const Feature& feature) { return info_of(feature.role).empty == EmptyValue::ZeroOrSky; }
 
-/// Whether a value is finite and, for a depth, nearer than the sky.
+/// Whether a value is finite and nearer than the sky.
 bool usable_value(const Feature& feature, double sky, Real value) {
-  return usable(value) && !(is_depth(feature) && static_cast<double>(value) >= sky);
+  return usable(value) && !(may_show_sky(feature) && static_cast<double>(value) >= sky);
 }
 
 /// The range of a channel's values without spikes: from the quantile of 0.5 % to that of 99.5 %, widened by this
@@ -158,7 +158,7 @@ Decision decide_on_feature(const FeatureStatistics& found, const Feature& featur
   if (!steps.features.has(feature.role)) return {step, false, "not requested"};
   if (found.usable_pixels == 0) return {step, false, "no finite value"};
   if (!steps.decide) return {step, true, "requested"};
-  const bool has_sky = is_depth(feature) && found.usable_pixels < mean.pixels();
+  const bool has_sky = may_show_sky(feature) && found.usable_pixels < mean.pixels();
   if (found.all.high - found.all.low <= 1e-6 * found.all.largest() && !has_sky)
     return {step, false, "constant", Spared::Columns, mean.channels()};
   if (found.noise > 0.9 * found.variance) return {step, false, "nothing but noise", Spared::Columns, mean.channels()};
@@ -240,7 +240,7 @@ Image feature_half_variance(Feature& feature, double sky, const Image& picture, 
   if (!pass.variance.empty()) {
     const Real of_half = pass.variance_is_estimated ? Real(1) : half_noise_of(pass);
     Image variance = std::move(pass.variance);
-    if (is_depth(feature)) remove_noise_of_sky(pass.mean, sky, variance);
+    if (may_show_sky(feature)) remove_noise_of_sky(pass.mean, sky, variance);
     repaired += repair(variance, picture);
     make_non_negative(variance);
     scale(variance, of_half);
@@ -253,7 +253,7 @@ Image feature_half_variance(Feature& feature, double sky, const Image& picture, 
     Real* values = variance.row(c, y);
     for (int x = 0; x < variance.width(); ++x) values[x] = 2 * variance_of_mean(values[x], b[x]);
   });
-  if (is_depth(feature)) remove_noise_of_sky(pass.mean, sky, variance);
+  if (may_show_sky(feature)) remove_noise_of_sky(pass.mean, sky, variance);
   repaired += repair(variance, picture);
   return variance;
 }
@@ -413,7 +413,8 @@ Preparation choose_features(const Frame& frame, const Steps& steps, const Image&
     use.prefilter = prefilter.run;
     use.flatten = feature.pass.variance_is_estimated && !frame.beauty.noise_is_known();
     if (const double largest = found.usual.largest(); largest > 0) use.scale = std::exp2(-std::ilogb(largest));
-    if (is_depth(feature)) use.half_depth = median_depth(feature.pass.mean, frame.sky_depth);
+    if (info_of(feature.role).transform == FeatureTransform::BoundedDepth)
+      use.half_depth = median_depth(feature.pass.mean, frame.sky_depth);
     out.features.push_back(use);
     out.decisions.push_back(prefilter);
   }

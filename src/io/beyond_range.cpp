@@ -20,7 +20,7 @@ bool is_half_float(const PartInfo& part, const std::string& channel) {
 
 BeyondRange beyond_range(const PartInfo& part, const Layer& layer, Role role, const std::string& channel) {
   if (layer.companion != Companion::Mean && !is_half(layer.companion)) return BeyondRange::AsStored;
-  if (role == Role::Depth) return BeyondRange::Sky;
+  if (info_of(role).empty == EmptyValue::ZeroOrSky) return BeyondRange::Sky;
   const bool radiance = info_of(role).values == Values::Radiance && channel != layer.alpha;
   return radiance && is_half_float(part, channel) ? BeyondRange::LargestHalf : BeyondRange::AsStored;
 }

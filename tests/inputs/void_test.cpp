@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <map>
+#include <utility>
 
 #include "core/crop_frame.h"
 #include "core/picture.h"
@@ -90,6 +92,25 @@ TEST(Void, MayHoldTheSkysDepthFullVisibilityAndValuesThatAreNotFinite) {
     }
   EXPECT_EQ(picture_box(frame), region);
   EXPECT_TRUE(test::all_finite(test::run(frame).beauty));
+}
+
+/// What a feature holds where nothing was rendered is the table's to say.
+TEST(Void, IsWhereEachFeatureHoldsItsEmptyValue) {
+  for (const RoleInfo& info : role_table()) {
+    if (!info.feature) continue;
+    for (const auto& [value, empty] : std::map<double, bool>{{0, true},
+                                                             {0.5, false},
+                                                             {1, info.empty == EmptyValue::ZeroOrOne},
+                                                             {1e10, info.empty == EmptyValue::ZeroOrSky}}) {
+      Frame frame = cut_to(region, 72, 50).frame;
+      Image mean =
+          test::image_of(72, 50, info.channels, [&](int x, int y, int) { return region.contains(x, y) ? 0.3 : value; });
+      frame.features = {{info.role, {info.name, std::move(mean), {}, {}, {}}}};
+      EXPECT_EQ(picture_of(frame).empty(), !empty) << info.name << " " << value;
+    }
+  }
+  EXPECT_EQ(info_of(Role::Depth).empty, EmptyValue::ZeroOrSky);
+  EXPECT_EQ(info_of(Role::Visibility).empty, EmptyValue::ZeroOrOne);
 }
 
 /// A frame in which nothing is visible, or everything, is an ordinary one.
