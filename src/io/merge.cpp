@@ -32,6 +32,7 @@
 #include "io/exr/bands.h"
 #include "io/exr/single_part.h"
 #include "io/half_split.h"
+#include "io/merge_regions.h"
 #include "io/merge_sums.h"
 #include "io/renderers/known_names.h"
 #include "io/renderers/polyrecon.h"
@@ -45,7 +46,8 @@ constexpr int chunk_lines = 32;
 /// Samples of a render over the number of the other renders, up to which a sample that all have in common matters: with
 /// 4 renders of 16 samples the error of a textured plane is 1.4 times what their variance says.
 constexpr double longest_shared = 8;
-constexpr std::size_t renders_at_once = 16;                   ///< Renders that are decoded before they are added up.
+constexpr double most_single_cover = 0.05;   ///< Share of the picture with one render, beyond which noise is not known.
+constexpr std::size_t renders_at_once = 16;  ///< Renders that are decoded before they are added up.
 constexpr std::size_t pixels_at_once = std::size_t{1} << 12;  ///< Pixels of one channel whose sums stay in the cache.
 
 /// One render. Its layers are in the order of the first render's.
@@ -53,8 +55,8 @@ struct Render {
   std::vector<FileInfo> files;  ///< [0] is the named one; the others hold its other passes.
   std::vector<Layer> layers;
   std::vector<bool> absent;  ///< For each layer whether only the first render has it; empty for the first render.
-  Rect region;               ///< The pixels it has samples for, all that its group of renders covers; see find_regions.
-  std::size_t rank = 0;      ///< Place among the renders of its region.
+  Rect window;               ///< The data windows of all parts together.
+  Region region;             ///< The pixels it has samples for.
 };
 
 const std::string& path_of(const Render& render) { return render.files.front().path; }
@@ -154,36 +156,49 @@ void check_absent(const std::vector<Render>& renders) {
   }
 }
 
-/// Whether two renders show the same part of the picture. Boxes that a renderer cuts to what is not black differ by a
-/// few pixels from render to render; regions of a frame have at most margins in common.
-bool same_region(const Rect& a, const Rect& b) { return 2 * intersect(a, b).area() >= std::min(a.area(), b.area()); }
+/// The data windows of all parts together.
+Rect window_of(const Render& render) {
+  Rect window;
+  for (const FileInfo& file : render.files)
+    for (const PartInfo& part : file.parts)
+      if (part.readable()) window = bounding(window, part.data_window);
+  return window;
+}
 
-/// Finds which renders show the same region. A render has samples in all of its region: outside their data windows its
-/// layers are 0 there. Beyond it has none.
-void find_regions(std::vector<Render>& renders) {
-  std::vector<Rect> windows;
+/// The first beauty that can be read.
+const Layer& beauty_of(const Render& render) {
+  std::string obstacle;
+  for (const Layer& layer : render.layers) {
+    if (layer.role != Role::Beauty || layer.companion != Companion::Mean) continue;
+    obstacle = part_of(render, layer).obstacle();
+    if (obstacle.empty()) return layer;
+  }
+  if (!obstacle.empty())
+    throw Error(ExitCode::BadInput, fmt::format("{}: the beauty is {}", path_of(render), obstacle));
+  throw Error(ExitCode::Missing, fmt::format("{}: no beauty to merge", path_of(render)));
+}
+
+void require_size(const std::vector<Render>& renders, std::size_t max_pixels) {
+  Rect all;
+  for (const Render& render : renders) all = bounding(all, render.window);
+  const double width = static_cast<double>(all.x1) - all.x0, height = static_cast<double>(all.y1) - all.y0;
+  if (width * height > static_cast<double>(max_pixels))
+    throw Error(ExitCode::BadInput, fmt::format("{}: the renders together cover {:.0f} x {:.0f} pixels, more than the "
+                                                "limit of {}; are they of one frame?",
+                                                path_of(renders.front()), width, height, max_pixels));
+}
+
+/// Sets the windows and regions of the renders.
+void place_renders(std::vector<Render>& renders, std::size_t max_pixels) {
+  for (Render& render : renders) render.window = window_of(render);
+  require_size(renders, max_pixels);
+  std::vector<ShownPart> shown;
   for (const Render& render : renders) {
-    Rect window;
-    for (const FileInfo& file : render.files)
-      for (const PartInfo& part : file.parts)
-        if (part.readable()) window = bounding(window, part.data_window);
-    windows.push_back(window);
+    const Layer& beauty = beauty_of(render);
+    shown.push_back({render.window, &file_of(render, beauty), beauty.part, all_channels(beauty)});
   }
-  std::vector<std::size_t> region(renders.size());  // index of the first render that shows it
-  for (std::size_t k = 0; k < renders.size(); ++k) {
-    region[k] = k;
-    for (std::size_t i = 0; i < k; ++i)
-      if (region[i] != region[k] && same_region(windows[i], windows[k])) {
-        const std::size_t joined = std::min(region[i], region[k]), other = std::max(region[i], region[k]);
-        std::replace(region.begin(), region.begin() + static_cast<std::ptrdiff_t>(k) + 1, other, joined);
-      }
-  }
-  for (std::size_t k = 0; k < renders.size(); ++k)
-    for (std::size_t i = 0; i < renders.size(); ++i) {
-      if (region[i] != region[k]) continue;
-      renders[k].region = bounding(renders[k].region, windows[i]);
-      renders[k].rank += i < k;
-    }
+  const std::vector<Region> regions = find_regions(shown);
+  for (std::size_t k = 0; k < renders.size(); ++k) renders[k].region = regions[k];
 }
 
 /// Files next to the named one may hold its picture in other forms.
@@ -213,6 +228,27 @@ std::set<std::string> leave_out_lone_passes(std::vector<Render>& renders) {
   return lone;
 }
 
+/// Leaves out variances, halves and sample counts that some renders lack: those of the others describe a part of the
+/// result only. Returns their names.
+std::set<std::string> leave_out_lone_companions(std::vector<Render>& renders) {
+  const auto describes_samples = [](const Layer& layer) {
+    return layer.companion != Companion::Mean || info_of(layer.role).values == Values::Count;
+  };
+  std::map<std::string, std::size_t> uses;
+  for (const Render& render : renders)
+    for (const Layer& layer : render.layers)
+      if (describes_samples(layer)) ++uses[layer.name];
+  std::set<std::string> lone;
+  for (const auto& [name, count] : uses)
+    if (count < renders.size()) lone.insert(name);
+  for (Render& render : renders)
+    render.layers.erase(
+        std::remove_if(render.layers.begin(), render.layers.end(),
+                       [&](const Layer& layer) { return describes_samples(layer) && lone.count(layer.name) > 0; }),
+        render.layers.end());
+  return lone;
+}
+
 std::vector<Render> open_renders(const std::vector<std::string>& paths, const ReadLimits& limits,
                                  std::vector<std::string>& notes) {
   if (paths.size() < 2) throw Error(ExitCode::Usage, "merge needs at least two renders of the same frame");
@@ -234,9 +270,11 @@ std::vector<Render> open_renders(const std::vector<std::string>& paths, const Re
   }
   for (const std::string& name : leave_out_lone_passes(renders))
     notes.push_back(fmt::format("{} is left out: not every render has a file with it", name));
+  for (const std::string& name : leave_out_lone_companions(renders))
+    notes.push_back(fmt::format("{} is left out: not every render has it", name));
   for (std::size_t k = 1; k < renders.size(); ++k) check_fits(renders[k], renders.front());
   check_absent(renders);
-  find_regions(renders);
+  place_renders(renders, limits.max_pixels);
   return renders;
 }
 
@@ -278,9 +316,10 @@ struct Slot {
   std::size_t layer, channel;
 };
 
-/// Copies what two rectangles of rows have in common. Elements are of `size` bytes.
-void copy_common(const char* from, const Rect& source, char* to, const Rect& target, std::size_t size) {
-  const Rect common = intersect(source, target);
+/// Copies what two rectangles of rows have in common within a third one. Elements are of `size` bytes.
+void copy_common(const char* from, const Rect& source, char* to, const Rect& target, const Rect& within,
+                 std::size_t size) {
+  const Rect common = intersect(intersect(source, target), within);
   if (common.empty()) return;
   const auto offset = [&](const Rect& r, int y) {
     return (static_cast<std::size_t>(y - r.y0) * static_cast<std::size_t>(r.width()) +
@@ -303,7 +342,7 @@ std::vector<float> read_area(const FileInfo& file, int part, const std::vector<s
   const std::vector<float>& found = reader.read(rows.y0, rows.y1);
   for (std::size_t c = 0; c < channels.size(); ++c)
     copy_common(reinterpret_cast<const char*>(found.data() + c * rows.area()), rows,
-                reinterpret_cast<char*>(samples.data() + c * area.area()), area, sizeof(float));
+                reinterpret_cast<char*>(samples.data() + c * area.area()), area, area, sizeof(float));
   return samples;
 }
 
@@ -324,7 +363,7 @@ class Merger {
         samples_(options.samples),
         compress_(options.compress),
         overflows_(renders_.front().layers.size()) {
-    choose_window(options.limits.max_pixels);
+    choose_window();
     for (std::size_t l = 0; l < first().layers.size(); ++l) sort_layer(l);
     find_weights();
     choose_halves(first_b);
@@ -393,44 +432,47 @@ class Merger {
 
   const Render& first() const { return renders_.front(); }
 
-  void require_beauty() const {
-    std::string obstacle;
-    for (const Layer& layer : first().layers) {
-      if (layer.role != Role::Beauty || layer.companion != Companion::Mean) continue;
-      obstacle = part_of(first(), layer).obstacle();
-      if (obstacle.empty()) return;
+  void choose_window() {
+    std::map<std::size_t, std::size_t> regions_of_rank;
+    std::vector<Rect> rects;
+    for (const Render& render : renders_) {
+      window_ = bounding(window_, render.window);
+      ++regions_of_rank[render.region.rank];
+      rects.push_back(render.region.rect);
     }
-    if (!obstacle.empty())
-      throw Error(ExitCode::BadInput, fmt::format("{}: the beauty is {}", path_of(first()), obstacle));
-    throw Error(ExitCode::Missing, fmt::format("{}: no beauty to merge", path_of(first())));
+    has_regions_ = std::any_of(rects.begin(), rects.end(), [&](const Rect& r) { return !(r == window_); });
+    const double single = share_of_single_cover(rects);
+    const std::size_t groups = regions_of_rank[0], lone_groups = groups - regions_of_rank[1];
+    joins_ = report_.joined = lone_groups > 0 || single > most_single_cover;
+    if (groups > 1) report_.notes.push_back(fmt::format("{} regions are joined to one picture", groups));
+    note_parts(groups);
+    if (joins_ && lone_groups < groups)
+      report_.notes.push_back(
+          lone_groups > 0
+              ? fmt::format("no variance or halves are written, as {} regions have one render only", lone_groups)
+              : fmt::format("no variance or halves are written, as {:.0f} % of the picture has one render only",
+                            100 * single));
   }
 
-  void choose_window(std::size_t max_pixels) {
-    require_beauty();
-    std::map<std::size_t, std::size_t> regions_of_rank;
+  /// Notes renders that have samples of a part of what the others of their group show.
+  void note_parts(std::size_t groups) {
+    std::map<std::size_t, Rect> whole;
     for (const Render& render : renders_) {
-      window_ = bounding(window_, render.region);
-      ++regions_of_rank[render.rank];
+      Rect& rect = whole[render.region.group];
+      rect = bounding(rect, render.region.rect);
     }
-    const double width = static_cast<double>(window_.x1) - window_.x0,
-                 height = static_cast<double>(window_.y1) - window_.y0;
-    if (width * height > static_cast<double>(max_pixels))
-      throw Error(ExitCode::BadInput,
-                  fmt::format("{}: the renders together cover {:.0f} x {:.0f} pixels, more than the "
-                              "limit of {}; are they of one frame?",
-                              path_of(first()), width, height, max_pixels));
-    has_regions_ = regions_of_rank[0] > 1;
-    joins_ = report_.joined = regions_of_rank[1] < regions_of_rank[0];
-    if (!has_regions_) return;
-    report_.notes.push_back(fmt::format("{} regions are joined to one picture", regions_of_rank[0]));
-    if (joins_ && regions_of_rank[1] > 0)
-      report_.notes.push_back(fmt::format("no variance or halves are written, as {} regions have one render only",
-                                          regions_of_rank[0] - regions_of_rank[1]));
+    const auto parts = std::count_if(renders_.begin(), renders_.end(), [&](const Render& render) {
+      return !(render.region.rect == whole[render.region.group]);
+    });
+    if (parts > 0)
+      report_.notes.push_back(fmt::format(
+          "{} of {} renders show a part of {} only and have no samples beyond it, where the others show light", parts,
+          renders_.size(), groups > 1 ? "their region" : "the picture"));
   }
 
   /// Whether some render has samples of the pixel.
   bool is_covered(int x, int y) const {
-    return std::any_of(renders_.begin(), renders_.end(), [&](const Render& r) { return r.region.contains(x, y); });
+    return std::any_of(renders_.begin(), renders_.end(), [&](const Render& r) { return r.region.rect.contains(x, y); });
   }
 
   Fate fate(std::size_t l) const {
@@ -501,7 +543,7 @@ class Merger {
       for (const Render& render : renders_) {
         const auto samples = samples_of(render, view_layer);
         known = known && samples.has_value();
-        if (render.region == first().region) total += samples.value_or(0);
+        if (render.region.group == first().region.group) total += samples.value_or(0);
       }
       if (known) metadata_samples_[view_layer] = total;
       const FirstSamples first_samples = compare_first_samples(view_layer);
@@ -521,16 +563,20 @@ class Merger {
   /// first_b: as in the constructor.
   void choose_halves(std::size_t first_b) {
     half_b_.resize(renders_.size());
-    halves_weigh_alike_ = first_b > 0;
+    halves_weigh_alike_ = first_b > 0 && !joins_;
+    if (joins_) {
+      if (first_b > 0) report_.notes.emplace_back("--half-b has no effect: no halves are written");
+      return;
+    }
     if (halves_weigh_alike_) {
       std::fill(half_b_.begin() + static_cast<std::ptrdiff_t>(first_b), half_b_.end(), true);
       return;
     }
     for (const Render& region : renders_) {
-      if (region.rank > 0) continue;
+      if (region.region.rank > 0) continue;
       std::vector<std::size_t> indices;
       for (std::size_t k = 0; k < renders_.size(); ++k)
-        if (renders_[k].region == region.region) indices.push_back(k);
+        if (renders_[k].region.group == region.region.group) indices.push_back(k);
       const std::vector<double> samples = mean_samples(indices);
       const std::vector<bool> half_b = split_renders(samples);
       std::array<double, 2> sums{};
@@ -560,12 +606,12 @@ class Merger {
       constexpr int lines = 5;
       double sum = 0;
       for (int line = 0; line < lines; ++line) {
-        Rect area = render.region;
+        Rect area = render.region.rect;
         area.y0 += (2 * line + 1) * area.height() / (2 * lines);
         area.y1 = area.y0 + 1;
         for (const double n : read_counts(render, counted_.front(), area)) sum += n;
       }
-      means[i] = sum / (lines * static_cast<double>(render.region.width()));
+      means[i] = sum / (lines * static_cast<double>(render.region.rect.width()));
     });
     return means;
   }
@@ -646,7 +692,7 @@ class Merger {
     std::size_t i = 0;
     for (int y = area.y0; y < area.y1; ++y)
       for (int x = area.x0; x < area.x1; ++x, ++i)
-        if (!render.region.contains(x, y)) n[i] = 0;
+        if (!render.region.rect.contains(x, y)) n[i] = 0;
   }
 
   /// Decodes the merged channels of one render, each part once.
@@ -771,15 +817,21 @@ class Merger {
     if (spread) any_spread_ = true;
   }
 
-  /// Copies the channels of a layer with their bits, whatever their type, from the first render of each region.
+  /// Copies the channels of a layer with their bits, whatever their type, from the first render that shows a pixel.
   void copy_layer(std::size_t l, NativeBand& band) {
     const Layer& layer = first().layers[l];
     for (const std::string& name : all_channels(layer)) {
       NativeChannel& to = *band.find(output_name(first(), layer, name));
       std::fill(to.samples.begin(), to.samples.end(), 0);
     }
-    for (const Render& render : renders_)
-      if (render.rank == 0 && (render.absent.empty() || !render.absent[l])) copy_layer(render, l, band);
+    for (std::size_t k = renders_.size(); k-- > 0;)
+      if ((renders_[k].absent.empty() || !renders_[k].absent[l]) && !is_behind(k)) copy_layer(renders_[k], l, band);
+  }
+
+  /// Whether all that a render shows is shown by the first one of its group.
+  bool is_behind(std::size_t k) const {
+    const Region& region = renders_[k].region;
+    return region.rank > 0 && intersect(renders_[region.group].region.rect, region.rect) == region.rect;
   }
 
   void copy_layer(const Render& render, std::size_t l, NativeBand& band) {
@@ -803,7 +855,7 @@ class Merger {
       const NativeChannel& from = *old.find(channels[c]);
       NativeChannel& to = *band.find(output_name(first(), output, names[c]));
       if (from.type != to.type) misfit(render, first(), fmt::format("another type in layer {}", output.name));
-      copy_common(from.samples.data(), rows, to.samples.data(), area, size_of(to.type));
+      copy_common(from.samples.data(), rows, to.samples.data(), area, render.region.rect, size_of(to.type));
     }
   }
 
@@ -862,8 +914,8 @@ class Merger {
   bool halves_weigh_alike_ = false;  ///< The halves were given.
   std::vector<bool> half_b_;         ///< For each render whether it is of half B.
   Rect window_;                      ///< Of the result: all regions.
-  bool has_regions_ = false;         ///< The renders show more than one region of the frame.
-  bool joins_ = false;  ///< Some region has one render only: the regions are put side by side, nothing else.
+  bool has_regions_ = false;         ///< Some renders have samples of a part of the frame only.
+  bool joins_ = false;               ///< Too much of the picture has one render only: no variance or halves are made.
   std::vector<std::size_t> merged_, kept_;  ///< Indices of layers.
   std::vector<Slot> slots_;                 ///< The channels of all merged layers.
   std::vector<std::string> counted_;        ///< View layers whose sample counts are known.

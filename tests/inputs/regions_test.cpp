@@ -132,25 +132,172 @@ TEST(Regions, MarginsInCommonAreAveraged) {
   EXPECT_EQ(image.at(7, 0, 0), 6);
 }
 
+/// What is cut from a picture that is black but for the inside and one pixel of its rim.
+TestPart box_of_noise(const Rect& box, double value) {
+  TestPart part =
+      region(box, join({flat_layer("V.Combined", "RGB", value), flat_layer("V.Denoising Albedo", "RGB", 0.5)}));
+  const Rect inside{2, 2, 10, 7};
+  for (TestChannel& channel : part.channels)
+    channel.samples = [=, stored = channel.samples](int x, int y) {
+      return inside.contains(x, y) || y == 4 ? stored(x, y) : 0;
+    };
+  return part;
+}
+
 /// The boxes of noisy renders differ: outside its box a render saw black, which counts.
 TEST(Regions, BoxesOfOnePictureAreMergedOverTheirUnion) {
   const TemporaryFolder folder;
-  const auto flat = [](const Rect& window, double value) {
-    return region(window, join({flat_layer("V.Combined", "RGB", value), flat_layer("V.Denoising Albedo", "RGB", 0.5)}));
-  };
   const MergeResult result =
-      merge(write_all(folder, {flat({1, 1, 10, 8}, 2), flat({2, 1, 11, 8}, 4)}), folder / "out.exr");
+      merge(write_all(folder, {box_of_noise({1, 1, 10, 8}, 2), box_of_noise({2, 1, 11, 8}, 4)}), folder / "out.exr");
   EXPECT_THAT(result.dropped, IsEmpty());
   EXPECT_EQ(describe_file(folder / "out.exr").parts[0].data_window, (Rect{1, 1, 11, 8}));
   const Image mean = read(folder / "out.exr", "V.Combined.R"),
               variance = read(folder / "out.exr", "V.Combined Variance.R"),
               albedo = read(folder / "out.exr", "V.Denoising Albedo.R");
-  EXPECT_EQ(mean.at(0, 0, 0), 1);  // x = 1: 2 and 0
-  EXPECT_EQ(mean.at(1, 0, 0), 3);
-  EXPECT_EQ(mean.at(9, 0, 0), 2);  // x = 10: 0 and 4
-  EXPECT_EQ(variance.at(0, 0, 0), 1);
-  EXPECT_EQ(variance.at(9, 0, 0), 4);
-  EXPECT_EQ(albedo.at(0, 0, 0), Real(0.25));
+  EXPECT_EQ(mean.at(0, 3, 0), 1);  // x = 1: 2 and 0
+  EXPECT_EQ(mean.at(1, 3, 0), 3);
+  EXPECT_EQ(mean.at(9, 3, 0), 2);  // x = 10: 0 and 4
+  EXPECT_EQ(variance.at(0, 3, 0), 1);
+  EXPECT_EQ(variance.at(9, 3, 0), 4);
+  EXPECT_EQ(albedo.at(0, 3, 0), Real(0.25));
+}
+
+TestPart lit(const Rect& window, double value) { return region(window, flat_layer("V.Combined", "RGBA", value)); }
+
+/// The picture goes on beyond the window of one render: no black is averaged.
+TEST(Regions, WindowsOfAPictureThatGoesOnAreNoBoxes) {
+  const TemporaryFolder folder;
+  const auto paths = write_all(folder, {lit({0, 0, 12, 9}, 2), lit({0, 0, 12, 9}, 4), lit({1, 0, 12, 8}, 6)});
+  const MergeResult result = merge(paths, folder / "out.exr");
+  const Image mean = read(folder / "out.exr", "V.Combined.R"),
+              variance = read(folder / "out.exr", "V.Combined Variance.R");
+  EXPECT_EQ(mean.at(0, 4, 0), 3);
+  EXPECT_EQ(mean.at(5, 8, 0), 3);
+  EXPECT_EQ(mean.at(1, 7, 0), 4);
+  EXPECT_EQ(variance.at(0, 4, 0), 1);
+  EXPECT_EQ(variance.at(1, 7, 0), Real(4.0 / 3));  // (4 + 0 + 4) / (9 - 3)
+  EXPECT_THAT(result.notes, ::testing::Contains(HasSubstr("1 of 3 renders show a part of the picture only")));
+}
+
+/// A region that was rendered again, in a window of its own or black outside, and the whole frame.
+TEST(Regions, ARegionWithinAFrameIsMergedThereOnly) {
+  const Rect inner{3, 2, 9, 7};
+  for (const bool cropped : {true, false}) {
+    const TemporaryFolder folder;
+    TestPart again = lit(cropped ? inner : frame, 8);
+    if (!cropped)
+      for (TestChannel& channel : again.channels)
+        channel.samples = [=](int x, int y) { return inner.contains(x, y) ? 8 : 0; };
+    const MergeResult result = merge(write_all(folder, {lit(frame, 2), again}), folder / "out.exr");
+    const Image mean = read(folder / "out.exr", "V.Combined.G"), alpha = read(folder / "out.exr", "V.Combined.A");
+    for (int y = 0; y < 9; ++y)
+      for (int x = 0; x < 12; ++x) {
+        ASSERT_EQ(mean.at(x, y, 0), inner.contains(x, y) ? 5 : 2) << x << " " << y;
+        ASSERT_EQ(alpha.at(x, y, 0), inner.contains(x, y) ? 5 : 2) << x << " " << y;
+      }
+    EXPECT_TRUE(result.joined);
+    EXPECT_THAT(result.notes, ::testing::Contains(HasSubstr("72 % of the picture has one render only")));
+    for (const std::string& name : channel_names(folder / "out.exr")) EXPECT_THAT(name, Not(HasSubstr("Variance")));
+  }
+}
+
+TEST(Regions, LargeMarginsInCommonAreAveraged) {
+  const TemporaryFolder folder;
+  merge(write_all(folder, {lit({0, 0, 9, 9}, 2), lit({3, 0, 12, 9}, 6)}), folder / "out.exr");
+  const Image image = read(folder / "out.exr", "V.Combined.R");
+  EXPECT_EQ(image.at(2, 0, 0), 2);
+  EXPECT_EQ(image.at(3, 0, 0), 4);
+  EXPECT_EQ(image.at(8, 8, 0), 4);
+  EXPECT_EQ(image.at(9, 8, 0), 6);
+}
+
+/// A wide picture that is mostly black: what one render shows beyond the other's window is more than chance.
+TEST(Regions, AWindowThatEndsBeforeSparseLightIsNoBox) {
+  const TemporaryFolder folder;
+  const Rect wide{0, 0, 200, 9};
+  std::vector<TestPart> parts{lit(wide, 0), lit({0, 0, 200, 7}, 0)};
+  for (TestPart& part : parts) {
+    part.display = wide;
+    for (TestChannel& channel : part.channels) channel.samples = [=](int x, int) { return x % 8 == 0 ? 4 : 0; };
+  }
+  merge(write_all(folder, parts), folder / "out.exr");
+  const Image mean = read(folder / "out.exr", "V.Combined.R");
+  EXPECT_EQ(mean.at(16, 6, 0), 4);
+  EXPECT_EQ(mean.at(16, 7, 0), 4);
+  EXPECT_EQ(mean.at(16, 8, 0), 4);
+}
+
+/// Regions whose files keep the window of the frame, black outside.
+TEST(Regions, RegionsThatAreBlackOutsideAreJoined) {
+  const TemporaryFolder folder;
+  std::vector<TestPart> parts;
+  for (const Rect& window : std::vector<Rect>{{0, 0, 6, 9}, {6, 0, 12, 9}}) {
+    parts.push_back(region(frame, passes()));
+    for (TestChannel& channel : parts.back().channels)
+      channel.samples = [=, stored = channel.samples](int x, int y) {
+        return window.contains(x, y) ? stored(x, y) + 1 : 0;
+      };
+  }
+  const MergeResult result = merge(write_all(folder, parts), folder / "out.exr");
+  EXPECT_THAT(result.notes, ElementsAre(HasSubstr("2 regions are joined")));
+  EXPECT_EQ(describe_file(folder / "out.exr").parts[0].data_window, frame);
+  for (const TestChannel& channel : passes()) {
+    const Image image = read(folder / "out.exr", channel.name);
+    for (int y = 0; y < 9; ++y)
+      for (int x = 0; x < 12; ++x)
+        ASSERT_EQ(static_cast<double>(image.at(x, y, 0)), channel.samples(x, y) + 1) << channel.name << x << " " << y;
+  }
+}
+
+/// Two renders of a sparse picture, each black where the other has light: all black counts.
+TEST(Regions, BlackByChanceCounts) {
+  const TemporaryFolder folder;
+  std::vector<TestPart> parts;
+  for (const int turn : {0, 1}) {
+    parts.push_back(lit(frame, 0));
+    for (TestChannel& channel : parts.back().channels)
+      channel.samples = [=](int x, int y) { return (3 * x + 5 * y) % 8 == 4 * turn ? 4 : 0; };
+  }
+  merge(write_all(folder, parts), folder / "out.exr");
+  const Image mean = read(folder / "out.exr", "V.Combined.R"),
+              variance = read(folder / "out.exr", "V.Combined Variance.R");
+  for (int y = 0; y < 9; ++y)
+    for (int x = 0; x < 12; ++x) {
+      const bool is_lit = (3 * x + 5 * y) % 4 == 0;
+      ASSERT_EQ(mean.at(x, y, 0), is_lit ? 2 : 0) << x << " " << y;
+      ASSERT_EQ(variance.at(x, y, 0), is_lit ? 4 : 0) << x << " " << y;
+    }
+}
+
+/// The variance of one region says nothing of the other.
+TEST(Regions, VarianceThatOneRegionLacksIsLeftOut) {
+  const TemporaryFolder folder;
+  TestPart left = lit({0, 0, 6, 9}, 1), right = lit({6, 0, 12, 9}, 2);
+  left.channels =
+      join({left.channels, flat_layer("V.Combined Variance", "RGB", 3), flat_layer("V.Sample Count", "X", 4)});
+  for (const auto& parts : {std::vector{left, right}, std::vector{right, left}}) {
+    const MergeResult result = merge(write_all(folder, parts), folder / "out.exr");
+    EXPECT_THAT(result.notes,
+                ::testing::Contains(HasSubstr("V.Combined Variance is left out: not every render has it")));
+    for (const std::string& name : channel_names(folder / "out.exr")) {
+      EXPECT_THAT(name, Not(HasSubstr("Variance")));
+      EXPECT_THAT(name, Not(HasSubstr("Sample Count")));
+    }
+    EXPECT_EQ(read(folder / "out.exr", "V.Combined.R").at(6, 4, 0), 2);
+  }
+}
+
+/// Nothing is said of halves that are not written.
+TEST(Regions, UnevenHalvesAreNotNotedWhereNoneAreWritten) {
+  const TemporaryFolder folder;
+  std::vector<TestPart> parts{lit({0, 0, 6, 9}, 1), lit({6, 0, 12, 9}, 2)};
+  for (TestPart& part : parts) part.channels = join({part.channels, flat_layer("V.Sample Count", "X", 16)});
+  const auto paths = write_all(folder, parts);
+  EXPECT_THAT(merge(paths, folder / "out.exr").notes, ElementsAre(HasSubstr("2 regions are joined")));
+  MergeOptions options;
+  options.half_b = {paths[1]};
+  EXPECT_THAT(merge({paths[0]}, folder / "out.exr", options).notes,
+              ::testing::Contains(HasSubstr("--half-b has no effect")));
 }
 
 /// Each pass is cut to its own box.

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "polyrecon/file_info.h"
+#include "polyrecon/image.h"
+
+namespace polyrecon {
+
+/// Where one render may have samples, and the layer that shows where it has.
+struct ShownPart {
+  Rect window;                        ///< The data windows of all its parts together.
+  const FileInfo* file = nullptr;     ///< Of the beauty.
+  int part = 0;                       ///< Of the beauty.
+  std::vector<std::string> channels;  ///< Of the beauty, with its alpha.
+};
+
+/// The pixels that one render has samples for.
+struct Region {
+  Rect rect;
+  std::size_t group = 0;  ///< Index of the first render that shows the same region of the frame.
+  std::size_t rank = 0;   ///< Place among the renders of its group.
+};
+
+/// Finds which pixels each render has samples for.
+///
+/// A data window may be a region of the frame (beyond it the render has no samples), or what a renderer left of a
+/// picture when it cut black margins away (beyond it the render saw black, which counts). A render can also keep the
+/// window of the frame and be black outside its region; its box of pixels that are not black then takes the place of
+/// its window. Renders whose boxes have at least half of the smaller one in common form a group, over whose union each
+/// of them has samples, but not beyond a side of its box at which the picture goes on: where the other renders of the
+/// group are not black in half of the pixels, or in 16 of each on average.
+std::vector<Region> find_regions(const std::vector<ShownPart>& renders);
+
+/// The share of the pixels covered by any rectangle that one alone covers.
+double share_of_single_cover(const std::vector<Rect>& rects);
+
+}  // namespace polyrecon
