@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
+#include <vector>
 
 #include "io/channel_names.h"
 #include "io/renderers/known_names.h"
@@ -44,6 +46,37 @@ std::size_t bring_into_range(BeyondRange beyond, Sample* samples, std::size_t co
 
 template std::size_t bring_into_range(BeyondRange, float*, std::size_t);
 template std::size_t bring_into_range(BeyondRange, double*, std::size_t);
+
+std::size_t drop_lone_overflows(Real* plane, int width, int height) {
+  const auto overflows = [&](int x, int y) {
+    return x >= 0 && x < width && y >= 0 && y < height &&
+           plane[static_cast<std::ptrdiff_t>(y) * width + x] == std::numeric_limits<Real>::infinity();
+  };
+  const auto neighbours = [&](int x, int y) {
+    std::vector<std::pair<int, int>> found;
+    for (int v = y - 1; v <= y + 1; ++v)
+      for (int u = x - 1; u <= x + 1; ++u)
+        if ((u != x || v != y) && overflows(u, v)) found.emplace_back(u, v);
+    return found;
+  };
+  std::vector<std::ptrdiff_t> lone;
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      if (!overflows(x, y)) continue;
+      const auto near = neighbours(x, y);
+      if (near.empty() || (near.size() == 1 && neighbours(near[0].first, near[0].second).size() == 1))
+        lone.push_back(static_cast<std::ptrdiff_t>(y) * width + x);
+    }
+  for (const std::ptrdiff_t place : lone) plane[place] = std::numeric_limits<Real>::quiet_NaN();
+  return lone.size();
+}
+
+std::string lone_overflow_note(const std::string& layer, std::size_t samples) {
+  return fmt::format(
+      "{}: {} half-float samples of +Inf stand alone and are fireflies of unknown value; their pixels count as missing "
+      "and are repaired; save as 32-bit float to keep them",
+      layer, samples);
+}
 
 std::string overflow_note(const std::string& layer, std::size_t samples) {
   return fmt::format(

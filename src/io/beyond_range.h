@@ -25,6 +25,14 @@ BeyondRange beyond_range(const PartInfo& part, const Layer& layer, Role role, co
 template <typename Sample>
 std::size_t bring_into_range(BeyondRange beyond, Sample* samples, std::size_t count);
 
+/// Makes single pixels and pairs of +Inf NaN: three and more that touch are lamps, of which the largest half is a fair
+/// value, but the value of a firefly is unknown, and its energy would be spread over the picture. Returns their number.
+/// To be called before bring_into_range where that makes +Inf the largest half.
+std::size_t drop_lone_overflows(Real* plane, int width, int height);
+
+/// The note on a layer in which so many half samples were dropped.
+std::string lone_overflow_note(const std::string& layer, std::size_t samples);
+
 /// The note on a layer in which so many half samples are +Inf.
 std::string overflow_note(const std::string& layer, std::size_t samples);
 

@@ -6,9 +6,13 @@
 #include <array>
 #include <cctype>
 #include <map>
+#include <regex>
 #include <set>
 #include <string>
 #include <utility>
+
+#include "io/renderers/known_names.h"
+#include "polyrecon/roles.h"
 
 namespace polyrecon {
 namespace {
@@ -19,7 +23,7 @@ constexpr std::array<Letters, 4> color_letters{
     {{"R", "G", "B", "A"}, {"r", "g", "b", "a"}, {"red", "green", "blue", "alpha"}, {"Red", "Green", "Blue", "Alpha"}}};
 constexpr std::array<Letters, 2> vector_letters{{{"X", "Y", "Z", "A"}, {"x", "y", "z", "a"}}};
 constexpr std::array<std::string_view, 2> eyes{"left", "right"};  // OpenEXR's names of the views of a stereo render
-constexpr std::string_view separators = "._ -";
+constexpr std::string_view separators = "._ -:/";
 
 bool ends_with(std::string_view text, std::string_view end) {
   return text.size() >= end.size() && text.substr(text.size() - end.size()) == end;
@@ -64,6 +68,12 @@ std::string without_view(const std::string& text, const std::string& view) {
   if (text.compare(rest, view.size(), view) == 0 && is_separator(text[rest - 1])) return text.substr(0, rest - 1);
   if (text.compare(0, view.size(), view) == 0 && is_separator(text[view.size()])) return text.substr(view.size() + 1);
   return text;
+}
+
+/// Whether the name of a part only counts parts, as OpenImageIO's "subimage03" does.
+bool only_counts(const std::string& name) {
+  static const std::regex counting("(subimage|part)[0-9]+");
+  return std::regex_match(name, counting);
 }
 
 /// Takes the view out of a name of words with dots between them: it is the last word (OpenEXR) or the first (Nuke).
@@ -123,6 +133,10 @@ class PartChannels {
       title_ = rest.empty() ? bare_pass : rest;
     }
     find_bare();
+    const bool has_prefixes = std::any_of(part.channels.begin(), part.channels.end(), [](const ChannelInfo& channel) {
+      return channel.name.find('.') != std::string::npos;
+    });
+    title_is_layer_ = !title_.empty() && !has_bare_color() && !has_prefixes && !only_counts(title_);
   }
 
   const PartViews& views() const { return views_; }
@@ -135,8 +149,7 @@ class PartChannels {
     if (dot != std::string::npos) return {channel.substr(0, dot), channel.substr(dot + 1)};
     if (bare_.count(channel) > 0) return {title_.empty() ? bare_pass_ : title_, channel};
     if (auto glued = split_glued(channel); !glued.first.empty()) return glued;
-    const bool of_title = !title_.empty() && !has_bare_color();
-    return {of_title ? title_ : channel, channel};
+    return {title_is_layer_ ? title_ : channel, channel};
   }
 
  private:
@@ -187,6 +200,7 @@ class PartChannels {
   PartViews views_;
   std::set<std::string, std::less<>> names_, bare_;
   std::string title_, bare_pass_;
+  bool title_is_layer_ = false;  ///< Channels that are neither a colour nor have a prefix are those of title().
 };
 
 /// A layer while its channels are collected.
@@ -214,6 +228,47 @@ void order_channels(Group& group) {
   group.layer.channels = std::move(channels);
 }
 
+/// Whether the words are those of a colour and of features, as in "right.R", "right.G", "right.B", "right.Z".
+bool is_color_with_features(const std::vector<std::string>& words) {
+  std::size_t colors = 0;
+  for (const std::string& word : words) {
+    const auto known = classify_pass(word);
+    const bool color = place_of(word) < 3;
+    if (!color && !is_alpha(word) && !(known && info_of(known->role).feature)) return false;
+    colors += color;
+  }
+  return colors == 3 && words.size() > 3;
+}
+
+/// Makes the features among the channels of a colour layers of their own, in the colour's view layer and view.
+void split_features(std::vector<Group>& groups) {
+  std::vector<Group> split;
+  for (Group& group : groups) {
+    if (!is_color_with_features(group.words)) {
+      split.push_back(std::move(group));
+      continue;
+    }
+    Group color{group.layer, {}};
+    color.layer.channels.clear();
+    std::vector<Group> features;
+    for (std::size_t c = 0; c < group.words.size(); ++c) {
+      const std::string &word = group.words[c], &channel = group.layer.channels[c];
+      Group* target = &color;
+      if (place_of(word) >= 3 && !is_alpha(word)) {
+        target = &features.emplace_back(Group{group.layer, {}});
+        target->layer.name = channel;
+        target->layer.pass = word;
+        target->layer.channels.clear();
+      }
+      target->layer.channels.push_back(channel);
+      target->words.push_back(word);
+    }
+    split.push_back(std::move(color));
+    split.insert(split.end(), features.begin(), features.end());
+  }
+  groups = std::move(split);
+}
+
 Layer named_layer(const PartChannels& part, const std::string& name, int index) {
   Layer layer;
   layer.name = name;
@@ -237,6 +292,7 @@ std::vector<Layer> layers_of(const PartInfo& part, const PartChannels& channels,
     found->layer.channels.push_back(channel.name);
     found->words.push_back(std::move(word));
   }
+  split_features(groups);
   std::vector<Layer> layers;
   for (Group& group : groups) {
     order_channels(group);

@@ -56,15 +56,53 @@ int add_file(FrameSource& source, const std::string& path, Role role, const Read
 }
 
 /// Names a layer of another file after the pass that it holds.
-void rename_layer(Layer& layer, const std::string& pass) {
+void rename_layer(Layer& layer, const std::string& pass, const LayerView& place = {}) {
   layer.name = layer.pass = pass;
-  layer.view_layer.clear();
+  layer.view_layer = place.view_layer;
+  if (!place.view.empty()) layer.view = place.view;
+}
+
+bool has_mean(const FrameSource& source, Role role) {
+  return std::any_of(source.layers.begin(), source.layers.end(),
+                     [&](const Layer& l) { return l.role == role && l.companion == Companion::Mean; });
 }
 
 /// Whether the file holds one pass without a name in the file.
 bool is_one_bare_image(const FrameSource& source) {
   return source.layers.size() == 1 && source.layers.front().view_layer.empty() &&
          (is_bare_name(source.layers.front().pass) || source.layers.front().channels.size() == 1);
+}
+
+/// Whether files next to the input can hold passes that a file of several layers lacks: it has one picture, and not
+/// every feature that renderers commonly write.
+bool may_lack_passes(const FrameSource& source) {
+  const Layer* beauty = picture_layer(source.layers);
+  const auto elsewhere = [&](const Layer& l) {
+    return l.role == Role::Beauty && l.companion == Companion::Mean && !(place_of(l) == place_of(*beauty));
+  };
+  return beauty && std::none_of(source.layers.begin(), source.layers.end(), elsewhere) &&
+         !(has_mean(source, Role::Normal) && has_mean(source, Role::Albedo) && has_mean(source, Role::Depth));
+}
+
+/// Whether a file of several layers lacks the pass.
+bool lacks(const FrameSource& source, const std::string& pass) {
+  if (is_denoised_name(pass)) return !has_mean(source, Role::Prior);
+  if (const auto known = classify_pass(pass)) return known->role != Role::Beauty && !has_mean(source, known->role);
+  return std::none_of(source.layers.begin(), source.layers.end(),
+                      [](const Layer& l) { return l.role == Role::Beauty && l.companion != Companion::Mean; });
+}
+
+/// Whether this program has written the file as a result.
+bool is_result(const std::string& path, const ReadLimits& limits) {
+  return find_attribute(describe_file(path, limits).parts.front(), "polyrecon/settings") != nullptr;
+}
+
+/// The name of a sibling's layer. The beauty of a file of several layers keeps the name that it has there, so that its
+/// companions are called after it.
+std::string layer_name(const std::string& sibling, const std::string& in_file_name, const Layer& beauty) {
+  const std::size_t begin = in_file_name.size();
+  if (in_file_name.empty() || sibling.size() <= begin || sibling.compare(0, begin, in_file_name) != 0) return sibling;
+  return beauty.pass + sibling.substr(begin);
 }
 
 constexpr int nowhere = -1, elsewhere = -2;  // results of find_layer
@@ -207,20 +245,24 @@ void apply_map(LayerChoice& choice, const ReadOptions& options) {
 /// The mean for a role: a layer that the user named, else one of the chosen view layer, else one of a view layer
 /// without a beauty (nested layers); among these the one of lowest rank, then the first in the file. Layers without a
 /// view belong to every view where no beauty is without one. Layers of parts that cannot be read are skipped.
-int find_mean(const FrameSource& source, Role role, bool readable = true) {
+int find_mean(const FrameSource& source, const LayerView& place, Role role, bool readable = true) {
   int best = -1;
   const auto key = [&](const Layer& l) {
-    return std::make_tuple(l.rank != rank_by_hand, l.view != source.view, l.view_layer != source.view_layer, l.rank);
+    return std::make_tuple(l.rank != rank_by_hand, l.view != place.view, l.view_layer != place.view_layer, l.rank);
   };
   for (std::size_t i = 0; i < source.layers.size(); ++i) {
     const Layer& layer = source.layers[i];
     if (layer.role != role || layer.companion != Companion::Mean) continue;
-    if (layer.view != source.view && (!layer.view.empty() || has_beauty(source, &Layer::view, ""))) continue;
-    if (layer.view_layer != source.view_layer && has_beauty(source, &Layer::view_layer, layer.view_layer)) continue;
+    if (layer.view != place.view && (!layer.view.empty() || has_beauty(source, &Layer::view, ""))) continue;
+    if (layer.view_layer != place.view_layer && has_beauty(source, &Layer::view_layer, layer.view_layer)) continue;
     if (part_of(source, layer).readable() != readable) continue;
     if (best < 0 || key(layer) < key(source.layers[static_cast<std::size_t>(best)])) best = static_cast<int>(i);
   }
   return best;
+}
+
+int find_mean(const FrameSource& source, Role role, bool readable = true) {
+  return find_mean(source, place_of(source), role, readable);
 }
 
 /// The companion of a mean that is wanted(companion): one that the user named, else the first in the file; -1 without
@@ -290,6 +332,17 @@ void note_misshapen(LayerChoice& choice, const RoleInfo& info) {
   }
 }
 
+/// Notes layers that seem to be the feature by the words of their names, which no renderer is known to use.
+void note_seeming(LayerChoice& choice, const RoleInfo& info) {
+  const FrameSource& source = choice.source;
+  for (const Layer& layer : source.layers)
+    if (layer.companion == Companion::Mean && !is_of_another_picture(source, place_of(layer)) &&
+        is_shaped(info.role, layer) && feature_in_words(layer.pass) == info.role)
+      choice.notes.push_back(fmt::format(
+          "{} is not used: no known renderer gives this name to a pass; if it is the {}, --map {}={} uses it",
+          layer.name, info.name, info.name, layer.name));
+}
+
 /// Drops the layers of a pass that cannot be laid over the beauty.
 void drop_misfits(LayerChoice& choice, PassChoice& pass) {
   const FrameSource& source = choice.source;
@@ -355,6 +408,36 @@ void note_pictures(LayerChoice& choice, const ReadOptions& options) {
                   pictures.size(), fmt::join(names, "; ")));
 }
 
+std::vector<Role> features_of(const FrameSource& source, const LayerView& place) {
+  std::vector<Role> roles;
+  for (const RoleInfo& info : role_table())
+    if (info.feature && find_mean(source, place, info.role) >= 0) roles.push_back(info.role);
+  return roles;
+}
+
+/// Notes the pictures without features that another picture of the file has, before any of them was chosen.
+void note_uneven_pictures(LayerChoice& choice, const ReadOptions& options) {
+  const auto& pictures = choice.source.pictures;
+  if (pictures.size() < 2 || options.picture) return;
+  std::vector<std::vector<Role>> features;
+  features.reserve(pictures.size());
+  for (const LayerView& place : pictures) features.push_back(features_of(choice.source, place));
+  const auto most =
+      static_cast<std::size_t>(std::max_element(features.begin(), features.end(),
+                                                [](const auto& a, const auto& b) { return a.size() < b.size(); }) -
+                               features.begin());
+  for (std::size_t p = 0; p < pictures.size(); ++p) {
+    std::vector<const char*> lacking;
+    for (const Role role : features[most])
+      if (std::find(features[p].begin(), features[p].end(), role) == features[p].end())
+        lacking.push_back(name_of(role));
+    if (!lacking.empty())
+      choice.notes.push_back(fmt::format("{} is denoised without {}, which {} has; {} and --map {}=LAYER name another",
+                                         name_of(pictures[p]), fmt::join(lacking, ", "), name_of(pictures[most]),
+                                         pictures[p].view.empty() ? "--view-layer" : "--view", lacking.front()));
+  }
+}
+
 /// Notes the beauties that stay as they are: a picture has one.
 void note_other_beauties(LayerChoice& choice, const ReadOptions& options) {
   const FrameSource& source = choice.source;
@@ -372,14 +455,17 @@ void note_other_beauties(LayerChoice& choice, const ReadOptions& options) {
   }
 }
 
-/// The beauty's alpha channel, unless the user named another layer or the beauty has none.
+/// The beauty's alpha channel, unless the user named another layer or the beauty has none. Then it is an alpha layer,
+/// else the alpha of the beauty that the renderer's denoiser left.
 void choose_alpha(LayerChoice& choice, const Layer& beauty) {
   FrameSource& source = choice.source;
   if (!beauty.alpha.empty()) source.alpha_layer = beauty.name;
   for (const PassChoice& pass : choice.passes) {
-    if (pass.role != Role::Alpha) continue;
-    const Layer& alpha = source.layers[static_cast<std::size_t>(pass.mean)];
-    if (beauty.alpha.empty() || alpha.rank == rank_by_hand) source.alpha_layer = alpha.name;
+    const Layer& layer = source.layers[static_cast<std::size_t>(pass.mean)];
+    if (pass.role == Role::Prior && layer.file == 0 && beauty.alpha.empty() && !layer.alpha.empty())
+      source.alpha_layer = layer.name;
+    if (pass.role == Role::Alpha && (beauty.alpha.empty() || layer.rank == rank_by_hand))
+      source.alpha_layer = layer.name;
   }
 }
 
@@ -408,15 +494,23 @@ FrameSource open_source(const std::string& path, const ReadLimits& limits, std::
   source.path = path;
   source.files.push_back(describe_file(path, limits));
   source.layers = find_layers(source.files.front());
-  if (!is_one_bare_image(source)) return source;
-  const auto siblings = find_siblings(path);
+  const bool bare = is_one_bare_image(source);
+  if (!bare && !may_lack_passes(source)) return source;
+  std::vector<SiblingFile> siblings = find_siblings(path);
+  siblings.erase(std::remove_if(siblings.begin(), siblings.end(),
+                                [&](const SiblingFile& sibling) {
+                                  return (!bare && !lacks(source, sibling.pass)) ||
+                                         (is_denoised_name(sibling.pass) && is_result(sibling.path, limits));
+                                }),
+                 siblings.end());
   if (siblings.empty()) return source;
-  if (const std::string pass = pass_in_file_name(path); !pass.empty())
-    source.layers.front().name = source.layers.front().pass = pass;
+  const std::string pass = pass_in_file_name(path);
+  if (bare && !pass.empty()) source.layers.front().name = source.layers.front().pass = pass;
+  const Layer beauty = bare ? source.layers.front() : *picture_layer(source.layers);
   std::vector<std::string> names;
   for (const SiblingFile& sibling : siblings) {
-    const int added = add_file(source, sibling.path, Role::Other, limits);
-    rename_layer(source.layers[static_cast<std::size_t>(added)], sibling.pass);
+    const auto added = static_cast<std::size_t>(add_file(source, sibling.path, Role::Other, limits));
+    rename_layer(source.layers[added], layer_name(sibling.pass, pass, beauty), place_of(beauty));
     names.push_back(std::filesystem::path(sibling.path).filename().string());
   }
   classify_layers(source.files, source.layers);
@@ -431,6 +525,7 @@ LayerChoice choose_layers(const std::string& path, const ReadOptions& options) {
   adopt_beauty(choice, options);
   choose_picture(source, options);
   note_pictures(choice, options);
+  note_uneven_pictures(choice, options);
   apply_map(choice, options);
   const int beauty = find_beauty(source, options);
   choice.passes.push_back(with_companions(source, Role::Beauty, beauty));
@@ -441,6 +536,7 @@ LayerChoice choose_layers(const std::string& path, const ReadOptions& options) {
     const int mean = find_mean(source, info.role);
     if (mean < 0) {
       note_misshapen(choice, info);
+      note_seeming(choice, info);
       continue;
     }
     PassChoice pass = with_companions(source, info.role, mean);

@@ -197,8 +197,9 @@ class FrameBuilder {
     };
     for (const PassChoice& p : passes_)
       wanted_.push_back({p, image(p.mean), image(p.variance), image(p.half_a), image(p.half_b)});
-    const Layer& beauty = layer(passes_.front().mean);
-    if (result_.source.alpha_layer == beauty.name) alpha_ = reader_.want(beauty, {beauty.alpha});
+    for (const PassChoice& p : passes_)
+      if ((p.role == Role::Beauty || p.role == Role::Prior) && layer(p.mean).name == result_.source.alpha_layer)
+        alpha_ = reader_.want(layer(p.mean), {layer(p.mean).alpha});
   }
 
   FrameShape shape() const {
@@ -224,11 +225,15 @@ class FrameBuilder {
   }
 
   void bring_channels_into_range(Image& image, Role role, const Layer& from) {
-    std::size_t overflows = 0;
-    for (int c = 0; c < image.channels(); ++c)
-      overflows +=
-          bring_into_range(beyond_range(reader_.part_of(from), from, role, from.channels[static_cast<std::size_t>(c)]),
-                           image.plane(c), image.pixels());
+    std::size_t lone = 0, overflows = 0;
+    for (int c = 0; c < image.channels(); ++c) {
+      const BeyondRange beyond =
+          beyond_range(reader_.part_of(from), from, role, from.channels[static_cast<std::size_t>(c)]);
+      if (beyond == BeyondRange::LargestHalf)
+        lone += drop_lone_overflows(image.plane(c), image.width(), image.height());
+      overflows += bring_into_range(beyond, image.plane(c), image.pixels());
+    }
+    if (lone > 0) result_.notes.push_back(lone_overflow_note(from.name, lone));
     if (overflows > 0) result_.notes.push_back(overflow_note(from.name, overflows));
   }
 

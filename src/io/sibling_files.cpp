@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <regex>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
@@ -14,25 +15,42 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Whether the word names a pass that has a role. Words of two letters are too often something else.
-bool is_pass(const std::string& word) {
+constexpr std::size_t short_word = 2;  // names of so few letters are too often something else
+constexpr std::string_view separators = "._- ";
+
+bool is_separator(char c) { return separators.find(c) != std::string_view::npos; }
+
+/// Whether the word names a pass that has a role. Short ones are features or beauties that stand apart from the rest of
+/// the name, in the spelling of a renderer: "shot_N". before: what stands in front of the word.
+bool is_pass(const std::string& before, const std::string& word) {
   const auto known = classify_pass(word);
-  return word.size() > 2 && known && known->role != Role::Other;
+  if (word.empty() || is_separator(word.front()) || !known || known->role == Role::Other) return false;
+  if (word.size() > short_word) return true;
+  const bool apart = before.empty() || is_separator(before.back());
+  return apart && is_written_so(word) && (info_of(known->role).feature || known->role == Role::Beauty);
 }
 
-/// Whether the word is a pass or a pass with the ending of a companion: "AlbedoVariance", "ColorA".
-bool is_pass_or_companion(const std::string& word) {
-  static const std::vector<std::string> endings = pass_file_endings();
-  return std::any_of(endings.begin(), endings.end(), [&](const std::string& ending) {
-    return word.size() > ending.size() && word.compare(word.size() - ending.size(), ending.size(), ending) == 0 &&
-           is_pass(word.substr(0, word.size() - ending.size()));
-  });
+/// The text without the ending; empty where it does not end so.
+std::string without(const std::string& text, const std::string& ending) {
+  if (text.size() <= ending.size() || text.compare(text.size() - ending.size(), ending.size(), ending) != 0) return {};
+  return text.substr(0, text.size() - ending.size());
+}
+
+/// Whether the word is a pass with the ending of a companion, or a beauty with that of a denoiser: "AlbedoVariance",
+/// "beauty_denoised".
+bool has_known_ending(const std::string& before, const std::string& word) {
+  const auto ends_in_one = [&](const std::vector<std::string>& endings) {
+    return std::any_of(endings.begin(), endings.end(),
+                       [&](const std::string& ending) { return is_pass(before, without(word, ending)); });
+  };
+  static const std::vector<std::string> companions = companion_endings(), denoised = denoised_endings();
+  return ends_in_one(companions) || ends_in_one(denoised);
 }
 
 /// The longest known pass at the end of the text.
 std::string pass_at_end(const std::string& text) {
   for (std::size_t begin = 0; begin < text.size(); ++begin)
-    if (is_pass(text.substr(begin))) return text.substr(begin);
+    if (is_pass(text.substr(0, begin), text.substr(begin))) return text.substr(begin);
   return {};
 }
 
@@ -62,16 +80,34 @@ std::string between(const std::string& before, const std::string& text, const st
   return text.substr(before.size(), text.size() - ends);
 }
 
-/// The feature that the word adds to the name of a beauty without a pass, "_albedo" or ".Normal"; else empty.
-std::string added_feature(const std::string& word) {
-  if (word.find_first_of("._-") != 0) return {};
-  const std::string pass = word.substr(1);
-  return is_pass(pass) && info_of(classify_pass(pass)->role).feature ? pass : std::string();
+/// The feature, or the companion of the beauty, that the word adds to a name: "_albedo", ".Z", "_variance"; else empty.
+std::string added_pass(const std::string& word) {
+  if (word.empty() || !is_separator(word.front())) return {};
+  const std::string before = word.substr(0, 1), pass = word.substr(1);
+  const bool feature = is_pass(before, pass) && info_of(classify_pass(pass)->role).feature;
+  return feature || is_beauty_companion(pass) ? pass : std::string();
+}
+
+/// The pass of the file `other` of the render whose files have these parts; empty where it is none of them.
+std::string pass_of(const std::string& other, const NameParts& parts) {
+  if (!parts.pass.empty()) {
+    const std::string word = between(parts.before, other, parts.after);
+    if (is_pass(parts.before, word) || has_known_ending(parts.before, word) || is_beauty_companion(word)) return word;
+  }
+  return added_pass(between(parts.before + parts.pass, other, parts.after));
 }
 
 }  // namespace
 
 std::string pass_in_file_name(const std::string& path) { return parts_of(path).pass; }
+
+bool is_denoised_name(const std::string& pass) {
+  static const std::vector<std::string> endings = denoised_endings();
+  const auto known = classify_pass(pass);
+  return (known && known->role == Role::Prior) || std::any_of(endings.begin(), endings.end(), [&](const auto& ending) {
+           return !without(pass, ending).empty();
+         });
+}
 
 std::vector<SiblingFile> find_siblings(const std::string& path) {
   const fs::path self(path);
@@ -82,13 +118,8 @@ std::vector<SiblingFile> find_siblings(const std::string& path) {
   for (fs::directory_iterator entry(folder, failure), end; !failure && entry != end; entry.increment(failure)) {
     const std::string other = entry->path().stem().string();
     if (entry->path().extension() != self.extension() || other == self.stem().string()) continue;
-    const std::string word = between(parts.before, other, parts.after);
-    if (parts.pass.empty()) {
-      if (std::string feature = added_feature(word); !feature.empty())
-        siblings.push_back({entry->path().string(), std::move(feature)});
-    } else if (is_pass_or_companion(word)) {
-      siblings.push_back({entry->path().string(), word});
-    }
+    if (std::string pass = pass_of(other, parts); !pass.empty())
+      siblings.push_back({entry->path().string(), std::move(pass)});
   }
   std::sort(siblings.begin(), siblings.end(), [](const auto& a, const auto& b) { return a.path < b.path; });
   return siblings;

@@ -15,12 +15,16 @@ struct SiblingFile {
 };
 
 /// The other passes of a render that has a file for each: files in the folder of path with the same extension, whose
-/// names differ from that of path only in a pass that some renderer is known to write ("Color" | "Albedo", "NormalB").
-/// The numbers of a frame and a version may follow the pass: "shot_beauty.0001" | "shot_albedo.0001". Where the name of
-/// path has no known pass, features that are added to it are found: "shot.0001" | "shot_albedo.0001".
+/// names differ from that of path in one of two ways. The numbers of a frame and a version may follow.
+/// - Another pass that some renderer is known to write, or a companion, stands in place of the pass in the name of path:
+///   "Color" | "Albedo", "NormalB"; "shot_beauty.0001" | "shot_N.0001", "shot_beauty_variance.0001".
+/// - A feature, or a companion of the beauty, is added to the name: "shot.0001" | "shot_albedo.0001".
 std::vector<SiblingFile> find_siblings(const std::string& path);
 
 /// The pass in the file's name ("Color"), before its numbers if there are any; empty where there is none.
 std::string pass_in_file_name(const std::string& path);
+
+/// Whether a file that is named so holds the beauty after a denoiser: "beauty_denoised", "Denoised".
+bool is_denoised_name(const std::string& pass);
 
 }  // namespace polyrecon

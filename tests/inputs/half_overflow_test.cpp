@@ -62,6 +62,40 @@ TEST(HalfOverflow, RadianceThatAHalfCannotHoldIsTheLargestHalf) {
   EXPECT_THAT(read.notes, ElementsAre(HasSubstr("RGBA: 1263 half-float samples of +Inf count as 65504")));
 }
 
+/// The noisy wall, with +Inf where it is so wanted.
+template <typename IsInfinite>
+TestPart wall(const IsInfinite& is_infinite) {
+  TestPart part = lamp(Imf::HALF, 1, 0.3);
+  for (TestChannel& channel : part.channels)
+    channel.samples = [=, stored = channel.samples](int x, int y) { return is_infinite(x, y) ? inf : stored(x, y); };
+  return part;
+}
+
+TEST(HalfOverflow, LonePixelsAndPairsAreFilledFromTheirSurroundings) {
+  const TemporaryFolder folder;
+  const auto fireflies = [](int x, int y) {
+    return (x == 5 && y == 7) || (x + y == 60 && x > 39 && x < 42) || x + y == 0;
+  };
+  ReadResult read = read_frame(write_exr(folder / "fireflies.exr", {wall(fireflies)}));
+  EXPECT_THAT(read.notes, ElementsAre(HasSubstr("RGBA: 12 half-float samples of +Inf stand alone")));
+  const Result result = reconstruct(read.frame, params_for(Quality::Draft), silent_progress());
+  EXPECT_EQ(result.report.repaired_pixels, 4U);
+  for (int c = 0; c < 3; ++c)
+    for (int y = 0; y < height; ++y)
+      for (int x = 0; x < width; ++x) {
+        EXPECT_GT(result.beauty.at(x, y, c), 0.24) << x << " " << y;
+        EXPECT_LT(result.beauty.at(x, y, c), 0.36) << x << " " << y;
+      }
+}
+
+TEST(HalfOverflow, ALineIsALamp) {
+  const TemporaryFolder folder;
+  const ReadResult read =
+      read_frame(write_exr(folder / "line.exr", {wall([](int x, int y) { return y == 3 && x > 9 && x < 13; })}));
+  for (const int x : {10, 11, 12}) EXPECT_EQ(read.frame.beauty.mean.at(x, 3, 0), 65504);
+  EXPECT_THAT(read.notes, ElementsAre(HasSubstr("RGBA: 9 half-float samples of +Inf count as 65504")));
+}
+
 TEST(HalfOverflow, OneChannelAlone) {
   const TemporaryFolder folder;
   TestPart part = lamp(Imf::HALF, 1, 60000);

@@ -155,6 +155,49 @@ const std::vector<Naming>& namings() {
        {"denoise_albedo.R", "denoise_albedo.G", "denoise_albedo.B"},
        {"N_noice.X", "N_noice.Y", "N_noice.Z"},
        "Z_noice.Z"},
+      {"V-Ray",
+       {"R", "G", "B"},
+       "A",
+       {"VRayDiffuseFilter.R", "VRayDiffuseFilter.G", "VRayDiffuseFilter.B"},
+       {"VRayBumpNormals.R", "VRayBumpNormals.G", "VRayBumpNormals.B"},
+       "VRayZDepth.R"},
+      {"V-Ray without bump",
+       {"RGB color.R", "RGB color.G", "RGB color.B"},
+       "RGB color.A",
+       {"VRayDiffuseFilter.R", "VRayDiffuseFilter.G", "VRayDiffuseFilter.B"},
+       {"VRayNormals.X", "VRayNormals.Y", "VRayNormals.Z"},
+       "VRayZDepth.Z"},
+      {"Octane's names in brackets",
+       {"R", "G", "B"},
+       "A",
+       {"Diffuse filter (info).R", "Diffuse filter (info).G", "Diffuse filter (info).B"},
+       {"Normal (smooth).R", "Normal (smooth).G", "Normal (smooth).B"},
+       "Z-depth.R"},
+      {"Corona",
+       {"R", "G", "B"},
+       "A",
+       {"CShading_Albedo.R", "CShading_Albedo.G", "CShading_Albedo.B"},
+       {"CGeometry_NormalsShading.R", "CGeometry_NormalsShading.G", "CGeometry_NormalsShading.B"},
+       "CGeometry_ZDepth.R"},
+      {"Karma, ray hits",
+       {"C.R", "C.G", "C.B"},
+       "C.A",
+       {"albedo.R", "albedo.G", "albedo.B"},
+       {"hitN.X", "hitN.Y", "hitN.Z"},
+       "hitPz"},
+      {"colons", {"R", "G", "B"}, "A", {"albedo:R", "albedo:G", "albedo:B"}, {"N:X", "N:Y", "N:Z"}, "Z"},
+      {"Blender's File Output node",
+       {"Image.R", "Image.G", "Image.B"},
+       "Image.A",
+       {"Denoising Albedo.R", "Denoising Albedo.G", "Denoising Albedo.B"},
+       {"Denoising Normal.X", "Denoising Normal.Y", "Denoising Normal.Z"},
+       "Denoising Depth.V"},
+      {"depth in the layer of the beauty",
+       {"beauty.R", "beauty.G", "beauty.B"},
+       "beauty.A",
+       {"albedo.R", "albedo.G", "albedo.B"},
+       {"N.X", "N.Y", "N.Z"},
+       "beauty.Z"},
       {"a colour in CIE XYZ",
        {"X", "Y", "Z"},
        "A",
@@ -303,6 +346,48 @@ TEST(InputNames, PartsThatAreNotNamedAfterTheBeauty) {
     expect_frame(read.frame, {beauty, {}, {}, {}, {}, {}});
     EXPECT_EQ(read.frame.beauty.name, beauty);
   }
+}
+
+TEST(InputNames, PartsWhoseNamesOnlyCountHaveTheNamesOfTheirChannels) {
+  const TemporaryFolder folder;
+  TestPart depth;
+  depth.name = "subimage03";
+  add(depth.channels, "Z", depth_seed);
+  TestPart albedo = part_of("subimage01", {"albedo.R", "albedo.G", "albedo.B"}, albedo_seed);
+  TestPart normal = part_of("subimage02", {"N.X", "N.Y", "N.Z"}, normal_seed);
+  const ReadResult read = read_frame(write_parts(folder / "a.exr", "subimage00", {albedo, normal, depth}));
+  expect_frame(read.frame, {"subimage00", {}, {}, {}, {}, {}});
+  EXPECT_THAT(read.notes, IsEmpty());
+}
+
+TEST(InputNames, BareChannelsNextToPrefixedOnesDoNotTakeTheNameOfTheirPart) {
+  const TemporaryFolder folder;
+  TestPart beauty = part_of("beauty", {"Ci.r", "Ci.g", "Ci.b"}, beauty_seed);
+  add(beauty.channels, "a", alpha_seed);
+  TestPart depth;
+  depth.name = "z";
+  add(depth.channels, "z", depth_seed);
+  const ReadResult read = read_frame(
+      write_exr(folder / "a.exr", {beauty, part_of("albedo", {"albedo.r", "albedo.g", "albedo.b"}, albedo_seed),
+                                   part_of("normal", {"normal.x", "normal.y", "normal.z"}, normal_seed), depth}));
+  expect_frame(read.frame, {"RenderMan", {}, {}, {}, {}, {}});
+  EXPECT_THAT(read.notes, IsEmpty());
+}
+
+TEST(InputNames, AnUnknownNameThatSaysFeatureIsNotedWhereTheFeatureIsMissing) {
+  const TemporaryFolder folder;
+  TestPart part;
+  part.channels = testing::join({testing::layer("", "RGB"), testing::layer("rndrAlbedoPass", "RGB"),
+                                 testing::layer("N", "XYZ"), testing::layer("myNormals", "XYZ")});
+  const std::string path = write_exr(folder / "a.exr", {part});
+  const ReadResult read = read_frame(path);
+  ASSERT_EQ(read.notes.size(), 1U);
+  EXPECT_THAT(read.notes[0], HasSubstr("rndrAlbedoPass is not used"));
+  EXPECT_THAT(read.notes[0], HasSubstr("--map albedo=rndrAlbedoPass"));
+  EXPECT_EQ(inspect(path).notes, read.notes);
+  ReadOptions options;
+  options.map = {parse_mapping("albedo=rndrAlbedoPass")};
+  EXPECT_THAT(read_frame(path, options).notes, IsEmpty());
 }
 
 TEST(InputNames, APartWithABareColorKeepsItsOtherBareChannels) {

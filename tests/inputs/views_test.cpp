@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <tuple>
+
 #include "io/exr_fixture.h"
 #include "polyrecon/read_frame.h"
 #include "polyrecon/write_result.h"
@@ -226,6 +228,41 @@ TEST(InputViews, SeveralPicturesAndASecondBeautyAreNoted) {
               ElementsAre(HasSubstr("view layer Back.Ground; view layer Fore; --view-layer and --view choose")));
   const std::string two = write_exr(folder / "b.exr", {part_of({{"", left_beauty}, {"beauty", right_beauty}})});
   EXPECT_THAT(read_frame_header(two).notes, ElementsAre(HasSubstr("beauty stays as it is: the beauty is RGBA")));
+}
+
+TEST(InputViews, AnEyeWithoutFeaturesNextToOneWithThemIsNoted) {
+  const TemporaryFolder folder;
+  TestPart part = part_of({{"left", left_beauty}, {"left.albedo", left_albedo}, {"right", right_beauty}});
+  set_views(part);
+  const std::string path = write_exr(folder / "a.exr", {part});
+  ReadOptions options;
+  const auto uneven = ::testing::AllOf(HasSubstr("view right is denoised without albedo, which view left has"),
+                                       HasSubstr("--view and --map albedo=LAYER"));
+  EXPECT_THAT(read_frame_header(path).notes, ::testing::Contains(uneven));
+  options.picture = LayerView{{}, "right"};
+  EXPECT_THAT(read_frame_header(path, options).notes, ::testing::IsEmpty());
+}
+
+/// "right.Z" belongs to no layer of four channels.
+TEST(InputViews, ADepthNextToTheColorOfEachEye) {
+  const TemporaryFolder folder;
+  for (const std::string left : {"", "left"}) {
+    TestPart part = part_of({{left, left_beauty}, {"right", right_beauty}});
+    add(part.channels, left, "Z", left_albedo);
+    add(part.channels, "right", "Z", right_albedo);
+    set_views(part);
+    const std::string path = write_exr(folder / "a.exr", {part});
+    for (const auto& [view, beauty, depth] :
+         {std::tuple("left", left_beauty, left_albedo), std::tuple("right", right_beauty, right_albedo)}) {
+      ReadOptions options;
+      options.picture = LayerView{{}, view};
+      const Frame frame = read_frame(path, options).frame;
+      EXPECT_TRUE(holds(frame.beauty.mean, beauty)) << left << view;
+      ASSERT_EQ(frame.features.size(), 1U) << left << view;
+      EXPECT_EQ(frame.features[0].role, Role::Depth);
+      EXPECT_EQ(static_cast<double>(frame.features[0].pass.mean.at(1, 2, 0)), testing::pattern(depth)(1, 2));
+    }
+  }
 }
 
 }  // namespace

@@ -87,7 +87,6 @@ std::string names_table() {
   std::string table = row(head) + "|" + repeated("---|", head.size()) + "\n";
   for (const Renderer& renderer : renderers()) {
     Cells cells{renderer.versions.empty() ? renderer.name : renderer.name + ", " + renderer.versions};
-    if (renderer.pass_files) cells.front() += ", a file for each pass";
     for (const RoleInfo& info : role_table())
       if (info.chosen)
         cells.push_back(fmt::format(
@@ -186,7 +185,9 @@ TEST(Renderers, AttributesAndFileNames) {
   Cells names;
   for (const SamplesAttribute& attribute : samples_attributes("View.L")) names.push_back(attribute.name);
   EXPECT_THAT(names, ElementsAre("polyrecon/View.L/samples", "cycles.View.L.samples", "samplesPerPixel"));
-  EXPECT_THAT(pass_file_endings(), ElementsAre("", "Variance", "A", "B"));
+  EXPECT_THAT(companion_endings(),
+              ElementsAre(" Variance", " A", " B", "_variance", "_var", "_mse", "_even", "_odd", "Variance", "A", "B"));
+  EXPECT_THAT(denoised_endings(), ElementsAre("_denoised", "_denoise", " Denoised"));
 }
 
 TEST(Renderers, ThePictureIsTheDenoisedBeautyOfTheFirstViewLayer) {

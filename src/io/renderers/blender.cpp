@@ -9,6 +9,7 @@ Renderer blender() {
   r.passes = {
       {"Noisy Image", Role::Beauty, 1},
       {"Combined", Role::Beauty, 2},
+      {"Image", Role::Beauty, 3},    // the File Output node's default
       {"Denoised", Role::Prior, 1},  // a name that people give in the compositor
       {"Denoising Albedo", Role::Albedo, 1},
       {"DiffCol", Role::Albedo, 4},

@@ -13,6 +13,7 @@ Renderer karma() {
       {"depth", Role::Depth, 2},       {"Pz", Role::Depth, 3},      {"cameraDepth", Role::Depth, 3},
       {"linearDepth", Role::Depth, 3}, {"Af", Role::Alpha, 2},      {"P", Role::Other, 1},
       {"Of", Role::Other, 1},          {"Ng", Role::Normal, 5},     {"Peye", Role::Other, 1},
+      {"hitN", Role::Normal, 3},       {"hitPz", Role::Depth, 3},   {"hitP", Role::Other, 1},
   };
   return r;
 }

@@ -4,14 +4,24 @@
 #include <cctype>
 #include <limits>
 #include <unordered_map>
+#include <utility>
 
 namespace polyrecon {
 namespace {
 
+constexpr std::string_view ignored_in_names = " _-()";  // "Normal (shading)" is NormalShading
+
+/// What names of features say in words, normalised.
+constexpr std::array words_of_features{
+    std::pair{"normal", Role::Normal},        std::pair{"albedo", Role::Albedo},
+    std::pair{"basecolor", Role::Albedo},     std::pair{"diffusecolor", Role::Albedo},
+    std::pair{"diffusefilter", Role::Albedo}, std::pair{"depth", Role::Depth}};
+
 std::string normalised(std::string_view name) {
   std::string out;
   for (const char c : name)
-    if (c != ' ' && c != '_' && c != '-') out += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    if (ignored_in_names.find(c) == std::string_view::npos)
+      out += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return out;
 }
 
@@ -60,6 +70,14 @@ std::optional<PassClass> classify_letter(const std::string& letter) {
   for (const Renderer& renderer : renderers())
     for (const PassName& known : renderer.letters)
       if (known.name == letter) return PassClass{known.role, known.rank, renderer.name};
+  return std::nullopt;
+}
+
+std::optional<Role> feature_in_words(const std::string& pass) {
+  const std::string name = normalised(pass);
+  if (known_passes().count(name) > 0 || has_data_prefix(pass)) return std::nullopt;
+  for (const auto& [word, role] : words_of_features)
+    if (name.find(word) != std::string::npos) return role;
   return std::nullopt;
 }
 
@@ -143,13 +161,31 @@ std::array<Real, 4> motion_factors(const std::string& pass) {
   return first->motion_factors;
 }
 
-std::vector<std::string> pass_file_endings() {
-  std::vector<std::string> endings{""};
-  for (const Renderer& renderer : renderers()) {
-    if (!renderer.pass_files) continue;
+bool is_written_so(const std::string& pass) {
+  return any_renderer_with([&](const Renderer& r) {
+    return std::any_of(r.passes.begin(), r.passes.end(), [&](const PassName& known) { return known.name == pass; });
+  });
+}
+
+bool is_beauty_companion(const std::string& pass) {
+  return any_renderer_with([&](const Renderer& r) {
+    return std::any_of(r.beauty_companions.begin(), r.beauty_companions.end(),
+                       [&](const BeautyCompanion& known) { return known.name == pass; });
+  });
+}
+
+std::vector<std::string> denoised_endings() {
+  std::vector<std::string> endings;
+  for (const Renderer& renderer : renderers())
+    endings.insert(endings.end(), renderer.denoised_suffixes.begin(), renderer.denoised_suffixes.end());
+  return endings;
+}
+
+std::vector<std::string> companion_endings() {
+  std::vector<std::string> endings;
+  for (const Renderer& renderer : renderers())
     for (const CompanionAffix& affix : renderer.affixes)
       if (affix.place == CompanionAffix::Place::BehindPass) endings.push_back(affix.text);
-  }
   return endings;
 }
 

@@ -24,10 +24,13 @@ std::optional<PassClass> classify_pass(const std::string& pass);
 /// The same for the only channel of a layer, by its letter.
 std::optional<PassClass> classify_letter(const std::string& letter);
 
+/// The feature that a pass seems to be by the words in its name, "my_normals", where no renderer is known to use it.
+std::optional<Role> feature_in_words(const std::string& pass);
+
 /// Whether a renderer that gives its beauty this name has a name for the role. True if no renderer is known to.
 bool can_have(const std::string& beauty, Role role);
 
-/// Whether a and b are one name: they are compared without case, blanks, '_' and '-'.
+/// Whether a and b are one name: they are compared without case, blanks, '_', '-' and brackets.
 bool same_name(std::string_view a, std::string_view b);
 
 /// Whether the name begins as those of passes that hold data.
@@ -65,7 +68,16 @@ std::vector<std::string> attributes_of_central_samples(const std::string& view_l
 /// for one of the first renderer that has motion.
 std::array<Real, 4> motion_factors(const std::string& pass);
 
-/// What the names of files with one pass can have behind the pass: "Variance". The first is empty.
-std::vector<std::string> pass_file_endings();
+/// Whether a renderer writes the name in just this spelling.
+bool is_written_so(const std::string& pass);
+
+/// Whether the name is that of a companion of the beauty: "variance".
+bool is_beauty_companion(const std::string& pass);
+
+/// What stands behind the names of beauties that a denoiser has left: "_denoised".
+std::vector<std::string> denoised_endings();
+
+/// What stands behind the name of a pass in that of a companion: "Variance".
+std::vector<std::string> companion_endings();
 
 }  // namespace polyrecon

@@ -5,6 +5,7 @@ namespace polyrecon {
 Renderer luxcore() {
   Renderer r;
   r.name = "LuxCore";
+  r.versions = "a file for each pass";
   r.passes = {
       {"RGB_IMAGEPIPELINE", Role::Beauty, 2},
       {"RGB_IMAGEPIPELINE_0", Role::Beauty, 2},
@@ -17,7 +18,6 @@ Renderer luxcore() {
       {"DEPTH", Role::Depth, 2},
       {"SAMPLECOUNT", Role::SampleCount, 1},
   };
-  r.pass_files = true;
   r.sample_map = {"luxcore",
                   {"Y"},
                   SampleMapFormat::Values::Importance,

@@ -16,7 +16,7 @@ constexpr int rank_of_made_prior = 9;
 
 /// A pass by the name that a renderer gives it.
 struct PassName {
-  std::string name;  ///< As the renderer writes it; names are compared without case, blanks, '_' and '-'.
+  std::string name;  ///< As the renderer writes it; names are compared without case, blanks, '_', '-' and brackets.
   Role role;
   int rank;  ///< Among layers of one role in one view layer the one of the lowest rank is used.
 };
@@ -87,7 +87,6 @@ struct Renderer {
   /// Factors that turn the channels of the motion pass into Frame::motion.
   std::array<Real, 4> motion_factors{1, 1, 1, 1};
   SampleMapFormat sample_map;
-  bool pass_files = false;  ///< It writes each pass to a file of its own, whose name ends in the pass.
 };
 
 /// All renderers. Where two use one name for different roles or ranks, the first of them decides.

@@ -5,6 +5,7 @@ namespace polyrecon {
 Renderer tungsten() {
   Renderer r;
   r.name = "Tungsten";
+  r.versions = "a file for each pass";
   r.passes = {
       {"color", Role::Beauty, 3}, {"albedo", Role::Albedo, 2},         {"normal", Role::Normal, 3},
       {"depth", Role::Depth, 2},  {"visibility", Role::Visibility, 1},
@@ -14,7 +15,6 @@ Renderer tungsten() {
       {"A", Companion::HalfA},
       {"B", Companion::HalfB},
   };
-  r.pass_files = true;
   return r;
 }
 
