@@ -149,12 +149,9 @@ std::vector<std::string> missing_roles(const Inspection& found) {
   return missing;
 }
 
-double samples_of(const ReadResult& read, const ReadOptions& options) {
-  const Image& counts = read.frame.sample_count;
-  if (counts.empty()) {
-    if (options.samples > 0) return options.samples;
-    return samples_in_metadata(read.source.files.front(), read.source.view_layer).value_or(0);
-  }
+/// Mean number of samples per pixel; 0 if unknown.
+double samples_of(const Image& counts) {
+  if (counts.empty()) return 0;
   double sum = 0;
   for (std::size_t i = 0; i < counts.pixels(); ++i) sum += counts.plane(0)[i];
   return sum / static_cast<double>(counts.pixels());
@@ -176,7 +173,7 @@ Inspection inspect(const std::string& path, const ReadOptions& options) {
   try {
     ReadResult read = read_frame(path, options, observe);
     result.noise_level = noise_level(read.frame.beauty);
-    result.samples = samples_of(read, options);
+    result.samples = samples_of(read.frame.sample_count);
     result.source = std::move(read.source);
     result.notes = std::move(read.notes);
     result.frame = std::move(read.frame);

@@ -253,7 +253,10 @@ class FrameBuilder {
     counts_.everywhere = options_.samples > 0 ? options_.samples : metadata.value_or(0);
     for (WantedPass& pass : wanted_)
       if (pass.choice.role == Role::SampleCount) result_.frame.sample_count = take_counts(pass);
-    if (!result_.frame.sample_count.empty()) counts_.per_pixel = &result_.frame.sample_count;
+    Image& counts = result_.frame.sample_count;
+    if (counts.empty() && counts_.everywhere > 0)
+      counts = Image(window_.width(), window_.height(), 1, static_cast<Real>(counts_.everywhere));
+    if (!counts.empty()) counts_.per_pixel = &counts;
   }
 
   /// The variance of the mean; empty, with a note, where it needs a sample count that is unknown.

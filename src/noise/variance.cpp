@@ -12,14 +12,16 @@
 #include "core/real.h"
 #include "core/rect.h"
 #include "core/repair.h"
+#include "noise/edge_variance.h"
 #include "noise/feature_noise.h"
+#include "noise/lattice.h"
 #include "noise/spike_variance.h"
 #include "regression/least_squares.h"
 
 namespace polyrecon {
 namespace {
 
-constexpr int fit_radius = 3, fit_stride = 2, median_radius = 2;
+constexpr int fit_radius = 3;
 constexpr double texture_correlation = 0.5;    // a in variance.h
 constexpr double half_difference_sigma = 1.5;  // pixels; the variance from the halves of one pixel has one degree of
                                                // freedom, so it is averaged by a Gaussian
@@ -187,20 +189,6 @@ Real beyond_rounding(Real variance, Real value) {
   return variance > rounding * rounding ? variance : 0;
 }
 
-/// Median of the estimates of the fits around pixel (x, y), up to median_radius fits away.
-Real median_of_fits(const Image& fits, int x, int y, int c) {
-  const int fx = x / fit_stride, fy = y / fit_stride;
-  const Rect area = intersect(grow({fx, fy, fx + 1, fy + 1}, median_radius), fits.bounds());
-  std::vector<Real> estimates;
-  for (int v = area.y0; v < area.y1; ++v)
-    for (int u = area.x0; u < area.x1; ++u)
-      if (fits.at(u, v, c) >= 0) estimates.push_back(fits.at(u, v, c));
-  if (estimates.empty()) return 0;
-  const auto middle = estimates.begin() + static_cast<std::ptrdiff_t>(estimates.size() / 2);
-  std::nth_element(estimates.begin(), middle, estimates.end());
-  return *middle;
-}
-
 Image variance_from_halves(const Pass& beauty, const Image& picture) {
   Image out = beauty.half_a;
   for (int c = 0; c < 3; ++c)
@@ -214,23 +202,27 @@ Image variance_from_halves(const Pass& beauty, const Image& picture) {
 
 bool noise_is_measured(const Frame& frame) { return frame.beauty.noise_is_known(); }
 
-Image estimate_variance(const Image& y, const Image& features, Progress& progress, const Image& picture) {
-  Image fits((y.width() + fit_stride - 1) / fit_stride, (y.height() + fit_stride - 1) / fit_stride, y.channels());
+Image estimate_variance(const Image& y, const Image& features, Progress& progress, const Image& picture,
+                        const Image& samples) {
+  Image fits = lattice_of(y);
   parallel_for(static_cast<std::size_t>(fits.height()), progress, [&](std::size_t row) {
     Scratch scratch;
     std::vector<Real> variance(static_cast<std::size_t>(y.channels()));
+    const int v = static_cast<int>(row);
     for (int x = 0; x < fits.width(); ++x) {
-      fit_noise(y, features, picture, x * fit_stride, static_cast<int>(row) * fit_stride, scratch, variance.data());
-      for (int c = 0; c < y.channels(); ++c)
-        fits.at(x, static_cast<int>(row), c) = variance[static_cast<std::size_t>(c)];
+      fit_noise(y, features, picture, x * lattice_stride, v * lattice_stride, scratch, variance.data());
+      for (int c = 0; c < y.channels(); ++c) fits.at(x, v, c) = variance[static_cast<std::size_t>(c)];
     }
   });
+  fits = medians_around(fits);
   Image out = spike_variance(y);
+  const Image edges = samples.empty() ? Image() : edge_variance(y, samples, picture);
   parallel_for(static_cast<std::size_t>(out.height()), progress, [&](std::size_t row) {
     const int v = static_cast<int>(row);
     for (int c = 0; c < y.channels(); ++c)
       for (int x = 0; x < out.width(); ++x) {
-        const Real value = y.at(x, v, c), noise = std::max(median_of_fits(fits, x, v, c), out.at(x, v, c));
+        const Real value = y.at(x, v, c), fit = fits.at(x / lattice_stride, v / lattice_stride, c);
+        const Real noise = std::max({fit, out.at(x, v, c), edges.empty() ? Real(0) : edges.at(x, v, c)});
         out.at(x, v, c) = value == 0 ? Real(0) : beyond_rounding(noise, value);
       }
   });
@@ -242,8 +234,8 @@ NoiseVariance noise_variance(const Frame& frame, Progress& progress, const Image
   if (frame.beauty.has_halves()) return {variance_from_halves(frame.beauty, picture), "from the half buffers", true};
   Image y = frame.beauty.mean;
   repair_nonfinite(y, 2);
-  return {estimate_variance(y, explaining_features(frame, picture), progress, picture), "estimated from the image",
-          false};
+  return {estimate_variance(y, explaining_features(frame, picture), progress, picture, frame.sample_count),
+          "estimated from the image", false};
 }
 
 void estimate_feature_variance(Frame& frame, Progress& progress, const Image& picture) {

@@ -29,11 +29,12 @@ NoiseVariance noise_variance(const Frame& frame, Progress& progress, const Image
 ///     s^2 = sum r^2 / (n - tr H) = N + T,   c = mean over the pairs of r_i r_j = a T - h N,
 ///     N = (s^2 - c / a) / (1 + h / a),   a = 1/2.
 /// A pixel gets the median of the fits around it, so that the few windows across an edge do not matter. The variance is
-/// raised at spikes (spike_variance.h). It is 0 where the value is 0, since then no sample found any radiance, and
-/// where rounding to half floats explains all of it (a deviation of at most 2^-11 of the value).
-/// y: finite, any channels.
-/// features: finite, of y's size, may have no channels. Returns y's shape, y's unit squared.
-Image estimate_variance(const Image& y, const Image& features, Progress& progress, const Image& picture = {});
+/// raised at spikes (spike_variance.h) and, where the sample count is known, at edges (edge_variance.h). It is 0 where
+/// the value is 0, since then no sample found any radiance, and where rounding to half floats explains all of it (a
+/// deviation of at most 2^-11 of the value). y: finite, any channels. features: finite, of y's size, may have no
+/// channels. samples: per pixel, 1 channel; empty where unknown. Returns y's shape, y's unit squared.
+Image estimate_variance(const Image& y, const Image& features, Progress& progress, const Image& picture = {},
+                        const Image& samples = {});
 
 /// Sets the variance of the features whose noise is estimated (noise_is_estimated, polyrecon/roles.h). Renderers carry
 /// features through reflections, depth of field and motion blur, which makes them noisy; a model that takes this noise

@@ -225,6 +225,18 @@ TEST(ReadFrame, AFractionOfTheSampleCountBecomesANumber) {
   EXPECT_THAT(read.notes, SizeIs(1));
 }
 
+TEST(ReadFrame, TheSampleCountOfTheMetadataOrTheOptionIsThatOfAllPixels) {
+  const TemporaryFolder folder;
+  TestPart part = part_of(layer("V.Combined", "RGB"));
+  const std::string unknown = write_exr(folder / "b.exr", {part});
+  EXPECT_TRUE(read_frame(unknown).frame.sample_count.empty());
+  ReadOptions options;
+  options.samples = 9;
+  EXPECT_EQ(everywhere(read_frame(unknown, options).frame.sample_count), 9);
+  part.edit = with_text("cycles.V.samples", "64");
+  EXPECT_EQ(everywhere(read_frame(write_exr(folder / "a.exr", {part})).frame.sample_count), 64);
+}
+
 /// (X, Y) lead to the place in the frame before, (Z, W) come from the one in the frame after, rows upwards;
 /// Frame::motion leads to both, rows downwards. Checked against renders of Blender 5: the albedo is found again along
 /// them.

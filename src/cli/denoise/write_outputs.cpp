@@ -80,17 +80,6 @@ FrameSource joined_source(const std::vector<DonePicture>& pictures) {
   return source;
 }
 
-/// Samples per pixel: from the file's layer, else the number from the command line or the metadata; empty where
-/// unknown.
-Image sample_counts(const ReadOptions& options, const ReadResult& in) {
-  if (!in.frame.sample_count.empty()) return in.frame.sample_count;
-  const double everywhere = options.samples > 0
-                                ? options.samples
-                                : samples_in_metadata(in.source.files.front(), in.source.view_layer).value_or(0);
-  const Rect& window = in.frame.data_window;
-  return everywhere > 0 ? Image(window.width(), window.height(), 1, static_cast<Real>(everywhere)) : Image();
-}
-
 /// Writes the maps of one picture. Returns notes about them.
 std::vector<std::string> write_maps_of(const Job& job, const FrameFiles& files, const DonePicture& done,
                                        const OutputPaths& outputs, Progress& progress) {
@@ -98,7 +87,7 @@ std::vector<std::string> write_maps_of(const Job& job, const FrameFiles& files, 
   const Result& result = done.result;
   if (!outputs.order_map.empty()) write_order_map(outputs.order_map, result.order, windows);
   if (outputs.error_map.empty() && !job.sample_map) return {};
-  const Image samples = sample_counts(job.read, done.in);
+  const Image& samples = done.in.frame.sample_count;
   if (!outputs.error_map.empty()) write_error_map(outputs.error_map, result.error, samples, windows);
   if (!job.sample_map) return {};
   return {"sample map: " + make_and_write_sample_map(outputs.sample_map, result.error, samples, windows,
