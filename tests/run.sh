@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Installs missing packages, builds, checks format and style, and runs all tests. Ends with the summary of ctest.
+# Installs missing packages, builds, checks format and style, and runs all tests. Ends with the summary of ctest and
+# whether the tests with Open Image Denoise ran.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -35,6 +36,11 @@ cmake --preset asan
 cmake --build --preset asan --target unit_tests
 in_shares build/asan/tests/unit_tests
 
+# The tests of --prior oidn, with the library of the wheel that make_venv.sh installs. Not above: a library that is loaded
+# later is built without the sanitizers.
+oidn=$(find "$PWD"/build/venv/lib -path '*/pyoidn/oidn/lib/libOpenImageDenoise.so.2' -print -quit)
+export POLYRECON_OIDN=$oidn
+
 echo "== unit tests"
 for program in unit_tests command_line_tests program_tests; do
   in_shares "build/dev/tests/$program"
@@ -42,3 +48,4 @@ done
 
 echo "== all other tests"
 ctest --preset dev -LE '^unit$'
+echo "Open Image Denoise: ${oidn:-not installed, the tests of --prior oidn were skipped}"

@@ -52,6 +52,12 @@ struct TemporalParams {
   double max_weight = 4;  ///< Largest weight of a neighbour's pixel; the frame's pixel has weight 1.
 };
 
+/// What another denoiser in this process is run on.
+struct DenoiserParams {
+  int mean_runs = 2;           ///< Times that the mean is denoised, next to the halves: 0..4.
+  bool clean_features = true;  ///< Whether it cleans the features itself; if not, it gets those of the fits.
+};
+
 /// The steps of the method that may run.
 struct Steps {
   bool decide = true;  ///< Whether steps that the frame does not need are left out; if not, all allowed steps run.
@@ -98,6 +104,7 @@ struct Params {
   Steps steps;
   Parts parts;
   TemporalParams temporal;
+  DenoiserParams denoiser;
   bool reconstruct_alpha = false;  ///< Whether alpha is reconstructed with the beauty's windows; if not, it is kept.
   std::size_t max_memory = std::size_t{4} << 30;  ///< Bytes; a frame that needs more is worked in tiles.
 };

@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "polyrecon/denoiser.h"
 #include "polyrecon/error_map.h"
 #include "polyrecon/frame.h"
 #include "polyrecon/params.h"
@@ -32,8 +33,9 @@ Result reconstruct(Frame& frame, const Params& params, Progress& progress);
 
 /// The same with the help of frames before and after, which are averaged into the frame along its motion vectors. The
 /// neighbours have any order and are at most params.temporal.radius frames away. They count towards params.max_memory.
+/// denoiser: if given, it makes the prior of what the neighbours have joined, in place of the frame's.
 Result reconstruct(Frame& frame, const std::vector<TimedNeighbour>& neighbours, const Params& params,
-                   Progress& progress);
+                   Progress& progress, const Denoiser* denoiser = nullptr);
 
 /// Prepares a frame for the reconstruction of its neighbours in time, once for all of them. number: the frame's number.
 /// Frames that are used together need different numbers: a frame without half buffers is split into halves with random

@@ -89,16 +89,21 @@ Image toward(Image f, const Image& prior, Real share, const Image& trust) {
 
 }  // namespace
 
+Image in_exposure(Image prior, const HalfPair& pair, const Image& fallback) {
+  for (int c = 0; c < beauty_channels; ++c) {
+    const auto gain = static_cast<Real>(exposure_gain(prior, pair, c));
+    for (std::size_t i = 0; i < prior.pixels(); ++i) {
+      const Real value = prior.plane(c)[i];
+      prior.plane(c)[i] = usable(value) ? gain * value : fallback.plane(c)[i];
+    }
+  }
+  return prior;
+}
+
 CorrectedPrior correct_prior(Pass prior, const HalfPair& pair, const Image& reconstruction) {
   Image out = prior.has_halves() ? mean_of_halves({std::move(prior.half_a), std::move(prior.half_b)}, beauty_channels)
                                  : std::move(prior.mean);
-  for (int c = 0; c < beauty_channels; ++c) {
-    const auto gain = static_cast<Real>(exposure_gain(out, pair, c));
-    for (std::size_t i = 0; i < out.pixels(); ++i) {
-      const Real value = out.plane(c)[i];
-      out.plane(c)[i] = usable(value) ? gain * value : reconstruction.plane(c)[i];
-    }
-  }
+  out = in_exposure(std::move(out), pair, reconstruction);
   Image sharp = sharpen_to(out, reconstruction, pair.epsilon);
   for (int c = 0; c < beauty_channels; ++c)
     for (std::size_t i = 0; i < out.pixels(); ++i) out.plane(c)[i] = sharp.plane(c)[i] - out.plane(c)[i];

@@ -28,6 +28,10 @@ constexpr std::size_t prior_work_channels = 2 * 3 + 2 * 3 + 2 * 3;
 /// reconstruction: the mean of the halves of the result so far, 3 channels.
 CorrectedPrior correct_prior(Pass prior, const HalfPair& pair, const Image& reconstruction);
 
+/// Brings a picture of another denoiser to the exposure of the pair, as correct_prior does. Pixels that are not usable
+/// get the value of `fallback`. 3 channels each.
+Image in_exposure(Image prior, const HalfPair& pair, const Image& fallback);
+
 /// Part of the input's noise that the prior holds: 0 for a prior without it, 1 for the input itself. Computed as the
 /// slope of the prior's difference from the reconstruction on the input's difference from it, relative to the brightest
 /// of the three. This is an upper bound, since detail that the reconstruction misses counts as noise. All images have 3

@@ -4,6 +4,7 @@
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <memory>
 #include <vector>
 
@@ -36,6 +37,11 @@ double ordered_sum(std::size_t count, const std::function<double(std::size_t)>& 
 }
 
 int processors() { return tbb::info::default_concurrency(); }
+
+int threads() {
+  const std::size_t limit = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+  return static_cast<int>(std::min(limit, static_cast<std::size_t>(processors())));
+}
 
 void set_thread_limit(int threads) {
   static std::unique_ptr<tbb::global_control> limit;

@@ -408,6 +408,7 @@ Preparation choose_features(const Frame& frame, const Steps& steps, const Image&
     if (!decision.run) continue;
     channels += feature.pass.mean.channels();
     FeatureUse use;
+    use.role = feature.role;
     use.index = i;
     const Decision prefilter = decide_on_prefilter(decision.step, feature.pass, found, steps);
     use.prefilter = prefilter.run;

@@ -14,6 +14,7 @@ namespace polyrecon {
 
 /// A feature pass that takes part in the fit.
 struct FeatureUse {
+  Role role = Role::Normal;
   std::size_t index = 0;   ///< Index into Frame::features.
   bool prefilter = false;  ///< Whether it is prefiltered (features/prefilter.h).
   bool flatten = false;    ///< Whether variations that are noise give way to their blur (noise/feature_noise.h): in

@@ -15,6 +15,7 @@ namespace polyrecon {
 namespace {
 
 constexpr double smoothing_sigma = 2;  // pixels
+constexpr double certain_gain = 0.5, least_error_left = 0.25;
 
 /// The terms of the error of one channel, relative to energy.
 struct ChannelErrors {
@@ -80,6 +81,37 @@ ErrorMap make_error_map(const HalfPair& pair, const Image& variance, const Candi
   }
   map.mean_relative_mse = mean_of(map.relative_mse);
   return map;
+}
+
+void lower_error(const Image& reconstruction, const Image& prior, const Image& share, const Image& sampled,
+                 ErrorMap& error) {
+  Image gain(prior.width(), prior.height(), 3);
+  for_rows(gain.height(), [&](int y) {
+    for (int c = 0; c < 3; ++c)
+      for (int x = 0; x < gain.width(); ++x) {
+        const double part = 1 - static_cast<double>(share.at(x, y, 0));
+        const double d =
+            part * (static_cast<double>(reconstruction.at(x, y, c)) - static_cast<double>(prior.at(x, y, c)));
+        gain.at(x, y, c) = storable(certain_gain * d * d);
+      }
+  });
+  gain = gaussian_blur(gain, smoothing_sigma, sampled);
+  for_rows(gain.height(), [&](int y) {
+    for (int x = 0; x < gain.width(); ++x) {
+      double relative = 0;
+      for (int c = 0; c < 3; ++c) {
+        const double f = reconstruction.at(x, y, c), p = prior.at(x, y, c), w = share.at(x, y, 0);
+        const double before = error.mse.at(x, y, c);
+        const double after = std::max(before - static_cast<double>(gain.at(x, y, c)), least_error_left * before);
+        error.mse.at(x, y, c) = storable(after);
+        relative += after / relmse_denominator(p + w * (f - p)) / 3;
+      }
+      error.relative_mse.at(x, y, 0) = storable(relative);
+      error.relative_variance.at(x, y, 0) =
+          std::min(error.relative_variance.at(x, y, 0), error.relative_mse.at(x, y, 0));
+    }
+  });
+  error.mean_relative_mse = mean_of(error.relative_mse);
 }
 
 }  // namespace polyrecon

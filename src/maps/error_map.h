@@ -20,6 +20,12 @@ namespace polyrecon {
 ErrorMap make_error_map(const HalfPair& pair, const Image& variance, const Candidate& result,
                         const Image& picture = {});
 
+/// The error of the mix, from that of the reconstruction f. For the best share w, the error of the mix is that of f
+/// less (1 - w)^2 (f - prior)^2, by Pythagoras; half of it is subtracted, as the share is not known exactly, and at
+/// least a quarter of the error stays. The difference is averaged by a Gaussian of 2 pixels.
+void lower_error(const Image& reconstruction, const Image& prior, const Image& share, const Image& sampled,
+                 ErrorMap& error);
+
 /// Mean of an image of 1 channel.
 double mean_of(const Image& image);
 

@@ -9,6 +9,7 @@
 #include "features/prepare.h"
 #include "maps/error_map_images.h"
 #include "outliers/restore.h"
+#include "pipeline/prior.h"
 #include "pipeline/stage.h"
 #include "polyrecon/error.h"
 #include "regression/basis.h"
@@ -18,6 +19,12 @@ namespace polyrecon {
 namespace {
 
 constexpr double allocator = 1.08;  // unused memory between images of unequal sizes; tests/bench/scaling.py: up to 6 %
+
+// A denoiser: what a library needs in addition to its images when it is told to take as little as it can, its code and
+// weights included (Open Image Denoise 2.5: 350 MB for 1920 x 1080 and more), and the images of one run.
+constexpr std::size_t least_denoiser_bytes = std::size_t{384} << 20;
+constexpr std::size_t denoiser_features_channels = 3 + 3, denoised_channels = 3 * 3, denoiser_run_channels = 3 * 8;
+constexpr std::size_t judge_halves_channels = 2 * 3;  // our halves next to those of a prior
 
 std::size_t count(int channels) { return static_cast<std::size_t>(channels); }
 
@@ -32,12 +39,15 @@ std::size_t pair_channels(const FrameShape& shape) {
   return half_pair_channels(count(shape.color_channels), count(model_features(shape)));
 }
 
+bool prior_has_halves(const FrameShape& shape) { return shape.prior_channels > 3; }
+
 /// Channels held to the end of a reconstruction: images of the frame, the noise variance of the beauty and the distance
 /// that the noise bound allows.
 std::size_t kept_channels(const FrameShape& shape) {
   constexpr std::size_t alpha = 1, sample_count = 1, noise_variance = 3, noise_bound = 3;
-  return count(shape.color_channels) + alpha + sample_count + count(shape.prior_channels) + noise_variance +
-         noise_bound + count(shape.other_channels);
+  const std::size_t prior = count(shape.prior_channels) + (prior_has_halves(shape) ? judge_halves_channels : 0);
+  return count(shape.color_channels) + alpha + sample_count + prior + noise_variance + noise_bound +
+         count(shape.other_channels);
 }
 
 /// Channels held while windows are fitted: the pair and the results of this stage and the one before, each with its
@@ -51,7 +61,8 @@ std::size_t fitting_channels(const FrameShape& shape) {
 std::size_t finishing_channels(const FrameShape& shape) {
   const std::size_t colors = count(shape.color_channels);
   constexpr std::size_t order_map = 1;
-  const std::size_t prior = shape.prior_channels > 0 ? prior_work_channels : 0;
+  const std::size_t layers_without_prior = colors > 3 ? colors : 0;
+  const std::size_t prior = shape.prior_channels > 0 ? prior_work_channels + layers_without_prior : 0;
   return pair_channels(shape) + candidate_channels(colors) + error_map_channels() + order_map +
          std::max(prior, restore_channels(colors));
 }
@@ -79,6 +90,12 @@ FrameShape shape_of(const Frame& frame) {
   return shape;
 }
 
+void add_denoiser(FrameShape& shape) {
+  shape.runs_denoiser = true;
+  shape.prior_channels = static_cast<int>(denoised_channels);
+  shape.channels += shape.prior_channels + static_cast<int>(denoiser_features_channels);
+}
+
 int neighbours_channels(const FrameShape& shape, int neighbours, const Params& params) {
   // The frame's own geometry and its noise are held until the neighbours have joined.
   const std::size_t own = neighbours > 0 ? geometry_channels + surfaces : 0;
@@ -101,9 +118,15 @@ MemoryNeeds memory_needs(const FrameShape& passes, const Params& params) {
   const auto image_bytes = [&](std::size_t channels) { return shape.pixels * channels * sizeof(Real); };
   const std::size_t preparing = count(shape.channels + shape.other_channels) + noise_variance + pair_channels(shape) +
                                 feature_in_preparation_channels;
-  const std::size_t holding = kept_channels(shape) + std::max(fitting_channels(shape), finishing_channels(shape));
+  const std::size_t denoising = kept_channels(shape) + pair_channels(shape) + denoiser_features_channels;
+  const std::size_t judging =
+      prior_has_halves(shape) ? pair_channels(shape) + judge_channels(count(model_features(shape))) : 0;
+  const std::size_t holding =
+      kept_channels(shape) + std::max({fitting_channels(shape), judging, finishing_channels(shape)});
   MemoryNeeds needs;
   needs.prepare = with_gaps(program_bytes + image_bytes(preparing));
+  if (shape.runs_denoiser)
+    needs.denoiser = with_gaps(program_bytes + image_bytes(denoising + denoiser_run_channels)) + least_denoiser_bytes;
   needs.held = with_gaps(program_bytes + image_bytes(holding));
   needs.tile = with_gaps(std::min(smallest_tile_pixels(params), shape.pixels) *
                          stage_bytes_per_pixel(shape.color_channels, model_features(shape), params));
@@ -116,6 +139,11 @@ void require_memory(const std::string& name, const FrameShape& shape, const Para
   throw Error(ExitCode::OutOfMemory, name + ": " + std::to_string(shape.pixels) + " pixels with " +
                                          std::to_string(shape.channels) + " channels in use needs --max-memory " +
                                          std::to_string((least >> 20) + 1) + "M, or fewer passes");
+}
+
+std::size_t denoiser_memory(const FrameShape& shape, const Params& params) {
+  const std::size_t others = memory_needs(shape, params).denoiser - least_denoiser_bytes;
+  return params.max_memory > others ? params.max_memory - others : 0;
 }
 
 std::size_t tile_memory(const FrameShape& shape, const Params& params) {

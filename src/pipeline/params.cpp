@@ -25,11 +25,13 @@ Params params_for(Quality quality) {
     params.max_order = 1;
     params.prefilter.search_radius = 2;
     params.prefilter.patch_radius = 2;
+    params.denoiser = {0, false};
   } else if (quality == Quality::Best) {
     params.radius = 11;
     params.stride = 3;
     params.coverage = 6;
     params.max_order = 4;
+    params.denoiser.mean_runs = 4;
   }
   return params;
 }
@@ -46,6 +48,7 @@ void validate(const Params& params) {
   require(params.outliers.neighbourhood >= 1 && params.outliers.neighbourhood <= 10,
           "the neighbourhood of an outlier must be 1 to 10 pixels");
   require(params.outliers.density_radius >= 1, "the radius within which outliers are counted must be positive");
+  require(params.denoiser.mean_runs >= 0 && params.denoiser.mean_runs <= 4, "a denoiser runs 0 to 4 times on the mean");
   require(params.temporal.radius >= 0 && params.temporal.radius <= 8, "the frame radius must be 0 to 8 frames");
   require(!params.first_bandwidths.empty() && !params.later_bandwidths.empty(), "each stage needs a bandwidth");
   for (const auto* bandwidths : {&params.first_bandwidths, &params.later_bandwidths, &params.guided_bandwidths}) {

@@ -3,9 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "blend/levels.h"
 #include "blend/noise_bound.h"
-#include "blend/prior.h"
 #include "blend/undershoot.h"
 #include "core/color_layout.h"
 #include "core/halves.h"
@@ -21,8 +19,10 @@
 #include "pipeline/noisy_halves.h"
 #include "pipeline/notes.h"
 #include "pipeline/phases.h"
+#include "pipeline/prior.h"
 #include "pipeline/result_images.h"
 #include "pipeline/savings.h"
+#include "pipeline/solve.h"
 #include "pipeline/stage.h"
 #include "temporal/join.h"
 #include "temporal/neighbour.h"
@@ -32,10 +32,8 @@
 namespace polyrecon {
 namespace {
 
-constexpr int smallest_level = 16;           // pixels; windows would cover most of a smaller level
 constexpr double max_restored_gain = 0.001;  // a tenth of the least visible step in brightness (Weber)
 constexpr double max_total_gain = 0.05;      // above what is lost because weights favour ordinary pixels
-constexpr double most_noise_in_prior = 0.9;  // above it the prior is the input, which would validate itself
 
 /// The parameters for a frame: an estimated noise variance needs other patches than a measured one.
 Params params_for_frame(const Frame& frame, Params params) {
@@ -55,37 +53,11 @@ void join(const std::vector<TimedNeighbour>& neighbours, bool with_motion, const
   note_neighbours(joined, with_motion, report);
 }
 
-/// Sections 2.1 and 2.2 of the method on one level and, through add_coarse, on the coarser ones.
-Candidate solve_level(const HalfPair& pair, int level, const Params& params, std::size_t max_bytes,
-                      FitCounters& counters, Progress& progress) {
-  Candidate result = run_stage(pair, nullptr, params, max_bytes, counters, progress);
-  const bool has_coarser = level + 1 < params.levels && std::min(pair.width(), pair.height()) >= 2 * smallest_level;
-  Candidate coarse;
-  if (has_coarser) {
-    coarse = solve_level(downsample(pair), level + 1, params, max_bytes, counters, progress);
-    result = add_coarse(pair, std::move(result), coarse, params.selection, max_bytes);
-  }
-  for (int stage = 2; stage <= params.stages; ++stage) {
-    result = run_stage(pair, &result, params, max_bytes, counters, progress);
-    if (has_coarser) result = add_coarse(pair, std::move(result), coarse, params.selection, max_bytes);
-  }
-  return result;
-}
-
-/// Units of work of solve_level, about: blocks, times their fits in all stages and levels for both halves.
-std::size_t fit_units(const HalfPair& pair, const Params& params) {
-  const std::size_t blocks = aligned_blocks(pair.variance.bounds(), block_size).size();
-  const std::size_t passes =
-      1 + static_cast<std::size_t>(params.stages - 1) * (params.guided_bandwidths.empty() ? 1 : 2);
-  return blocks * 2 * passes * (params.stride > 1 ? 2 : 1) * 4 / 3;
-}
-
 Candidate fit_polynomials(const Frame& frame, const HalfPair& pair, const Params& params, std::size_t max_bytes,
                           Phases& phases, Report& report) {
   FitCounters counters;
-  Candidate result = phases.run(fit_phase, fit_units(pair, params), [&](Progress& progress) {
-    return solve_level(pair, 0, params, max_bytes, counters, progress);
-  });
+  Candidate result = phases.run(fit_phase, fit_units(pair, params),
+                                [&](Progress& progress) { return solve(pair, params, max_bytes, counters, progress); });
   note_fits(counters, report);
   const double skipped = skipped_share(pair, params);
   report.decisions.push_back(decide_on_pixels(skipped, params));
@@ -106,18 +78,6 @@ Image average(const HalfPair& pair, const Candidate& solved) {
       }
   });
   return out;
-}
-
-/// Adds the prior as a candidate, unless it is the noisy input itself.
-Candidate use_prior(Pass pass, const HalfPair& pair, const ErrorMap& error, const SelectParams& params,
-                    std::size_t max_bytes, Candidate solved, std::vector<Decision>& decisions) {
-  const std::string name = "prior '" + pass.name + "'";
-  Image reconstruction = average(pair, solved);
-  const CorrectedPrior prior = correct_prior(std::move(pass), pair, reconstruction);
-  const bool denoised = noise_in_prior(prior.value, pair, reconstruction) < most_noise_in_prior;
-  reconstruction = {};
-  decisions.push_back({"prior", denoised, name + (denoised ? "" : " is the noisy image itself")});
-  return denoised ? add_prior(pair, prior, error.mse, std::move(solved), params, max_bytes) : solved;
 }
 
 /// Sums of the input's colour channels: beauty, then each AOV.
@@ -162,11 +122,11 @@ void put_layers(const Image& image, const Image& input_alpha, Result& result) {
 
 /// Reconstructs a panorama with columns of its other end beyond both ends, and takes them away again.
 Result reconstruct_panorama(Frame& frame, const std::vector<TimedNeighbour>& neighbours, const Params& params,
-                            Progress& progress) {
+                            Progress& progress, const Denoiser* denoiser) {
   Report report;
   note_input(frame, report);
   wrap(frame);
-  Result result = reconstruct(frame, neighbours, params, progress);
+  Result result = reconstruct(frame, neighbours, params, progress, denoiser);
   const auto unwrap = [](Image& image) { image = unwrapped(image); };
   for_images(result, unwrap);
   unwrap(frame.alpha);
@@ -195,10 +155,12 @@ Result reconstruct(Frame& frame, const Params& params, Progress& progress) {
 }
 
 Result reconstruct(Frame& frame, const std::vector<TimedNeighbour>& neighbours, const Params& requested,
-                   Progress& progress) {
-  if (frame.wraps) return reconstruct_panorama(frame, neighbours, requested, progress);
+                   Progress& progress, const Denoiser* denoiser) {
+  if (frame.wraps) return reconstruct_panorama(frame, neighbours, requested, progress, denoiser);
   const Params params = params_for_frame(frame, requested);
+  if (denoiser) frame.prior = {};
   FrameShape shape = shape_of(frame);
+  if (denoiser) add_denoiser(shape);
   shape.other_channels += neighbours_channels(shape, static_cast<int>(neighbours.size()), params);
   require_memory("layer '" + frame.beauty.name + "'", shape, params);
   Result result;
@@ -207,6 +169,7 @@ Result reconstruct(Frame& frame, const std::vector<TimedNeighbour>& neighbours, 
   note_input(frame, report);
 
   // The input as two halves of known noise, and the features that describe the scene (equations 1 and 2).
+  DenoiserFeatures features = denoiser ? denoiser_features(frame) : DenoiserFeatures();
   NoisyHalves halves =
       make_noisy_halves(frame, neighbours.empty() ? HalvesFor::Fit : HalvesFor::FitWithNeighbours, 0, params, phases);
   HalfPair& pair = halves.prepared.pair;
@@ -214,8 +177,18 @@ Result reconstruct(Frame& frame, const std::vector<TimedNeighbour>& neighbours, 
   note_outliers(halves.outliers, params.steps, report);
   if (!neighbours.empty()) join(neighbours, !frame.motion.empty(), params.temporal, halves, phases, report);
 
-  // Polynomials around every centre, of the order with the least estimated error, blended (equations 3 to 9).
+  if (denoiser)
+    frame.prior = phases.run("denoiser", make_prior_units(halves.prepared, params.denoiser), [&](Progress& p) {
+      return make_prior(*denoiser, std::move(features), halves.survey.preparation.features, halves.prepared,
+                        params.denoiser, denoiser_memory(shape, params), p);
+    });
   const std::size_t max_bytes = tile_memory(shape, params);
+  ReadyPrior prior = ready_prior(std::move(frame.prior), denoiser != nullptr, halves.prepared);
+  if (prior.judged)
+    prior.judge = phases.run("judge of the prior", judge_units(pair),
+                             [&](Progress& p) { return judge_prior(prior.pass, pair, params, max_bytes, p); });
+
+  // Polynomials around every centre, of the order with the least estimated error, blended (equations 3 to 9).
   Candidate solved = fit_polynomials(frame, pair, params, max_bytes, phases, report);
 
   // Nothing was rendered there, and nothing comes out.
@@ -230,15 +203,20 @@ Result reconstruct(Frame& frame, const std::vector<TimedNeighbour>& neighbours, 
   result.error = phases.run(
       "error map", 1, [&](Progress&) { return make_error_map(pair, halves.survey.noise.variance, solved, picture); });
   result.order = solved.order;
-  if (!frame.prior.mean.empty())
+  Image ours;  // all layers without the prior, which the colour layers add up to
+  if (!prior.pass.mean.empty()) {
+    if (!frame.aovs.empty()) ours = restore(frame, halves, solved, bound, params, report);
     solved = phases.run("prior", 1, [&](Progress&) {
-      return use_prior(std::move(frame.prior), pair, result.error, params.selection, max_bytes, std::move(solved),
-                       report.decisions);
+      const Image reconstruction = average(pair, solved);
+      return use_prior(std::move(prior), pair, reconstruction, params.selection, max_bytes, std::move(solved),
+                       result.error, report.decisions);
     });
+  }
 
   // The image, with the energy of the input (equations 10 and 11).
-  const Image image =
+  Image image =
       phases.run("energy", 1, [&](Progress&) { return restore(frame, halves, solved, bound, params, report); });
+  if (!ours.empty()) image = follow_beauty(std::move(ours), image);
   put_layers(image, frame.alpha, result);
   note_result(result);
   return result;

@@ -119,7 +119,7 @@ class Recipes(unittest.TestCase):
         self.check("docs/dev/add_a_renderer.md", {"stub": "second"})
 
     def test_a_denoiser(self):
-        self.check("docs/dev/add_a_denoiser.md")
+        self.check("docs/dev/add_a_denoiser.md", {"stub": "second"})
 
 
 class TheCheckItself(unittest.TestCase):

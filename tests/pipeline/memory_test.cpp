@@ -114,9 +114,11 @@ Frame nearly_noise_free_frame(int width, int height) {
 TEST_F(StatedMemory, OfAReconstructionIsWhatItAllocates) {
   const Params params = small_windows();
   peak_of_reconstruction(nearly_noise_free_frame(80, 60), params);  // leaves the threads their windows and sums
-  for (const bool prior : {false, true}) {
+  for (const int prior : {0, 1, 2}) {  // none, without halves, with halves
+    SCOPED_TRACE(prior);
     Frame frame = nearly_noise_free_frame(448, 384);
-    if (prior) frame.prior = {"Denoised", frame.beauty.mean, {}, {}, {}};
+    if (prior > 0) frame.prior = {"Denoised", frame.beauty.mean, {}, {}, {}};
+    if (prior > 1) frame.prior.half_a = frame.prior.half_b = frame.beauty.mean;
     const FrameShape shape = shape_of(frame);
     ASSERT_LT(smallest_tile_pixels(params), shape.pixels);
     const std::size_t passes = shape.pixels * static_cast<std::size_t>(shape.channels) * sizeof(Real);
@@ -138,6 +140,19 @@ TEST(MemoryNeeds, CountsAPriorToItsTurn) {
   EXPECT_NEAR(static_cast<double>(needs.prepare), static_cast<double>(without.prepare) + layer, 2);
   EXPECT_NEAR(static_cast<double>(needs.held), static_cast<double>(without.held) + layer, 2);
   EXPECT_EQ(needs.tile, without.tile);
+}
+
+TEST(MemoryNeeds, CountsADenoiserAndItsLibrary) {
+  FrameShape shape = usual;
+  add_denoiser(shape);
+  Params params;
+  const MemoryNeeds needs = memory_needs(shape, params);
+  EXPECT_EQ(memory_needs(usual, params).denoiser, 0u);
+  EXPECT_GT(needs.denoiser, needs.least() / 2);
+  params.max_memory = needs.denoiser + (std::size_t{100} << 20);
+  EXPECT_GT(denoiser_memory(shape, params), std::size_t{400} << 20);
+  params.max_memory = needs.denoiser / 4;
+  EXPECT_EQ(denoiser_memory(shape, params), 0u);
 }
 
 TEST(MemoryNeeds, AFrameSmallerThanATileNeedsNoWholeOne) {

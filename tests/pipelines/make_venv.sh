@@ -16,6 +16,10 @@ fi
 # Mitsuba and LuxCore write the files of a test. Without dependencies: LuxCore's is the compiler of a graphics card.
 "$python" -c 'import importlib.util as u, sys; sys.exit(not (u.find_spec("mitsuba") and u.find_spec("pyluxcore")))' ||
   "$python" -m pip install --quiet --disable-pip-version-check --no-deps mitsuba==3.9.1 drjit==1.5.0 pyluxcore==2.11.2
+# Open Image Denoise, for the tests of --prior oidn (CTest tells them where it is). Without it they are skipped.
+"$python" -c 'import importlib.util as u, sys; sys.exit(not u.find_spec("pyoidn"))' ||
+  "$python" -m pip install --quiet --disable-pip-version-check --no-deps pyoidn==2.5.1.0 ||
+  echo "no pyoidn: the tests of --prior oidn are skipped"
 blender_5_2=build/venv_blender_5_2
 python_3_13=
 for candidate in python3.13 "${PYENV_ROOT:-$HOME/.pyenv}"/versions/3.13.*/bin/python3; do

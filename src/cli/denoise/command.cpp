@@ -41,10 +41,11 @@ void run_single(const Job& job, RunProgress& progress) {
   progress.frame("", 1, 1);
 }
 
-void run_job(const Job& job, RunProgress& progress) {
+void run_job(Job job, RunProgress& progress) {
   check_files(job);
   set_thread_limit(job.run.threads);
   set_codec_threads(job.run.threads > 0 ? job.run.threads : processors());
+  load_denoiser(job);
   if (job.run.dry_run) return show_dry_run(job);
   if (job.is_sequence) return run_sequence(job, progress);
   run_single(job, progress);

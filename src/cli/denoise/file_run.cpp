@@ -113,7 +113,7 @@ void FileRun::denoise(LoadedFrame loaded, std::size_t max_memory, Progress& prog
   Params params = report.chosen ? report.chosen->params : job_.params;
   params.max_memory = max_memory;
   for (const DonePicture& before : done_) params.max_memory -= std::min(params.max_memory, bytes_of(before));
-  done.result = reconstruct(done.in.frame, neighbours_of(loaded), params, progress);
+  done.result = reconstruct(done.in.frame, neighbours_of(loaded), params, progress, job_.denoiser.get());
   release_images(done);
   report.picture = loaded.picture;
   report.notes = done.in.notes;

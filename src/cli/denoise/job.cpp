@@ -25,11 +25,47 @@ std::optional<FrameLimits> limits_of(const DenoiseOptions& o) {
   return FrameLimits{o.time_budget, target};
 }
 
+/// The denoiser that "prior=NAME" names; empty where it is a layer or a file.
+std::string denoiser_named(const std::string& role) {
+  const RoleMapping mapping = parse_mapping(role);
+  return mapping.role == Role::Prior && denoisers().count(mapping.layer) > 0 ? mapping.layer : "";
+}
+
+/// The denoiser that makes the prior; empty where none does. Throws Error{Usage} where there is another prior too.
+std::string denoiser_named(const DenoiseOptions& o) {
+  std::vector<std::string> priors;
+  std::string denoiser;
+  for (const std::string& role : o.roles)
+    if (parse_mapping(role).role == Role::Prior) {
+      priors.push_back(role);
+      if (denoiser.empty()) denoiser = denoiser_named(role);
+    }
+  if (!denoiser.empty() && priors.size() > 1)
+    throw Error(ExitCode::Usage, fmt::format("--prior {} makes the prior itself: remove the other one", denoiser));
+  return denoiser;
+}
+
+/// The denoiser that the options request; null where they request none.
+MakeDenoiser denoiser_of(const DenoiseOptions& o) {
+  const std::string name = denoiser_named(o);
+  if (name.empty()) {
+    if (o.denoiser.is_default()) return nullptr;
+    throw Error(ExitCode::Usage, "--oidn and --oidn-device need --prior oidn");
+  }
+  if (o.time_budget > 0)
+    throw Error(ExitCode::Usage,
+                fmt::format("how long --prior {} takes is not known before it runs: remove --time-budget", name));
+  return denoisers().at(name);
+}
+
 ReadOptions read_options_of(const DenoiseOptions& o, const FrameList& list, const Params& params) {
   ReadOptions read = o.read;
-  for (const std::string& role : o.roles) read.map.push_back(parse_mapping(role));
+  for (const std::string& role : o.roles)
+    if (denoiser_named(role).empty()) read.map.push_back(parse_mapping(role));
   read.motion = list.radius > 0;
-  read.accept = [params, is_sequence = list.is_sequence](const std::string& path, FrameShape shape) {
+  read.accept = [params, is_sequence = list.is_sequence, denoises = !denoiser_named(o).empty()](const std::string& path,
+                                                                                                FrameShape shape) {
+    if (denoises) add_denoiser(shape);
     if (is_sequence)
       shape.other_channels =
           channels_ahead(shape, params) + neighbours_channels(shape, 2 * params.temporal.radius, params);
@@ -79,6 +115,8 @@ Job make_job(const DenoiseOptions& o, const OptionSet& set) {
   if (job.limits)
     for (const Preset& preset : presets()) job.presets.push_back(with_options(preset.params, o, steps, list.radius));
   job.read = read_options_of(o, list, job.params);
+  job.make_denoiser = denoiser_of(o);
+  job.denoiser_options = o.denoiser;
   job.keep_noisy = o.keep_noisy;
   job.run = o.run;
   job.is_sequence = list.is_sequence;
@@ -101,6 +139,10 @@ void check_files(const Job& job) {
     require_readable(job.sample_map->cost);
   if (!job.is_sequence && job.run.wait <= 0) require_readable(job.frames.front().input);
   require_writable(all_outputs);
+}
+
+void load_denoiser(Job& job) {
+  if (job.make_denoiser) job.denoiser = job.make_denoiser(job.denoiser_options);
 }
 
 ReadOptions read_options_for(const Job& job, std::optional<int> frame) {

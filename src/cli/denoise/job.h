@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -8,6 +9,7 @@
 #include "cli/common/sample_map_options.h"
 #include "cli/denoise/frame_files.h"
 #include "cli/denoise/options.h"
+#include "denoisers/denoisers.h"
 #include "polyrecon/params.h"
 #include "polyrecon/read_frame.h"
 
@@ -29,6 +31,9 @@ struct Job {
   std::optional<FrameLimits> limits;
   std::vector<Params> presets;  ///< What a pilot chooses from, in the order of presets(); empty without limits.
   std::optional<SampleMapOptions> sample_map;
+  MakeDenoiser make_denoiser = nullptr;  ///< Null: the prior is a layer of the file, if it has one.
+  DenoiserOptions denoiser_options;
+  std::shared_ptr<const Denoiser> denoiser;  ///< Set by load_denoiser.
   bool keep_noisy = false;
   RunOptions run;
   std::string settings;  ///< Identity of the settings, see settings_of.
@@ -41,6 +46,10 @@ Job make_job(const DenoiseOptions& options, const OptionSet& set);
 /// Throws Error{Usage}, Error{Missing} or Error{CannotWrite} where the files of a job cannot be used: an output that is
 /// an input too, an input that does not exist, a folder that cannot be written to. Reads no pixel.
 void check_files(const Job& job);
+
+/// Makes the denoiser of a job ready, if it has one. Throws Error{Missing} where it is not installed. Call it once the
+/// number of threads is set.
+void load_denoiser(Job& job);
 
 /// How the frame of this number is read: in the names of files that options name, the number replaces ####.
 ReadOptions read_options_for(const Job& job, std::optional<int> frame);

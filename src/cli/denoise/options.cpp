@@ -56,8 +56,10 @@ void add_input_options(OptionSet& set, DenoiseOptions& o) {
       ->take_all();
   set.add_alias(
          "--prior", [&o](const std::string& layer) { o.roles.push_back("prior=" + layer); },
-         "Denoised layer, or file, whose pixels are used where they are better; same as --map prior=LAYER")
+         "Denoised layer, or file, whose pixels are used where they are better; same as --map prior=LAYER. oidn: Open "
+         "Image Denoise makes it")
       ->type_name("LAYER|FILE");
+  add_denoiser_options(set, o.denoiser);
   set.add(Changes::Result, "--view-layer", o.read.view_layer,
           "View layer to denoise, in place of all that have a beauty")
       ->type_name("NAME");

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/common/denoiser_options.h"
 #include "cli/common/option_set.h"
 #include "cli/common/progress_output.h"
 #include "cli/common/sample_map_options.h"
@@ -32,6 +33,7 @@ struct DenoiseOptions {
   OutputPaths outputs;              ///< Files, or patterns and folders where there are several inputs.
   std::string frames;               ///< "1-10,20-40x2"; empty: all frames of the pattern that exist.
   std::vector<std::string> roles;   ///< "role=LAYER": those of --map, then those of --prior, whatever the order typed.
+  DenoiserOptions denoiser;
   ReadOptions read;
   std::optional<Quality> quality;
   std::optional<int> stages, order;

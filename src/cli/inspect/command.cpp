@@ -5,6 +5,7 @@
 
 #include "cli/commands.h"
 #include "cli/common/checks.h"
+#include "cli/common/denoiser_options.h"
 #include "cli/common/read_limits.h"
 #include "cli/inspect/report.h"
 #include "pipeline/part_of_beauty.h"
@@ -20,6 +21,7 @@ namespace {
 struct InspectOptions {
   std::string input;
   ReadOptions read;
+  DenoiserOptions denoiser;
   bool json = false;
 };
 
@@ -33,9 +35,25 @@ std::vector<Decision> decide_steps(Frame& frame) {
   return decisions;
 }
 
+std::vector<FoundDenoiser> find_denoisers(const DenoiserOptions& options) {
+  std::vector<FoundDenoiser> found;
+  for (const auto& [option, make] : denoisers()) {
+    FoundDenoiser& one = found.emplace_back();
+    one.option = option;
+    try {
+      const auto denoiser = make(options);
+      one.name = denoiser->name();
+      one.place = denoiser->place();
+    } catch (const Error& error) {
+      one.problem = error.what();
+    }
+  }
+  return found;
+}
+
 void run(const InspectOptions& o) {
   require_readable(o.input);
-  InspectReport report{inspect(o.input, o.read), {}};
+  InspectReport report{inspect(o.input, o.read), {}, find_denoisers(o.denoiser)};
   if (report.file.frame) try {
       for (const std::string& layer : layers_beside_beauty(*report.file.frame))
         report.file.notes.push_back(note_of_layer_beside_beauty(layer));
@@ -62,6 +80,7 @@ void setup_inspect(CLI::App& app, Command& chosen) {
   sub->add_option("-l,--aov", o->read.aovs, "Colour layer that denoise is to take too (repeatable)")
       ->type_name("LAYER");
   OptionSet set(*sub);
+  add_denoiser_options(set, o->denoiser);
   add_read_limits(set, o->read.limits);
   sub->footer(
       "Examples:\n"

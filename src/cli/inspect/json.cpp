@@ -49,7 +49,9 @@ Json json_of(const Layer& layer, const LayerStatistics* s) {
 
 nlohmann::ordered_json inspect_json(const InspectReport& report) {
   const Inspection& found = report.file;
-  Json files = Json::array(), layers = Json::array();
+  Json files = Json::array(), layers = Json::array(), denoisers = Json::array();
+  for (const FoundDenoiser& d : report.denoisers)
+    denoisers.push_back({{"prior", d.option}, {"name", d.name}, {"place", d.place}, {"problem", d.problem}});
   for (const FileInfo& file : found.source.files) {
     Json parts = Json::array();
     for (const PartInfo& part : file.parts) parts.push_back(json_of(part));
@@ -64,6 +66,7 @@ nlohmann::ordered_json inspect_json(const InspectReport& report) {
           {"samples", found.samples > 0 ? Json(found.samples) : Json()},
           {"noise_level", found.noise_level >= 0 ? Json(found.noise_level) : Json()},
           {"steps", decisions_json(report.steps)},
+          {"denoisers", denoisers},
           {"notes", found.notes}};
 }
 

@@ -9,10 +9,19 @@
 
 namespace polyrecon {
 
+/// A denoiser that can make a prior.
+struct FoundDenoiser {
+  std::string option;   ///< "oidn"
+  std::string name;     ///< With version and device; empty if it cannot be used.
+  std::string place;    ///< File that it was loaded from.
+  std::string problem;  ///< Why it cannot be used.
+};
+
 /// What `inspect` tells about a file.
 struct InspectReport {
   Inspection file;
-  std::vector<Decision> steps;  ///< What denoise would decide; empty for a file without beauty.
+  std::vector<Decision> steps;             ///< What denoise would decide; empty for a file without beauty.
+  std::vector<FoundDenoiser> denoisers{};  ///< Those that --prior takes by name.
 };
 
 /// The report as lines of text.

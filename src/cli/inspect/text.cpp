@@ -49,6 +49,8 @@ std::string inspect_text(const InspectReport& report) {
   if (found.noise_level >= 0)
     text += fmt::format("noise level (variance / (mean^2 + 0.01)): {:.4g}\n", found.noise_level);
   for (const Decision& d : report.steps) text += fmt::format("step: {}: {}\n", d.step, decision_text(d));
+  for (const FoundDenoiser& d : report.denoisers)
+    text += fmt::format("--prior {}: {}\n", d.option, d.name.empty() ? d.problem : d.name + ", " + d.place);
   for (const std::string& note : found.notes) text += fmt::format("note: {}\n", note);
   return text;
 }

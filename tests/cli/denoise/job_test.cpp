@@ -43,6 +43,8 @@ const Words file{"-i", "in.exr", "-o", "out.exr"};
 const Words sequence{"-i", "shot.####.exr", "-o", "out.####.exr", "--frames", "1-3"};
 const Words with_map{"-i", "in.exr", "-o", "out.exr", "--sample-map", "map.exr", "--budget", "4"};
 
+const Words with_oidn{"-i", "in.exr", "-o", "out.exr", "--prior", "oidn"};
+
 Job job_of(const Words& more, Words words = file) {
   words.insert(words.end(), more.begin(), more.end());
   return CommandLine(words).job();
@@ -70,6 +72,8 @@ const std::vector<OptionCase> cases{
     {Changes::Result, {"--aov", "Diffuse Direct"}},
     {Changes::Result, {"--map", "albedo=Colour"}},
     {Changes::Result, {"--prior", "Denoised"}},
+    {Changes::Result, {"--oidn", "/lib"}, {}, with_oidn},
+    {Changes::Result, {"--oidn-device", "cpu"}, {}, with_oidn},
     {Changes::Result, {"--view-layer", "Other"}},
     {Changes::Result, {"--view", "right"}},
     {Changes::Result, {"--variance-kind", "sample"}},
@@ -134,6 +138,28 @@ TEST(Identity, ADefaultThatIsGivenChangesNothing) {
 TEST(Identity, TwoNamesOfOneOptionAreTheSame) {
   EXPECT_EQ(job_of({"--prior", "A"}).settings, job_of({"--map", "prior=A"}).settings);
   EXPECT_EQ(job_of({"--effects", "all"}).settings, job_of({"--steps", "all"}).settings);
+}
+
+TEST(Denoisers, AreNamedByThePrior) {
+  EXPECT_EQ(job_of({}).make_denoiser, nullptr);
+  EXPECT_EQ(job_of({"--prior", "Denoised"}).make_denoiser, nullptr);
+  const Job job = job_of({"--prior", "oidn"});
+  EXPECT_NE(job.make_denoiser, nullptr);
+  EXPECT_TRUE(job.read.map.empty()) << "oidn is no layer";
+  EXPECT_NE(job.settings, job_of({}).settings);
+}
+
+TEST(Denoisers, ExcludeWhatContradictsThem) {
+  for (const Words& words : std::vector<Words>{{"--prior", "oidn", "--map", "prior=Denoised"},
+                                               {"--prior", "oidn", "--time-budget", "10"},
+                                               {"--oidn", "/lib"},
+                                               {"--oidn-device", "cpu"}})
+    try {
+      job_of(words);
+      FAIL() << words[0] << ' ' << words[1];
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ExitCode::Usage);
+    }
 }
 
 TEST(Identity, NamesTheSettingsThatHold) {

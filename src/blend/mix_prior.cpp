@@ -1,0 +1,189 @@
+#include "blend/mix_prior.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/color_layout.h"
+#include "core/gaussian.h"
+#include "core/halves.h"
+#include "core/parallel.h"
+#include "core/picture_mask.h"
+#include "core/real.h"
+
+namespace polyrecon {
+namespace {
+
+constexpr int beauty_channels = 3;
+constexpr std::array<double, 3> share_sigmas{6, 12, 24};  // pixels
+constexpr double noise_sigma = 2;                         // pixels
+constexpr double kept_noise_sigma = 6;                    // pixels
+constexpr double unjudged = 0.25;
+constexpr double most_factor = 4, least_magnitude = 1e-12;
+constexpr double mean_noise_part = 0.1, least_noise = 0.003;
+
+/// Sum of a channel over the image.
+double sum_of(const Image& image, int c) {
+  return ordered_sum(static_cast<std::size_t>(image.height()), [&](std::size_t y) {
+    double row = 0;
+    for (int x = 0; x < image.width(); ++x) row += static_cast<double>(image.at(x, static_cast<int>(y), c));
+    return row;
+  });
+}
+
+/// v: (y - p)^2 relative to the brightness of p, averaged.
+Image relative_noise(const Image& y, const Image& p, double epsilon, const Image& sampled) {
+  Image v(p.width(), p.height(), 1);
+  for_rows(v.height(), [&](int row) {
+    for (int x = 0; x < v.width(); ++x) {
+      double sum = 0;
+      for (int c = 0; c < beauty_channels; ++c) {
+        const double value = p.at(x, row, c), d = static_cast<double>(y.at(x, row, c)) - value;
+        sum += d * d / (value * value + epsilon) / beauty_channels;
+      }
+      v.at(x, row, 0) = storable(sum);
+    }
+  });
+  return gaussian_blur(v, noise_sigma, sampled);
+}
+
+/// 1 / (p^2 + epsilon) / (v + floor): the weight s of a pixel's terms.
+Image term_weights(const Image& y, const Image& p, double epsilon, const Image& sampled) {
+  const Image v = relative_noise(y, p, epsilon, sampled);
+  const double floor = mean_noise_part * sum_of(v, 0) / static_cast<double>(v.pixels()) + least_noise;
+  Image weights(p.width(), p.height(), beauty_channels);
+  for_rows(p.height(), [&](int row) {
+    for (int c = 0; c < beauty_channels; ++c)
+      for (int x = 0; x < p.width(); ++x) {
+        const double value = p.at(x, row, c), noise = v.at(x, row, 0);
+        weights.at(x, row, c) =
+            in_picture(sampled, p.index(x, row)) ? storable(1 / (value * value + epsilon) / (noise + floor)) : Real(0);
+      }
+  });
+  return weights;
+}
+
+/// Adds the terms of numerator and denominator of w of one half, before they are averaged.
+void add_terms(const Image& y, const Image& p, const Image& d, double epsilon, const Image& sampled, Image& terms) {
+  const Image s = term_weights(y, p, epsilon, sampled);
+  for_rows(terms.height(), [&](int row) {
+    for (int c = 0; c < beauty_channels; ++c)
+      for (int x = 0; x < terms.width(); ++x) {
+        const double value = p.at(x, row, c), ours = static_cast<double>(d.at(x, row, c)) - value;
+        const double weighted = ours * static_cast<double>(s.at(x, row, c));
+        terms.at(x, row, 0) += storable((static_cast<double>(y.at(x, row, c)) - value) * weighted);
+        terms.at(x, row, 1) += storable(ours * weighted);
+      }
+  });
+}
+
+Image difference(const Image& a, const Image& b) {
+  Image out(a.width(), a.height(), beauty_channels);
+  for_rows(out.height(), [&](int y) {
+    for (int c = 0; c < beauty_channels; ++c)
+      for (int x = 0; x < out.width(); ++x) out.at(x, y, c) = a.at(x, y, c) - b.at(x, y, c);
+  });
+  return out;
+}
+
+/// k of unjudged_share at a pixel; the image continues with the values of its border.
+double corner_of_spectrum(const Image& image, int x, int y, int c) {
+  constexpr std::array<double, 4> taps{1, -3, 3, -1};
+  double sum = 0;
+  for (int j = 0; j < 4; ++j)
+    for (int i = 0; i < 4; ++i)
+      sum += taps[static_cast<std::size_t>(i)] * taps[static_cast<std::size_t>(j)] *
+             static_cast<double>(image.at(std::clamp(x + i - 1, 0, image.width() - 1),
+                                          std::clamp(y + j - 1, 0, image.height() - 1), c));
+  return sum;
+}
+
+}  // namespace
+
+Image reconstruction_share(const HalfPair& pair, const HonestHalves& halves) {
+  Image terms(pair.width(), pair.height(), 2);
+  for (std::size_t h = 0; h < 2; ++h)
+    add_terms(pair.color[1 - h], halves.prior[h], halves.ours[h], pair.epsilon, pair.sampled, terms);
+  const double numerator = sum_of(terms, 0), denominator = sum_of(terms, 1);
+  Image share(pair.width(), pair.height(), 1, Real(1));
+  if (!(denominator > 0)) return share;  // both pictures are the same
+  const double everywhere = std::clamp(numerator / denominator, 0.0, 1.0);
+  const double weight = denominator / static_cast<double>(terms.pixels());
+  share = Image(pair.width(), pair.height(), 1);
+  for (const double sigma : share_sigmas) {
+    const Image mean = gaussian_blur(terms, sigma, pair.sampled);
+    for_rows(share.height(), [&](int y) {
+      for (int x = 0; x < share.width(); ++x) {
+        const double w = (static_cast<double>(mean.at(x, y, 0)) + weight * everywhere) /
+                         (static_cast<double>(mean.at(x, y, 1)) + weight);
+        share.at(x, y, 0) += static_cast<Real>(w / share_sigmas.size());
+      }
+    });
+  }
+  for_rows(share.height(), [&](int y) {
+    for (int x = 0; x < share.width(); ++x) share.at(x, y, 0) = std::clamp(share.at(x, y, 0), Real(0), Real(1));
+  });
+  return share;
+}
+
+Image unjudged_share(const HalfPair& pair, const Image& prior, const Image& reconstruction) {
+  const Image noisy = mean_of_halves(pair.color, beauty_channels);
+  const Image s = term_weights(noisy, prior, pair.epsilon, pair.sampled);
+  const Image taken = difference(noisy, prior), kept = difference(reconstruction, prior);
+  Image terms(pair.width(), pair.height(), 2);
+  for_rows(terms.height(), [&](int y) {
+    for (int c = 0; c < beauty_channels; ++c)
+      for (int x = 0; x < terms.width(); ++x) {
+        const double of_noise = corner_of_spectrum(taken, x, y, c), weight = s.at(x, y, c);
+        terms.at(x, y, 0) += storable(of_noise * corner_of_spectrum(kept, x, y, c) * weight);
+        terms.at(x, y, 1) += storable(of_noise * of_noise * weight);
+      }
+  });
+  terms = gaussian_blur(terms, kept_noise_sigma, pair.sampled);
+  Image share(pair.width(), pair.height(), 1);
+  for_rows(share.height(), [&](int y) {
+    for (int x = 0; x < share.width(); ++x) {
+      const double noise = terms.at(x, y, 1);
+      const double b = noise > 0 ? std::clamp(static_cast<double>(terms.at(x, y, 0)) / noise, 0.0, 1.0) : 0;
+      share.at(x, y, 0) = static_cast<Real>(unjudged * (1 - b));
+    }
+  });
+  return share;
+}
+
+Candidate mix_with_prior(Candidate reconstruction, const Image& prior, const Image& share) {
+  for (Image& half : reconstruction.half)
+    for_rows(prior.height(), [&](int y) {
+      for (int c = 0; c < beauty_channels; ++c)
+        for (int x = 0; x < prior.width(); ++x)
+          half.at(x, y, c) = prior.at(x, y, c) + share.at(x, y, 0) * (half.at(x, y, c) - prior.at(x, y, c));
+    });
+  return reconstruction;
+}
+
+Image follow_beauty(Image layers, const Image& beauty) {
+  const int aovs = ColorLayout(layers.channels()).layers() - 1;
+  for_rows(layers.height(), [&](int y) {
+    for (int c = 0; c < beauty_channels; ++c)
+      for (int x = 0; x < layers.width(); ++x) {
+        const double before = layers.at(x, y, c), after = beauty.at(x, y, c);
+        const double factor = before > 0 ? std::clamp(after / before, 1 / most_factor, most_factor) : 1;
+        double sum = 0, magnitudes = 0;
+        for (int layer = 1; layer <= aovs; ++layer) {
+          const double value = layers.at(x, y, ColorLayout::channel(layer, c));
+          sum += value;
+          magnitudes += std::abs(value);
+        }
+        magnitudes += std::abs(before - sum) + least_magnitude;  // what no layer holds takes its part
+        const double left = after - factor * before;
+        for (int layer = 1; layer <= aovs; ++layer) {
+          Real& value = layers.at(x, y, ColorLayout::channel(layer, c));
+          const double share = (std::abs(static_cast<double>(value)) + least_magnitude / aovs) / magnitudes;
+          value = static_cast<Real>(factor * static_cast<double>(value) + left * share);
+        }
+        layers.at(x, y, c) = beauty.at(x, y, c);
+      }
+  });
+  return layers;
+}
+
+}  // namespace polyrecon

@@ -1,0 +1,79 @@
+#include "denoisers/denoise_frame.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "core/halves.h"
+#include "core/parallel.h"
+
+namespace polyrecon {
+namespace {
+
+constexpr int rgb = 3;
+
+/// Ways to turn an image over.
+enum Turn : unsigned { as_it_is = 0, left_right = 1, up_down = 2, both = 3 };
+constexpr std::array<Turn, 2> half_turns{left_right, up_down};
+constexpr std::array<Turn, 4> mean_turns{as_it_is, both, left_right, up_down};
+
+Image turned(const Image& image, Turn turn) {
+  if (turn == as_it_is || image.empty()) return image;
+  Image out(image.width(), image.height(), image.channels());
+  for_rows(image.height(), [&](int y) {
+    for (int c = 0; c < image.channels(); ++c) {
+      const Real* from = image.row(c, (turn & up_down) != 0 ? image.height() - 1 - y : y);
+      if ((turn & left_right) != 0)
+        std::reverse_copy(from, from + image.width(), out.row(c, y));
+      else
+        std::copy_n(from, image.width(), out.row(c, y));
+    }
+  });
+  return out;
+}
+
+void add(const Image& image, Real factor, Image& to) {
+  for_rows(to.height(), [&](int y) {
+    for (int c = 0; c < rgb; ++c)
+      for (int x = 0; x < to.width(); ++x) to.at(x, y, c) += factor * image.at(x, y, c);
+  });
+}
+
+int mean_runs(bool independent_halves, const DenoiserParams& params) {
+  return independent_halves ? params.mean_runs : std::max(params.mean_runs, 1);
+}
+
+}  // namespace
+
+Pass denoise_frame(const Denoiser& denoiser, DenoiserInput input, const DenoiserParams& params, std::size_t max_bytes,
+                   Progress& progress) {
+  const DenoiserFeatures features =
+      input.clean_features ? std::move(input.features) : denoiser.clean(std::move(input.features), max_bytes, progress);
+  const auto denoised = [&](const Image& noisy, Turn turn) {
+    const DenoiserFeatures f{turned(features.albedo, turn), turned(features.normal, turn)};
+    return turned(denoiser.denoise(turned(noisy, turn), f, max_bytes, progress), turn);
+  };
+  Pass out;
+  out.name = denoiser.name();
+  if (input.independent_halves) {
+    out.half_a = denoised(input.halves[0], half_turns[0]);
+    out.half_b = denoised(input.halves[1], half_turns[1]);
+  }
+  const int runs = mean_runs(input.independent_halves, params);
+  if (runs == 0) {
+    out.mean = mean_of_halves({out.half_a, out.half_b}, rgb);
+    return out;
+  }
+  const Image noisy = mean_of_halves(input.halves, rgb);
+  input.halves = {};
+  out.mean = Image(noisy.width(), noisy.height(), rgb);
+  for (int k = 0; k < runs; ++k)
+    add(denoised(noisy, mean_turns.at(static_cast<std::size_t>(k))), Real(1) / static_cast<Real>(runs), out.mean);
+  return out;
+}
+
+std::size_t denoiser_calls(bool independent_halves, bool clean_features, const DenoiserParams& params) {
+  return static_cast<std::size_t>(mean_runs(independent_halves, params)) + (independent_halves ? 2 : 0) +
+         (clean_features ? 0 : 1);
+}
+
+}  // namespace polyrecon

@@ -1,0 +1,174 @@
+#include "pipeline/prior.h"
+
+#include <fmt/format.h>
+
+#include <cstdint>
+#include <string>
+#include <utility>
+
+#include "blend/prior.h"
+#include "core/color_layout.h"
+#include "core/halves.h"
+#include "core/parallel.h"
+#include "core/repair.h"
+#include "denoisers/denoise_frame.h"
+#include "maps/error_map.h"
+#include "noise/fission.h"
+#include "pipeline/solve.h"
+
+namespace polyrecon {
+namespace {
+
+constexpr int rgb = ColorLayout::primaries;
+constexpr int repair_depth = 8;              // pixels, as for the features of the fits
+constexpr double most_noise_in_prior = 0.9;  // above it the prior is the input, which would validate itself
+// The mean of a prior against that of its halves in the picture that is mixed in. Both are of the same samples; the
+// mean has seen more of them at once.
+constexpr Real mean_share = Real(2) / 3;
+constexpr std::uint64_t judge_stream = std::uint64_t{1} << 40;  // apart from those of frames and their neighbours
+
+Image finite_mean(const Frame& frame, Role role) {
+  for (const Feature& feature : frame.features)
+    if (feature.role == role) {
+      Image mean = feature.pass.mean;
+      repair_nonfinite(mean, repair_depth);
+      return mean;
+    }
+  return {};
+}
+
+Image beauty_of(const Image& color) { return crop(color, color.bounds(), 0, rgb); }
+
+Image scaled(Image image, Real factor) {
+  for_rows(image.height(), [&](int y) {
+    for (int c = 0; c < image.channels(); ++c)
+      for (int x = 0; x < image.width(); ++x) image.at(x, y, c) *= factor;
+  });
+  return image;
+}
+
+/// The feature of a role as the fits have it, without its scale. Where it takes no part in them it is `noisy`, which is
+/// then constant, or nothing but noise.
+Image fitted_feature(const std::vector<FeatureUse>& uses, Role role, const HalfPair& pair, Image noisy) {
+  int channel = 0;
+  for (const FeatureUse& use : uses) {
+    const int channels = info_of(use.role).channels;
+    if (use.role == role) {
+      const auto part = [&](std::size_t h) {
+        return crop(pair.features[h], pair.features[h].bounds(), channel, channels);
+      };
+      return scaled(mean_of_halves({part(0), part(1)}, channels), static_cast<Real>(1 / use.scale));
+    }
+    channel += channels;
+  }
+  return noisy;
+}
+
+/// A half as a pair of its own.
+HalfPair half_alone(const HalfPair& pair, std::size_t h) {
+  HalfPair out;
+  out.color = split_halves(beauty_of(pair.color[h]), pair.variance, judge_stream + h);
+  out.variance = scaled(pair.variance, Real(2));
+  out.features = {pair.features[h], pair.features[h]};
+  out.epsilon = pair.epsilon;
+  out.sampled = pair.sampled;
+  return out;
+}
+
+Params judge_params(const Params& params) {
+  Params judge = params_for(Quality::Draft);
+  judge.stages = 2;
+  judge.patch = params.patch;
+  return judge;
+}
+
+/// The picture that is mixed in.
+Image picture_of(const Pass& prior, const HonestHalves& judge, const HalfPair& pair, const Image& reconstruction) {
+  Image mean = in_exposure(prior.mean, pair, reconstruction);
+  if (judge.prior[0].empty()) return mean;
+  for_rows(mean.height(), [&](int y) {
+    for (int c = 0; c < rgb; ++c)
+      for (int x = 0; x < mean.width(); ++x) {
+        const Real halves = Real(0.5) * (judge.prior[0].at(x, y, c) + judge.prior[1].at(x, y, c));
+        mean.at(x, y, c) = halves + mean_share * (mean.at(x, y, c) - halves);
+      }
+  });
+  return mean;
+}
+
+Candidate mix(const ReadyPrior& prior, const HalfPair& pair, const Image& reconstruction, Candidate solved,
+              ErrorMap& error, Decision& decision) {
+  const Image picture = picture_of(prior.pass, prior.judge, pair, reconstruction);
+  const Image share =
+      prior.judged ? reconstruction_share(pair, prior.judge) : unjudged_share(pair, picture, reconstruction);
+  lower_error(reconstruction, picture, share, pair.sampled, error);
+  decision.reason += fmt::format(", {:.0f} % of the result{}", 100 * (1 - mean_of(share)),
+                                 prior.judged ? "" : "; one render has no halves to judge it by");
+  return mix_with_prior(std::move(solved), picture, share);
+}
+
+}  // namespace
+
+DenoiserFeatures denoiser_features(const Frame& frame) {
+  return {finite_mean(frame, Role::Albedo), finite_mean(frame, Role::Normal)};
+}
+
+Pass make_prior(const Denoiser& denoiser, DenoiserFeatures features, const std::vector<FeatureUse>& uses,
+                const Prepared& prepared, const DenoiserParams& params, std::size_t max_bytes, Progress& progress) {
+  const HalfPair& pair = prepared.pair;
+  DenoiserInput input{{beauty_of(pair.color[0]), beauty_of(pair.color[1])},
+                      prepared.independent_halves,
+                      std::move(features),
+                      !params.clean_features};
+  if (input.clean_features)
+    input.features = {fitted_feature(uses, Role::Albedo, pair, std::move(input.features.albedo)),
+                      fitted_feature(uses, Role::Normal, pair, std::move(input.features.normal))};
+  return denoise_frame(denoiser, std::move(input), params, max_bytes, progress);
+}
+
+std::size_t make_prior_units(const Prepared& prepared, const DenoiserParams& params) {
+  return Denoiser::units * denoiser_calls(prepared.independent_halves, !params.clean_features, params);
+}
+
+ReadyPrior ready_prior(Pass prior, bool made_here, const Prepared& prepared) {
+  ReadyPrior out{std::move(prior), made_here, false, {}};
+  out.judged = out.pass.has_halves() && prepared.independent_halves;
+  // The mean of a file may be any picture; what its halves judge is their own.
+  if (out.judged && !made_here) out.pass.mean = mean_of_halves({out.pass.half_a, out.pass.half_b}, rgb);
+  return out;
+}
+
+HonestHalves judge_prior(Pass& prior, const HalfPair& pair, const Params& params, std::size_t max_bytes,
+                         Progress& progress) {
+  HonestHalves out;
+  for (std::size_t h = 0; h < 2; ++h) {
+    FitCounters not_reported;
+    out.ours[h] =
+        mean_of_halves(solve(half_alone(pair, h), judge_params(params), max_bytes, not_reported, progress).half, rgb);
+    out.prior[h] = in_exposure(std::move(h == 0 ? prior.half_a : prior.half_b), pair, out.ours[h]);
+  }
+  return out;
+}
+
+std::size_t judge_units(const HalfPair& pair) { return 2 * fit_units(pair, judge_params(Params())); }
+
+std::size_t judge_channels(std::size_t feature_channels) {
+  return (half_pair_channels(rgb, feature_channels) + 2 * candidate_channels(rgb)) * 4 / 3;
+}
+
+Candidate use_prior(ReadyPrior prior, const HalfPair& pair, const Image& reconstruction, const SelectParams& params,
+                    std::size_t max_bytes, Candidate solved, ErrorMap& error, std::vector<Decision>& decisions) {
+  Decision decision{"prior", true, "prior '" + prior.pass.name + "'"};
+  if (prior.made_here || prior.judged) {
+    solved = mix(prior, pair, reconstruction, std::move(solved), error, decision);
+  } else {
+    const CorrectedPrior corrected = correct_prior(std::move(prior.pass), pair, reconstruction);
+    decision.run = noise_in_prior(corrected.value, pair, reconstruction) < most_noise_in_prior;
+    if (!decision.run) decision.reason += " is the noisy image itself";
+    if (decision.run) solved = add_prior(pair, corrected, error.mse, std::move(solved), params, max_bytes);
+  }
+  decisions.push_back(std::move(decision));
+  return solved;
+}
+
+}  // namespace polyrecon
