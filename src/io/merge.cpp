@@ -170,11 +170,12 @@ const Layer& beauty_of(const Render& render) {
   std::string obstacle;
   for (const Layer& layer : render.layers) {
     if (layer.role != Role::Beauty || layer.companion != Companion::Mean) continue;
-    obstacle = part_of(render, layer).obstacle();
-    if (obstacle.empty()) return layer;
+    if (part_of(render, layer).readable()) return layer;
+    const FileInfo& file = file_of(render, layer);
+    obstacle = fmt::format("{}is {}", file.parts.size() == 1 ? "" : fmt::format("({}) ", title_of(file, layer.part)),
+                           part_of(render, layer).obstacle());
   }
-  if (!obstacle.empty())
-    throw Error(ExitCode::BadInput, fmt::format("{}: the beauty is {}", path_of(render), obstacle));
+  if (!obstacle.empty()) throw Error(ExitCode::BadInput, fmt::format("{}: the beauty {}", path_of(render), obstacle));
   throw Error(ExitCode::Missing, fmt::format("{}: no beauty to merge", path_of(render)));
 }
 
@@ -385,6 +386,7 @@ class Merger {
       header.insert(with_view_layer(samples_attribute, view_layer), Imf::FloatAttribute(static_cast<float>(samples)));
     }
     header.insert("polyrecon/version", Imf::StringAttribute(POLYRECON_VERSION));
+    if (!shared_samples_.empty()) header.insert(shared_samples_attribute, Imf::StringAttribute(shared_samples_));
     return header;
   }
 
@@ -488,7 +490,8 @@ class Merger {
     const PartInfo& part = part_of(first(), layer);
     if (!part.readable()) {
       report_.dropped.push_back(layer.name);
-      report_.notes.push_back(fmt::format("{} is left out: its part is {}", layer.name, part.obstacle()));
+      report_.notes.push_back(fmt::format("{} is left out: {} is {}", layer.name,
+                                          title_of(file_of(first(), layer), layer.part), part.obstacle()));
       return;
     }
     switch (fate(l)) {
@@ -653,12 +656,13 @@ class Merger {
     const bool subsets = samples_ > 0 && samples_ < samples_in_metadata(file, view_layer).value_or(0);
     if (!central || subsets || has_regions_ || each > longest_shared * others) return;
     if (first_samples == FirstSamples::Apart) return;
-    report_.notes.push_back(fmt::format(
+    shared_samples_ = fmt::format(
         "{}: {}the first of the {:g} samples of each of the {} renders lies at the pixel's centre, so their "
         "errors are alike at edges and textures, where the variance is too low; fewer and longer renders "
         "have less error, subsets of one sequence the least",
         view_layer, first_samples == FirstSamples::Shared ? "" : "if the renders differ in their seed, ", each,
-        renders_.size()));
+        renders_.size());
+    report_.notes.push_back(shared_samples_);
   }
 
   /// The sample counts n_k of every pixel of a band; where they are unknown, the weights of regions.
@@ -920,6 +924,7 @@ class Merger {
   std::vector<Slot> slots_;                 ///< The channels of all merged layers.
   std::vector<std::string> counted_;        ///< View layers whose sample counts are known.
   std::map<std::string, double> metadata_samples_;
+  std::string shared_samples_;  ///< The note on samples that the renders have in common; empty without one.
   MergeResult report_;
   std::atomic<std::size_t> left_out_ = 0;
   std::vector<std::atomic<std::size_t>> overflows_;  ///< Half samples of +Inf, by layer.

@@ -5,6 +5,7 @@
 
 #include "io/exr_fixture.h"
 #include "polyrecon/merge.h"
+#include "polyrecon/read_frame.h"
 
 namespace polyrecon {
 namespace {
@@ -47,6 +48,17 @@ TEST(SharedSamples, ShortRendersOfOtherSeedsAreNoted) {
   EXPECT_THAT(notes_of(4, "4", Depth::Equal), Contains(HasSubstr("fewer and longer renders have less error")));
   EXPECT_THAT(notes_of(4, "4", Depth::Equal), Not(Contains(HasSubstr("give --samples"))));
   EXPECT_THAT(notes_of(4, "4", Depth::OfLaterSamples), Contains(HasSubstr("give --samples")));
+}
+
+/// Whoever denoises the merged file hears of it too.
+TEST(SharedSamples, TheMergedFileRepeatsTheNote) {
+  const TemporaryFolder folder;
+  std::vector<std::string> paths;
+  for (int seed = 0; seed < 4; ++seed)
+    paths.push_back(write_exr(folder / std::to_string(seed), {render(seed, "4", Depth::Equal)}));
+  merge(paths, folder / "out.exr");
+  EXPECT_THAT(read_frame_header(folder / "out.exr").notes, Contains(certain));
+  EXPECT_THAT(read_frame_header(paths[0]).notes, Not(Contains(alike)));
 }
 
 TEST(SharedSamples, WithoutTheDepthOfTheFirstSampleTheNoteHasACondition) {

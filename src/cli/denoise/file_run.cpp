@@ -19,7 +19,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr double least_shared_noise = 0.1;  // share of the noisy pixels; below it chance may be the cause
-constexpr double least_seconds = 1e-3;       // a budget that is spent still selects the fastest settings
+constexpr double least_seconds = 1e-3;      // a budget that is spent still selects the fastest settings
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
@@ -85,6 +85,7 @@ void FileRun::list_others(LoadedFrame& loaded) {
     for (const LayerView& place : loaded.in.source.pictures)
       if (!(place == loaded.picture.place)) add({place, {}});
   }
+  for (const std::string& layer : loaded.in.beside_beauty) add({loaded.picture.place, layer});
   for (const std::string& layer : take_own_windows(loaded.in.frame)) {
     add({loaded.picture.place, layer});
     loaded.in.notes.push_back(note_of_layer_beside_beauty(layer));

@@ -133,6 +133,8 @@ void check_files(const Job& job) {
       outputs.push_back({option.name, files.outputs.*option.path});
       all_outputs.push_back(files.outputs.*option.path);
     }
+    for (const NamedPath& output : outputs)
+      if (output.option != "--report") require_exr_name(output);
     require_different_files({files.input, job.sample_map ? sample_map_for(job, files).cost : std::string()}, outputs);
   }
   if (job.sample_map && !job.sample_map->cost.empty() && !FramePattern::parse(job.sample_map->cost))
