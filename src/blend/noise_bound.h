@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "blend/select.h"
@@ -15,6 +16,8 @@ namespace polyrecon {
 /// theirs, though no spike has hit it yet. variance: of a half's noise as measured, before variance_floor.h raises it;
 /// 3 channels, >= 0. Returns variance's shape.
 Image noise_bound(const Image& variance);
+
+inline constexpr std::size_t noise_bound_channels = 3;
 
 /// The energy that a result lost where it was bound.
 struct BoundEnergy {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 
 #include "polyrecon/frame.h"
@@ -12,6 +13,9 @@ struct NoiseVariance {
   std::string source;    ///< "from the file", "from the half buffers" or "estimated from the image".
   bool measured = true;  ///< False for an estimate from the image, which is right for regions, not for single pixels.
 };
+
+/// Channels of NoiseVariance::variance.
+inline constexpr std::size_t noise_variance_channels = 3;
 
 /// Whether the frame holds a variance of its beauty or half buffers.
 bool noise_is_measured(const Frame& frame);

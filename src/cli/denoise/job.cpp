@@ -100,6 +100,11 @@ std::string settings_of(const OptionSet& set, Quality quality, const Job& job) {
 
 }  // namespace
 
+FrameLimits FrameLimits::after(double spent) const {
+  constexpr double least_seconds = 1e-3;
+  return {seconds > 0 ? std::max(seconds - spent, least_seconds) : 0, relative_mse};
+}
+
 Job make_job(const DenoiseOptions& o, const OptionSet& set) {
   Job job;
   job.limits = limits_of(o);
