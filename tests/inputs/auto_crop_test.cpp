@@ -20,11 +20,8 @@ const Rect display{0, 0, 12, 9};
 
 /// A part of one layer whose values are 0 outside `box`, with that box or the whole picture as its data window.
 TestPart boxed(const std::string& name, const std::string& letters, int seed, const Rect& box, bool cut) {
-  TestPart part;
+  TestPart part = part_over(cut ? box : display, display, layer(name, letters, seed));
   part.name = name;
-  part.display = display;
-  part.window = cut ? box : display;
-  part.channels = layer(name, letters, seed);
   for (TestChannel& channel : part.channels)
     channel.samples = [box, inside = channel.samples](int x, int y) { return box.contains(x, y) ? inside(x, y) : 0; };
   return part;

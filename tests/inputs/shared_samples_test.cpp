@@ -1,5 +1,4 @@
 // Renders of one frame with different seeds, whose first sample Cycles takes at the pixel's centre in each of them.
-#include <OpenEXR/ImfStringAttribute.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -25,19 +24,17 @@ TestPart render(int seed, const std::string& samples, Depth depth) {
   part.channels = testing::join({testing::layer("V.Combined", "RGB", seed), flat_layer("V.Denoising Depth", "Z", 5)});
   const double first = depth == Depth::Sky || (depth == Depth::OfLaterSamples && seed > 0) ? 1e10 : 7;
   if (depth != Depth::None) part.channels.push_back({"V.Depth.Z", Imf::FLOAT, testing::constant(first)});
-  if (!samples.empty())
-    part.edit = [=](Imf::Header& header) { header.insert("cycles.V.samples", Imf::StringAttribute(samples)); };
+  if (!samples.empty()) part.edit = testing::with_text("cycles.V.samples", samples);
   return part;
 }
 
 std::vector<std::string> notes_of(int renders, const std::string& samples, Depth depth, double by_hand = 0) {
   const TemporaryFolder folder;
-  std::vector<std::string> paths;
-  for (int seed = 0; seed < renders; ++seed)
-    paths.push_back(write_exr(folder / std::to_string(seed), {render(seed, samples, depth)}));
+  std::vector<TestPart> parts;
+  for (int seed = 0; seed < renders; ++seed) parts.push_back(render(seed, samples, depth));
   MergeOptions options;
   options.samples = by_hand;
-  return merge(paths, folder / "out.exr", options).notes;
+  return merge(testing::write_all(folder, parts), folder / "out.exr", options).notes;
 }
 
 const auto certain = HasSubstr("V: the first of the 4 samples of each of the 4 renders lies at the pixel's centre");
