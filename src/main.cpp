@@ -1,11 +1,12 @@
 #include <fmt/format.h>
+#include <sys/resource.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
-#include <new>
 #include <string>
 
 #ifdef __GLIBC__
@@ -13,7 +14,10 @@
 #endif
 
 #include "cli/app.h"
+#include "cli/common/current_error.h"
+#include "cli/common/printed_text.h"
 #include "cli/common/signals.h"
+#include "io/atomic_file.h"
 #include "polyrecon/error.h"
 
 namespace {
@@ -24,7 +28,7 @@ using polyrecon::ExitCode;
 /// Prints the message as one line; messages of libraries may contain line breaks.
 int fail(ExitCode code, std::string message) {
   std::replace(message.begin(), message.end(), '\n', ' ');
-  std::fputs(fmt::format("polyrecon: {}\n", message).c_str(), stderr);
+  std::fputs(polyrecon::text_line("polyrecon: {}", message).c_str(), stderr);
   return static_cast<int>(code);
 }
 
@@ -61,21 +65,48 @@ ExitCode code_of(const polyrecon::Error& error) {
                                                                                         : error.code();
 }
 
+/// Ends the program as main does, for an exception that nobody can catch: libraries throw some in their threads, and
+/// where a function may not throw, as when no thread can be started.
+[[noreturn]] void end_at_once() {
+  ExitCode code = ExitCode::Internal;
+  try {
+    if (std::current_exception()) {
+      const polyrecon::Error error = polyrecon::current_error();
+      code = code_of(error);
+      fail(code, error.what());
+    } else {
+      fail(code, "internal error: terminated");
+    }
+  } catch (...) {  // NOLINT(bugprone-empty-catch): no memory for the message
+  }
+  polyrecon::remove_temporaries();
+  std::_Exit(static_cast<int>(code));
+}
+
+/// With fewer, files that are whole fail to open, and libraries that are loaded late too.
+void require_open_files() {
+  constexpr rlim_t least = 32;
+  rlimit limit{};
+  if (::getrlimit(RLIMIT_NOFILE, &limit) == 0 && limit.rlim_cur < least)
+    throw polyrecon::Error(
+        ExitCode::OutOfMemory,
+        fmt::format("{} open files are allowed, {} are needed: raise ulimit -n", limit.rlim_cur, least));
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   keep_freed_memory();
+  std::set_terminate(end_at_once);
   try {
+    require_open_files();
     const Command command = parse(argc, argv);
     polyrecon::catch_signals();
     if (command) command();
     polyrecon::require_output_written();
     return static_cast<int>(ExitCode::Done);
-  } catch (const polyrecon::Error& e) {
-    return fail(code_of(e), e.what());
-  } catch (const std::bad_alloc&) {
-    return fail(ExitCode::OutOfMemory, "not enough memory: lower --max-memory, or use fewer passes");
-  } catch (const std::exception& e) {
-    return fail(ExitCode::Internal, std::string("internal error: ") + e.what());
+  } catch (const std::exception&) {
+    const polyrecon::Error error = polyrecon::current_error();
+    return fail(code_of(error), error.what());
   }
 }

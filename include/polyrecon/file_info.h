@@ -50,11 +50,23 @@ struct PartInfo {
   std::string obstacle() const;
 };
 
+/// Tells whether a file is still the one that was looked at.
+struct FileStamp {
+  std::uint64_t device = 0, inode = 0, bytes = 0;
+  std::int64_t modified = 0, changed = 0;  ///< Times of the contents and of the inode, nanoseconds.
+
+  bool operator==(const FileStamp& other) const {
+    return device == other.device && inode == other.inode && bytes == other.bytes && modified == other.modified &&
+           changed == other.changed;
+  }
+};
+
 /// The headers of an image file.
 struct FileInfo {
   std::string path;
   std::string format;       ///< "openexr", or OpenImageIO's name of another format ("pnm" for PFM).
   std::uint64_t bytes = 0;  ///< Length of the file.
+  FileStamp stamp;          ///< Taken before the file was opened.
   std::vector<PartInfo> parts;
 };
 

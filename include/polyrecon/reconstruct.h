@@ -27,8 +27,8 @@ struct Result {
 /// Reconstructs one frame by the method of Moon et al. 2016. To save memory it takes features, halves and variances out
 /// of the frame and frees them as soon as possible; means, names, alpha and sample count stay. A frame that needs more
 /// than params.max_memory is worked in tiles, with the same result to the bit. Throws Error{Usage} if a parameter is
-/// out of its range, Error{CheckFailed} if the beauty has no finite pixel, Error{OutOfMemory} if not even the smallest
-/// tile fits, and Error{Interrupted} when progress asks to stop.
+/// out of its range, Error{CheckFailed} if the beauty has no usable pixel or the result would change its energy by more
+/// than half, Error{OutOfMemory} if not even the smallest tile fits, and Error{Interrupted} when progress asks to stop.
 Result reconstruct(Frame& frame, const Params& params, Progress& progress);
 
 /// The same with the help of frames before and after, which are averaged into the frame along its motion vectors. The

@@ -6,10 +6,12 @@ Frame names follow the tools that write the files:
 - `%04d` is C's format, where the sign counts as a digit: frame -5 is -005, as Nuke and OpenImageIO write it.
 - The last place of this kind in the file's name is the frame's number, as in Blender. Other places, in the name or
   in its folders, stand for the number only where they have the very same text, as in Nuke: "####/shot.####.exr".
+  Folders that exist under exactly this name have no places.
 
 tests/inputs/frame_names.json has examples of every rule; the tests of the program and of the drivers read it.
 """
 
+import os
 import re
 
 from .errors import DriverError, ExitCode
@@ -78,7 +80,11 @@ def frame_path(pattern, frame):
     folder, name = _split(pattern)
     place = [match.group() for match in _PLACE.finditer(name)][-1]
     number = _format(place, frame)
-    return _PLACE.sub(lambda match: number if match.group() == place else match.group(), folder + name)
+
+    def filled(text):
+        return _PLACE.sub(lambda match: number if match.group() == place else match.group(), text)
+
+    return (folder if os.path.isdir(folder) else filled(folder)) + filled(name)
 
 
 def _split(path):

@@ -10,8 +10,10 @@
 
 #include "cli/commands.h"
 #include "cli/common/checks.h"
+#include "cli/common/memory_limit.h"
 #include "cli/common/numbers.h"
 #include "cli/common/option_set.h"
+#include "cli/common/printed_text.h"
 #include "cli/common/read_limits.h"
 #include "core/parallel.h"
 #include "io/exr/file.h"
@@ -25,9 +27,11 @@ struct MergeCommandOptions {
   std::string output;
   MergeOptions merge;
   bool quiet = false;
+  std::size_t max_memory = default_memory;
 };
 
 void run(const MergeCommandOptions& o) {
+  limit_memory(o.max_memory);
   std::vector<std::string> inputs = o.inputs;
   inputs.insert(inputs.end(), o.merge.half_b.begin(), o.merge.half_b.end());
   if (inputs.size() < 2) throw Error(ExitCode::Usage, "merge needs at least two renders");
@@ -37,14 +41,13 @@ void run(const MergeCommandOptions& o) {
   set_codec_threads(processors());
   const MergeResult result = merge(o.inputs, o.output, o.merge);
   if (o.quiet) return;
-  std::string text = fmt::format("{}: {} renders", o.output, result.files);
-  if (result.samples > 0) text += fmt::format(", {:g} samples per pixel", result.samples);
-  text += fmt::format("\n  {:<26} {}\n",
-                      result.joined ? "joined:" : "mean, variance and halves:", fmt::join(result.merged, ", "));
-  if (!result.kept.empty()) text += fmt::format("  from the first file:       {}\n", fmt::join(result.kept, ", "));
-  if (!result.dropped.empty())
-    text += fmt::format("  not merged:                {}\n", fmt::join(result.dropped, ", "));
-  for (const std::string& note : result.notes) text += fmt::format("  note: {}\n", note);
+  const std::string samples = result.samples > 0 ? fmt::format(", {:g} samples per pixel", result.samples) : "";
+  std::string text = text_line("{}: {} renders{}", o.output, result.files, samples);
+  text += text_line("  {:<26} {}",
+                    result.joined ? "joined:" : "mean, variance and halves:", fmt::join(result.merged, ", "));
+  if (!result.kept.empty()) text += text_line("  from the first file:       {}", fmt::join(result.kept, ", "));
+  if (!result.dropped.empty()) text += text_line("  not merged:                {}", fmt::join(result.dropped, ", "));
+  for (const std::string& note : result.notes) text += text_line("  note: {}", note);
   std::fputs(text.c_str(), stdout);
 }
 
@@ -75,6 +78,7 @@ void setup_merge(CLI::App& app, Command& chosen) {
   set.add_choice(Changes::Result, "--compression", o->merge.compress, compressions,
                  "Compression of the output: zip, or none for a file that is deleted soon");
   sub->add_flag("-q,--quiet", o->quiet, "Print nothing but errors");
+  add_memory_limit(*sub, o->max_memory);
   add_read_limits(set, o->merge.limits);
   sub->footer(
       "Examples:\n"

@@ -14,6 +14,7 @@
 #include "cli/common/checks.h"
 #include "cli/common/display_options.h"
 #include "cli/common/layers.h"
+#include "cli/common/memory_limit.h"
 #include "io/pictures/color.h"
 #include "io/pictures/false_color.h"
 #include "io/pictures/png_file.h"
@@ -27,6 +28,7 @@ struct PreviewOptions {
   std::string output, layer;
   DisplayParams display;
   bool false_color = false;
+  std::size_t max_memory = default_memory;
 };
 
 /// The layer to show unless one was named: the picture, else the main layer of a map, else the first layer.
@@ -73,6 +75,7 @@ Panel make_panel(const std::string& path, const PreviewOptions& o) {
 }
 
 void run(const PreviewOptions& o) {
+  limit_memory(o.max_memory);
   for (const std::string& input : o.inputs) require_readable(input);
   require_outputs(o.inputs, {{"-o", o.output}});
   std::vector<Panel> panels;
@@ -93,6 +96,7 @@ void setup_preview(CLI::App& app, Command& chosen) {
   sub->add_option("-o,--output", o->output, "PNG to write")->required()->type_name("FILE");
   sub->add_option("--layer", o->layer, "Layer to show in place of the beauty")->type_name("NAME");
   add_display_options(*sub, o->display);
+  add_memory_limit(*sub, o->max_memory);
   sub->add_flag("--false-colour,--false-color", o->false_color,
                 "Show logarithmic false colours with a legend, as maps always do");
   sub->footer(

@@ -7,8 +7,10 @@
 #include "cli/commands.h"
 #include "cli/common/checks.h"
 #include "cli/common/map_files.h"
+#include "cli/common/memory_limit.h"
 #include "cli/common/numbers.h"
 #include "cli/common/option_set.h"
+#include "cli/common/printed_text.h"
 #include "cli/common/progress_output.h"
 #include "cli/common/sample_map_options.h"
 
@@ -20,9 +22,11 @@ struct SamplemapOptions {
   SampleMapOptions map;
   double samples = 0;  ///< Samples per pixel so far; 0: those in the error map.
   bool quiet = false;
+  std::size_t max_memory = default_memory;
 };
 
 void run(const SamplemapOptions& o) {
+  limit_memory(o.max_memory);
   check_sample_map_options(o.map);
   require_readable(o.error_map);
   if (!o.map.cost.empty()) require_readable(o.map.cost);
@@ -35,7 +39,7 @@ void run(const SamplemapOptions& o) {
   const auto progress = make_progress(ProgressStyle::None);
   const std::string text =
       make_and_write_sample_map(o.output, error.map, error.sample_count, error.windows, o.map, *progress);
-  if (!o.quiet) std::fputs(fmt::format("{}: {}\n", o.output, text).c_str(), stdout);
+  if (!o.quiet) std::fputs(text_line("{}: {}", o.output, text).c_str(), stdout);
 }
 
 }  // namespace
@@ -49,6 +53,7 @@ void setup_samplemap(CLI::App& app, Command& chosen) {
   sub->add_option("--samples", o->samples, "Samples per pixel so far, if the error map does not contain them")
       ->check(above_zero());
   sub->add_flag("-q,--quiet", o->quiet, "Print nothing but errors");
+  add_memory_limit(*sub, o->max_memory);
   OptionSet set(*sub);
   add_sample_map_options(set, o->map);
   sub->footer(

@@ -13,6 +13,8 @@
 #include "cli/commands.h"
 #include "cli/common/checks.h"
 #include "cli/common/layers.h"
+#include "cli/common/memory_limit.h"
+#include "cli/common/printed_text.h"
 #include "cli/common/progress_output.h"
 #include "core/parallel.h"
 #include "io/atomic_file.h"
@@ -37,6 +39,7 @@ struct SweepOptions {
   std::vector<std::string> groups = trade_groups();
   int threads = 0;
   bool quiet = false;
+  std::size_t max_memory = default_memory;
 };
 
 /// The value of --also, "NAME=FILE:SECONDS". FILE may contain colons; NAME contains no equals sign.
@@ -81,7 +84,7 @@ Reference read_reference(const std::string& path) {
   const LayeredFile file = open_layers(path);
   Image mean = read_color(file, {});
   KnownVariance known = read_variance(file, require_color_layer(file), mean);
-  if (!known.note.empty()) std::fputs(fmt::format("polyrecon: {}\n", known.note).c_str(), stderr);
+  if (!known.note.empty()) std::fputs(text_line("polyrecon: {}", known.note).c_str(), stderr);
   return {std::move(mean), std::move(known.variance)};
 }
 
@@ -104,6 +107,7 @@ void check(const SweepOptions& o, const std::vector<PeerFile>& peers) {
 }
 
 void run(const SweepOptions& o) {
+  limit_memory(o.max_memory);
   std::vector<PeerFile> peer_files;
   for (const std::string& text : o.also) peer_files.push_back(parse_peer(text));
   check(o, peer_files);
@@ -123,7 +127,7 @@ void run(const SweepOptions& o) {
   if (o.quiet) return;
   for (const Trial& trial : sweep.inputs.front().trials)
     std::fputs(
-        fmt::format("{:<32} {:8.2f} s  relMSE {:.5f}\n", trial.name, trial.seconds, trial.score.relative_mse).c_str(),
+        text_line("{:<32} {:8.2f} s  relMSE {:.5f}", trial.name, trial.seconds, trial.score.relative_mse).c_str(),
         stdout);
 }
 
@@ -155,6 +159,7 @@ void setup_sweep(CLI::App& app, Command& chosen) {
   sub->add_option("-t,--threads", o->threads, "Threads to use; 0: one for each processor")
       ->check(CLI::Range(0, 4096))
       ->capture_default_str();
+  add_memory_limit(*sub, o->max_memory);
   sub->add_flag("-q,--quiet", o->quiet, "Print nothing but errors");
   sub->footer(
       "Short runs are repeated, up to three times and two seconds; the median counts. The group \"parts\" disables one "

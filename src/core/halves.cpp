@@ -1,10 +1,13 @@
 #include "core/halves.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <vector>
 
 #include "core/parallel.h"
 #include "core/relmse.h"
+#include "core/repair.h"
 
 namespace polyrecon {
 namespace {
@@ -33,9 +36,8 @@ ShareSums share_sums(const Image& mean, const Image& half_a, const Image& half_b
   return sums;
 }
 
-}  // namespace
-
-double half_noise(const Image& mean, const Image& half_a, const Image& half_b) {
+/// w of the least squares fit to all pixels and channels; a half where the halves do not differ.
+double share_of_a(const Image& mean, const Image& half_a, const Image& half_b) {
   std::vector<ShareSums> rows(static_cast<std::size_t>(mean.height()));
   for_rows(mean.height(), [&](int y) {
     for (int c = 0; c < mean.channels(); ++c) {
@@ -49,8 +51,90 @@ double half_noise(const Image& mean, const Image& half_a, const Image& half_b) {
     total.product += row.product;
     total.square += row.square;
   }
-  const double share = total.square > 0 ? total.product / total.square : 0.5;
-  if (std::abs(share - 0.5) < rounding || share > largest_share || share < 1 - largest_share) return 2;
+  return total.square > 0 ? total.product / total.square : 0.5;
+}
+
+bool is_share(double share) { return share <= largest_share && share >= 1 - largest_share; }
+
+constexpr int block_side = 8;              // pixels; small enough to see a bucket that failed
+constexpr double surely_not_noise = 5;     // standard deviations; the pixel filter correlates neighbours by about 2
+constexpr double smallest_half = 0x1p-24;  // steps in which half floats are rounded in the dark
+
+/// Sums over pixels of one channel.
+struct Disagreement {
+  double rest = 0;     ///< mean - (A + B) / 2
+  double spread = 0;   ///< |A - B| / 2
+  double squares = 0;  ///< (A - B)^2 / 4: the variance of (A + B) / 2
+  double energy = 0;   ///< |mean|
+  double rounding = 0;
+
+  void add(Real mean, Real a, Real b) {
+    if (!usable(mean)) return;
+    const double m = static_cast<double>(mean);
+    energy += std::abs(m);
+    rounding += smallest_half;
+    const bool known = usable(a) && usable(b);
+    const double from_a = known ? static_cast<double>(a) : 0, from_b = known ? static_cast<double>(b) : 0,
+                 difference = (from_a - from_b) / 2;
+    rest += m - (from_a + from_b) / 2;
+    spread += std::abs(difference);
+    squares += difference * difference;
+  }
+  void add(const Disagreement& other) {
+    rest += other.rest;
+    spread += other.spread;
+    squares += other.squares;
+    energy += other.energy;
+    rounding += other.rounding;
+  }
+  bool exceeds(double noise) const {
+    return std::abs(rest) > std::min(spread, noise) + contradicting_energy * energy + rounding;
+  }
+};
+
+/// The blocks of one row of blocks.
+struct BlockRow {
+  Disagreement all;
+  bool exceeds = false;  ///< In some block.
+};
+
+BlockRow block_row(const Image& mean, const Image& half_a, const Image& half_b, int c, int first_row) {
+  BlockRow out;
+  const int end_row = std::min(first_row + block_side, mean.height());
+  for (int first = 0; first < mean.width(); first += block_side) {
+    Disagreement block;
+    for (int y = first_row; y < end_row; ++y)
+      for (int x = first; x < std::min(first + block_side, mean.width()); ++x)
+        block.add(mean.at(x, y, c), half_a.at(x, y, c), half_b.at(x, y, c));
+    out.exceeds |= block.exceeds(block.spread);
+    out.all.add(block);
+  }
+  return out;
+}
+
+}  // namespace
+
+bool contradict(const Image& mean, const Image& half_a, const Image& half_b) {
+  if (!is_share(share_of_a(mean, half_a, half_b))) return true;
+  const auto rows = static_cast<std::size_t>((mean.height() + block_side - 1) / block_side);
+  std::vector<BlockRow> blocks(rows * static_cast<std::size_t>(mean.channels()));
+  in_parallel(blocks.size(), [&](std::size_t k) {
+    blocks[k] = block_row(mean, half_a, half_b, static_cast<int>(k / rows), static_cast<int>(k % rows) * block_side);
+  });
+  for (auto channel = blocks.begin(); channel != blocks.end(); channel += static_cast<std::ptrdiff_t>(rows)) {
+    Disagreement all;
+    for (auto row = channel; row != channel + static_cast<std::ptrdiff_t>(rows); ++row) {
+      if (row->exceeds) return true;
+      all.add(row->all);
+    }
+    if (all.exceeds(surely_not_noise * std::sqrt(all.squares))) return true;
+  }
+  return false;
+}
+
+double half_noise(const Image& mean, const Image& half_a, const Image& half_b) {
+  const double share = share_of_a(mean, half_a, half_b);
+  if (std::abs(share - 0.5) < rounding || !is_share(share)) return 2;
   return (1 / share + 1 / (1 - share)) / 2;
 }
 

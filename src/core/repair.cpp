@@ -10,9 +10,9 @@
 namespace polyrecon {
 namespace {
 
-bool pixel_usable(const Image& image, std::size_t i) {
+bool pixel_usable(const Image& image, std::size_t i, Real largest) {
   for (int c = 0; c < image.channels(); ++c)
-    if (!usable(image.plane(c)[i])) return false;
+    if (!(std::abs(image.plane(c)[i]) <= largest)) return false;
   return true;
 }
 
@@ -38,17 +38,34 @@ bool neighbour_mean(const Image& image, const std::vector<unsigned char>& bad, i
 
 bool usable(Real value) { return std::abs(value) <= largest_value; }
 
+Real largest_variance(const Image& mean) {
+  constexpr double noisiest = 1e3;  // standard deviation over the mean radiance
+  constexpr double largest = 1e30;  // the square of largest_value
+  const double sum = ordered_sum(static_cast<std::size_t>(mean.height()), [&](std::size_t y) {
+    double row = 0;
+    for (int c = 0; c < mean.channels(); ++c) {
+      const Real* values = mean.row(c, static_cast<int>(y));
+      for (int x = 0; x < mean.width(); ++x)
+        if (usable(values[x])) row += std::abs(static_cast<double>(values[x]));
+    }
+    return row;
+  });
+  const double deviation =
+      noisiest * sum / static_cast<double>(mean.pixels() * static_cast<std::size_t>(mean.channels()));
+  return static_cast<Real>(std::clamp(deviation * deviation, static_cast<double>(largest_value), largest));
+}
+
 bool has_usable_pixel(const Image& image) {
   for (std::size_t i = 0; i < image.pixels(); ++i)
-    if (pixel_usable(image, i)) return true;
+    if (pixel_usable(image, i, largest_value)) return true;
   return false;
 }
 
-std::size_t repair_nonfinite(Image& image, int depth) {
+std::size_t repair_nonfinite(Image& image, int depth, Real largest) {
   if (image.empty()) return 0;
   std::vector<unsigned char> bad(image.pixels(), 0);
   for_rows(image.height(), [&](int y) {
-    for (std::size_t i = image.index(0, y); i < image.index(0, y + 1); ++i) bad[i] = !pixel_usable(image, i);
+    for (std::size_t i = image.index(0, y); i < image.index(0, y + 1); ++i) bad[i] = !pixel_usable(image, i, largest);
   });
   std::vector<std::size_t> holes;
   for (auto hole = bad.begin(); (hole = std::find(hole, bad.end(), 1)) != bad.end(); ++hole)

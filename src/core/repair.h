@@ -15,8 +15,13 @@ bool usable(Real value);
 /// Whether some pixel is usable in all channels.
 bool has_usable_pixel(const Image& image);
 
-/// Replaces unusable pixels by the mean of the usable ones next to them, from the border of a hole inwards. Pixels more
-/// than `depth` pixels inside a hole become 0. Returns the number of replaced pixels.
-std::size_t repair_nonfinite(Image& image, int depth);
+/// Replaces unusable pixels, with a value that is not finite or beyond `largest`, by the mean of the usable ones next
+/// to them, from the border of a hole inwards. Pixels more than `depth` pixels inside a hole become 0. Returns the
+/// number of replaced pixels.
+std::size_t repair_nonfinite(Image& image, int depth, Real largest = largest_value);
+
+/// Largest usable noise variance of an image: largest_value, or more where the image is so bright that the variance of
+/// its noise must be beyond that.
+Real largest_variance(const Image& mean);
 
 }  // namespace polyrecon

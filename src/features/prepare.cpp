@@ -24,11 +24,11 @@ constexpr int repair_radius = 8;      // pixels; the values around a larger hole
 constexpr double noise_floor = 1e-5;  // noise variance over variance of the feature below which it is not prefiltered
 
 /// Repairs an image and continues it beyond the picture. Returns the number of repaired pixels of the picture.
-std::size_t repair(Image& image, const Image& picture) {
-  if (picture.empty()) return repair_nonfinite(image, repair_radius);
+std::size_t repair(Image& image, const Image& picture, Real largest = largest_value) {
+  if (picture.empty()) return repair_nonfinite(image, repair_radius, largest);
   image = outside_set_to(std::numeric_limits<Real>::quiet_NaN(), picture, std::move(image));
   const std::size_t all = image.pixels();
-  return repair_nonfinite(image, repair_radius) - (all - picture_pixels(picture, all));
+  return repair_nonfinite(image, repair_radius, largest) - (all - picture_pixels(picture, all));
 }
 
 /// Calls body(c, y) for every row of every channel, rows in parallel.
@@ -383,7 +383,8 @@ void prepare_features(Frame& frame, const Preparation& preparation, const Prefil
 
 void require_usable(const Frame& frame) {
   if (!has_usable_pixel(frame.beauty.mean))
-    throw Error(ExitCode::CheckFailed, "layer '" + frame.beauty.name + "': no finite pixel; render the frame again");
+    throw Error(ExitCode::CheckFailed,
+                "layer '" + frame.beauty.name + "': no pixel is finite and at most 1e15; render the frame again");
 }
 
 Preparation choose_features(const Frame& frame, const Steps& steps, const Image& sampled) {
@@ -430,7 +431,7 @@ Prepared prepare(Frame& frame, const Preparation& preparation, const Image& vari
   out.independent_halves = frame.beauty.has_halves();
   out.pair.sampled = preparation.sampled;
   out.pair.variance = variance;
-  repair(out.pair.variance, out.pair.sampled);
+  repair(out.pair.variance, out.pair.sampled, largest_variance(frame.beauty.mean));
   make_non_negative(out.pair.variance);
   scale(out.pair.variance, half_noise_of(frame.beauty));
   out.negative_pixels = negative_pixels(frame.beauty.mean);

@@ -20,6 +20,7 @@
 #include <system_error>
 
 #include "core/first_line.h"
+#include "io/exr/out_of_memory.h"
 #include "polyrecon/error.h"
 
 namespace polyrecon {
@@ -193,6 +194,7 @@ void write_atomically(const std::string& target, const std::function<void(const 
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception& problem) {
+    throw_if_out_of_memory(problem);
     throw Error(ExitCode::CannotWrite, fmt::format("{}: cannot be written ({})", target, first_line(problem.what())));
   }
   temporary.take_name_of_target();

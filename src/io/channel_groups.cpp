@@ -6,7 +6,6 @@
 #include <array>
 #include <cctype>
 #include <map>
-#include <regex>
 #include <set>
 #include <string>
 #include <utility>
@@ -72,8 +71,9 @@ std::string without_view(const std::string& text, const std::string& view) {
 
 /// Whether the name of a part only counts parts, as OpenImageIO's "subimage03" does.
 bool only_counts(const std::string& name) {
-  static const std::regex counting("(subimage|part)[0-9]+");
-  return std::regex_match(name, counting);
+  const std::size_t digits = name.find_last_not_of("0123456789") + 1;
+  const std::string word = name.substr(0, digits);
+  return digits < name.size() && (word == "subimage" || word == "part");
 }
 
 /// Takes the view out of a name of words with dots between them: it is the last word (OpenEXR) or the first (Nuke).

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "core/first_line.h"
+#include "io/exr/out_of_memory.h"
 #include "io/plain_image_file.h"
 #include "polyrecon/error.h"
 
@@ -48,6 +49,7 @@ ChannelReader::ChannelReader(const FileInfo& file, int part, std::vector<std::st
     source_->container = std::make_unique<Imf::MultiPartInputFile>(file.path.c_str(), Imf::globalThreadCount(), false);
     source_->input = std::make_unique<Imf::InputPart>(*source_->container, part);
   } catch (const Iex::BaseExc& problem) {
+    throw_if_out_of_memory(problem);
     fail(file, part, fmt::format("cannot be read: incomplete or damaged ({})", first_line(problem.what())));
   }
 }
@@ -81,6 +83,7 @@ const std::vector<float>& ChannelReader::read(int y0, int y1) {
   try {
     source_->input->readPixels(y0, y1 - 1);
   } catch (const Iex::BaseExc& problem) {
+    throw_if_out_of_memory(problem);
     int bad = y0;  // the library names the chunk at best, so the line is found by reading line by line
     try {
       for (; bad < y1; ++bad) source_->input->readPixels(bad);

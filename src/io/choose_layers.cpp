@@ -209,7 +209,7 @@ int mapped_layer(LayerChoice& choice, const RoleMapping& mapping, const ReadOpti
   int index = find_layer(source, mapping.layer);
   std::error_code failure;
   const bool added = index >= 0 && source.layers[static_cast<std::size_t>(index)].file >= files_of_frame;
-  if ((index < 0 || added) && std::filesystem::is_regular_file(file, failure)) {
+  if ((index < 0 || added) && std::filesystem::exists(file, failure)) {
     index = add_file(source, file, mapping.role, options.limits);
     Layer& layer = source.layers[static_cast<std::size_t>(index)];
     const bool of_another = source.pictures.size() > 1 && !(place_of(layer) == place_of(source)) &&

@@ -2,6 +2,7 @@
 
 #include <OpenImageIO/hash.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
 
 #include <cstddef>
 #include <filesystem>
@@ -11,10 +12,28 @@
 #include "polyrecon/error.h"
 
 namespace polyrecon {
+namespace {
+
+std::int64_t nanoseconds(const timespec& time) { return std::int64_t{time.tv_sec} * 1000000000 + time.tv_nsec; }
+
+}  // namespace
+
+FileStamp stamp_of(const std::string& path) {
+  struct stat found = {};
+  if (::stat(path.c_str(), &found) != 0) return {};
+  return {found.st_dev, found.st_ino, static_cast<std::uint64_t>(found.st_size), nanoseconds(found.st_mtim),
+          nanoseconds(found.st_ctim)};
+}
+
+void require_unchanged(const FileInfo& file) {
+  if (!(stamp_of(file.path) == file.stamp))
+    throw Error(ExitCode::BadInput, fmt::format("{}: was changed while it was in use; run again", file.path));
+}
 
 std::string file_identity(const std::string& path) {
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored)) throw Error(ExitCode::Missing, path + ": no such file");
+  if (!std::filesystem::is_regular_file(path, ignored)) throw Error(ExitCode::BadInput, path + ": not a file");
   std::ifstream file(path, std::ios::binary);
   // The file is hashed in blocks, because it may not fit into memory. The hash of a block seeds the next one.
   std::vector<char> block(std::size_t{4} << 20);

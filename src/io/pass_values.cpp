@@ -2,7 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
+#include "core/parallel.h"
+#include "core/relmse.h"
+#include "core/repair.h"
 #include "io/cie_xyz.h"
 #include "io/renderers/known_names.h"
 
@@ -62,11 +66,61 @@ void from_moment_of_xyz(Image& values, const Image& mean, const SampleCounts& co
   }
 }
 
+/// Sums of relative variances over pairs of pixels.
+struct PairSums {
+  double told = 0, shown = 0;
+};
+
+PairSums pairs_of_row(const Image& mean, const Image& variance, int c, int y) {
+  const Real *m = mean.row(c, y), *v = variance.row(c, y);
+  PairSums sums;
+  for (int x = 0; x + 1 < mean.width(); ++x) {
+    const double a = static_cast<double>(m[x]), b = static_cast<double>(m[x + 1]),
+                 told = (static_cast<double>(v[x]) + static_cast<double>(v[x + 1])) / 2, shown = (a - b) * (a - b) / 2,
+                 scale = relmse_denominator((a + b) / 2);
+    if (!std::isfinite(told / scale) || !std::isfinite(shown / scale)) continue;
+    sums.told += told / scale;
+    sums.shown += shown / scale;
+  }
+  return sums;
+}
+
 }  // namespace
 
 Image with_channels(Image image, int channels, bool is_variance) {
   if (image.empty() || image.channels() == channels) return image;
   return channels == 1 ? averaged(image, is_variance) : repeated(image, channels);
+}
+
+std::size_t repair_counts(Image& counts) {
+  const auto is_count = [](Real n) { return usable(n) && n >= 0; };
+  double sum = 0;
+  std::size_t known = 0;
+  for (std::size_t i = 0; i < counts.pixels(); ++i)
+    if (const Real n = counts.plane(0)[i]; is_count(n)) sum += static_cast<double>(n), ++known;
+  if (known == 0) return counts.pixels();
+  std::replace_if(
+      counts.plane(0), counts.plane(0) + counts.pixels(), [&](Real n) { return !is_count(n); },
+      static_cast<Real>(sum / static_cast<double>(known)));
+  return counts.pixels() - known;
+}
+
+double variance_excess(const Image& mean, const Image& variance) {
+  if (variance.empty()) return 0;
+  std::vector<PairSums> rows(static_cast<std::size_t>(mean.height()));
+  for_rows(mean.height(), [&](int y) {
+    for (int c = 0; c < mean.channels(); ++c) {
+      const PairSums row = pairs_of_row(mean, variance, c, y);
+      rows[static_cast<std::size_t>(y)].told += row.told;
+      rows[static_cast<std::size_t>(y)].shown += row.shown;
+    }
+  });
+  PairSums all;
+  for (const PairSums& row : rows) {
+    all.told += row.told;
+    all.shown += row.shown;
+  }
+  return all.shown > 0 ? all.told / all.shown : 0;
 }
 
 bool to_sample_counts(Image& values, const std::string& pass, double everywhere) {

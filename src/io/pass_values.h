@@ -27,6 +27,18 @@ struct SampleCounts {
 /// unknown. Returns false where the values are fractions of an unknown number.
 bool to_sample_counts(Image& values, const std::string& pass, double everywhere);
 
+/// Replaces counts that are negative, not finite or too large (core/repair.h) by the mean of the others. Returns how
+/// many there are; where it is all, nothing changes.
+std::size_t repair_counts(Image& counts);
+
+/// Mean noise variance over the mean variance that pixels next to each other show, (a - b)^2 / 2, both relative to
+/// their brightness (core/relmse.h). The picture only adds to the latter, so independent noise of this variance gives
+/// at most about 1. 0 where the variance is unknown or neighbours do not differ.
+double variance_excess(const Image& mean, const Image& variance);
+
+/// Above it the variance is wrong, whatever the pixel filter, which halves the differences of neighbours.
+constexpr double most_variance_excess = 10;
+
 /// Turns what a companion of `mean` holds into the variance of the mean. counts: known, unless kind is VarianceOfMean.
 /// The variance v of one of n samples becomes v / n; a second moment m2 becomes (m2 - mean^2) / (n - 1), at least 0.
 /// Second moments of CIE XYZ become those of RGB; the noise of the channels is taken to be fully correlated, as it is

@@ -7,8 +7,8 @@
 
 namespace polyrecon {
 
-/// Sets format and the one part of a PFM, Radiance or TIFF file. Channels are named R, G, B, A or Y. Throws
-/// Error{BadInput} as describe_file does.
+/// Sets the one part of a PFM, Radiance or TIFF file, as file.format says: "pnm", "hdr" or "tiff". Channels are named
+/// R, G, B, A or Y. Throws Error{BadInput} as describe_file does.
 void describe_plain_image(FileInfo& file, const ReadLimits& limits);
 
 /// Reads channels of the whole image. The upper row comes first, whatever the order in the file. Throws

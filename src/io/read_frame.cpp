@@ -4,11 +4,14 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 #include <memory>
 #include <utility>
 
+#include "core/halves.h"
 #include "core/rect.h"
+#include "core/repair.h"
 #include "io/beyond_range.h"
 #include "io/channel_names.h"
 #include "io/choose_layers.h"
@@ -134,6 +137,13 @@ Image times(Image image, const std::array<Real, 4>& factors) {
   return image;
 }
 
+bool has_finite_sample(const Image& image) {
+  for (int c = 0; c < image.channels(); ++c)
+    if (std::any_of(image.plane(c), image.plane(c) + image.pixels(), [](Real v) { return std::isfinite(v); }))
+      return true;
+  return false;
+}
+
 /// A pass with the images that are read for it; nullptr without one.
 struct WantedPass {
   PassChoice choice;
@@ -234,16 +244,39 @@ class FrameBuilder {
     }
     if (lone > 0) result_.notes.push_back(lone_overflow_note(from.name, lone));
     if (overflows > 0) result_.notes.push_back(overflow_note(from.name, overflows));
+    if (from.companion == Companion::Mean && info_of(role).values == Values::Radiance) note_too_bright(image, from);
+  }
+
+  void note_too_bright(const Image& image, const Layer& from) {
+    std::size_t samples = 0;
+    for (int c = 0; c < image.channels(); ++c)
+      samples += static_cast<std::size_t>(std::count_if(image.plane(c), image.plane(c) + image.pixels(),
+                                                        [](Real v) { return std::isfinite(v) && !usable(v); }));
+    if (samples > 0)
+      result_.notes.push_back(
+          fmt::format("{}: {} samples beyond {:g} count as not finite; render with a lower exposure "
+                      "to keep them",
+                      from.name, samples, static_cast<double>(largest_value)));
   }
 
   /// The counts of a sample-count layer; empty, with a note, where it holds fractions of an unknown number.
   Image take_counts(WantedPass& wanted) {
     const Layer& from = layer(wanted.choice.mean);
     Image counts = take(wanted.mean, Role::SampleCount, wanted.choice.mean, 1);
-    if (to_sample_counts(counts, from.pass, counts_.everywhere)) return counts;
-    result_.notes.push_back(
-        fmt::format("{} is not used: it holds fractions of an unknown sample count; give --samples", from.name));
-    return {};
+    if (!to_sample_counts(counts, from.pass, counts_.everywhere)) {
+      result_.notes.push_back(
+          fmt::format("{} is not used: it holds fractions of an unknown sample count; give --samples", from.name));
+      return {};
+    }
+    const std::size_t repaired = repair_counts(counts);
+    if (repaired == counts.pixels()) {
+      result_.notes.push_back(fmt::format("{} is not used: no pixel has a sample count; give --samples", from.name));
+      return {};
+    }
+    if (repaired > 0)
+      result_.notes.push_back(
+          fmt::format("{}: {} pixels without a usable sample count get the mean of the others", from.name, repaired));
+    return counts;
   }
 
   /// Finds the samples per pixel, which variances need: of the sample-count layer, else by --samples or the metadata.
@@ -271,7 +304,19 @@ class FrameBuilder {
       return {};
     }
     to_variance_of_mean(variance, kind, mean, counts_);
-    return variance;
+    if (has_finite_sample(variance)) return variance;
+    result_.notes.push_back(fmt::format("{} is not used: it has no finite value", from.name));
+    return {};
+  }
+
+  /// Tells of a variance that the picture contradicts: neighbouring pixels would differ by more than they do.
+  void note_too_large_variance(const WantedPass& wanted, const Pass& pass) {
+    const double excess = wanted.choice.role == Role::Beauty ? variance_excess(pass.mean, pass.variance) : 0;
+    if (excess > most_variance_excess)
+      result_.notes.push_back(
+          fmt::format("{} is {:.0f} times as large as the differences of neighbouring pixels allow, "
+                      "so too much is smoothed; --variance-kind sample if it is that of one sample",
+                      layer(wanted.choice.variance).name, excess));
   }
 
   Pass take_pass(WantedPass& wanted) {
@@ -281,9 +326,21 @@ class FrameBuilder {
     pass.name = layer(wanted.choice.mean).name;
     pass.mean = take(wanted.mean, role, wanted.choice.mean, channels);
     pass.variance = take_variance(wanted, pass.mean);
+    note_too_large_variance(wanted, pass);
     pass.half_a = take(wanted.half_a, role, wanted.choice.half_a, channels);
     pass.half_b = take(wanted.half_b, role, wanted.choice.half_b, channels);
+    drop_contradicting_halves(wanted.choice, pass);
     return pass;
+  }
+
+  /// A picture is made of its halves, so those of another picture would replace it.
+  void drop_contradicting_halves(const PassChoice& choice, Pass& pass) {
+    if (!pass.has_halves() || !contradict(pass.mean, pass.half_a, pass.half_b)) return;
+    result_.notes.push_back(
+        fmt::format("{} and {} are not used: they contradict {}, which is not their mean; if they are halves of "
+                    "another layer, name it with --map",
+                    layer(choice.half_a).name, layer(choice.half_b).name, pass.name));
+    pass.half_a = pass.half_b = {};
   }
 
   void place(WantedPass& wanted) {

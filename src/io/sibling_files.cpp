@@ -1,8 +1,8 @@
 #include "io/sibling_files.h"
 
 #include <algorithm>
+#include <cstring>
 #include <filesystem>
-#include <regex>
 #include <string_view>
 #include <system_error>
 #include <utility>
@@ -59,14 +59,29 @@ struct NameParts {
   std::string before, pass, after;
 };
 
+/// Where the numbers of frame and version at the end of a name begin; its length where there are none. Each number may
+/// have a separator, a v and a minus sign before it, in this order.
+std::size_t numbers_at_end(const std::string& name) {
+  const auto stands_before = [&](std::size_t at, const char* any_of) {
+    return at > 0 && std::strchr(any_of, name[at - 1]) != nullptr;
+  };
+  std::size_t begin = name.size();
+  while (stands_before(begin, "0123456789")) {
+    while (stands_before(begin, "0123456789")) --begin;
+    for (const char* one_of : {"-", "vV", "._-"}) begin -= stands_before(begin, one_of) ? 1 : 0;
+  }
+  return begin;
+}
+
 /// The pass is at the end of the name, or numbers of a frame and a version follow it: ".0001", "_v02.-0005". It is
 /// empty where no pass is known.
 NameParts parts_of(const std::string& path) {
-  static const std::regex numbers(R"((.*?)((?:[._-]?[vV]?-?\d+)+))");
   const std::string stem = fs::path(path).stem().string();
   NameParts parts{stem, pass_at_end(stem), {}};
-  std::smatch match;
-  if (parts.pass.empty() && std::regex_match(stem, match, numbers)) parts = {match[1], pass_at_end(match[1]), match[2]};
+  if (const std::size_t numbers = numbers_at_end(stem); parts.pass.empty() && numbers < stem.size()) {
+    const std::string name = stem.substr(0, numbers);
+    parts = {name, pass_at_end(name), stem.substr(numbers)};
+  }
   parts.before.resize(parts.before.size() - parts.pass.size());
   return parts;
 }

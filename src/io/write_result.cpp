@@ -29,9 +29,13 @@
 #include "io/atomic_file.h"
 #include "io/beyond_range.h"
 #include "io/channel_groups.h"
+#include "io/exr/attributes.h"
 #include "io/exr/bands.h"
+#include "io/exr/out_of_memory.h"
 #include "io/exr/raw.h"
 #include "io/exr/single_part.h"
+#include "io/exr/writable.h"
+#include "io/file_identity.h"
 #include "io/renderers/polyrecon.h"
 #include "polyrecon/error.h"
 
@@ -138,12 +142,18 @@ bool is_lossy(const Imf::Header& header) {
 }
 
 void add_provenance(Imf::Header& header, const Provenance& provenance) {
-  header.insert("polyrecon/version", Imf::StringAttribute(POLYRECON_VERSION));
-  if (!provenance.settings.empty()) header.insert("polyrecon/settings", Imf::StringAttribute(provenance.settings));
-  if (!provenance.input.empty()) header.insert("polyrecon/input", Imf::StringAttribute(provenance.input));
+  set_attribute(header, "polyrecon/version", Imf::StringAttribute(POLYRECON_VERSION));
+  if (!provenance.settings.empty())
+    set_attribute(header, "polyrecon/settings", Imf::StringAttribute(provenance.settings));
+  if (!provenance.input.empty()) set_attribute(header, "polyrecon/input", Imf::StringAttribute(provenance.input));
   if (provenance.estimated_relative_mse >= 0)
-    header.insert("polyrecon/estimatedRelMSE",
+    set_attribute(header, "polyrecon/estimatedRelMSE",
                   Imf::FloatAttribute(static_cast<float>(provenance.estimated_relative_mse)));
+}
+
+/// Removes an attribute that OpenEXR takes for the description of tiles from the header of scanlines.
+void remove_stray_tiles(Imf::Header& header) {
+  if (header.hasType() && !Imf::isTiled(header.type())) header.erase("tiles");
 }
 
 /// Stores a value as the channel's type. Counts half values that were out of range and are saturated.
@@ -188,28 +198,6 @@ std::string part_title(const Imf::Header& header, int part) {
   return header.hasName() ? fmt::format("part {} \"{}\"", part, header.name()) : fmt::format("part {}", part);
 }
 
-/// Checks that the input, which is read a second time for the result, is still the file that the frame was read from.
-void check_unchanged(const FrameSource& source) {
-  const FileInfo& then = source.files.front();
-  ReadLimits limits;  // the frame may have been read with wider ones
-  std::size_t channels = 0;
-  for (const PartInfo& part : then.parts) {
-    limits.max_pixels = std::max(limits.max_pixels, part.data_window.area());
-    channels += part.channels.size();
-  }
-  limits.max_channels = std::max(limits.max_channels, channels);
-  const FileInfo now = describe_file(source.path, limits);
-  bool same = now.bytes == then.bytes && now.parts.size() == then.parts.size();
-  for (std::size_t p = 0; same && p < now.parts.size(); ++p) {
-    const auto &a = now.parts[p].channels, &b = then.parts[p].channels;
-    same = now.parts[p].data_window == then.parts[p].data_window &&
-           std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                      [](const ChannelInfo& x, const ChannelInfo& y) { return x.name == y.name && x.type == y.type; });
-  }
-  if (!same)
-    throw Error(ExitCode::BadInput, fmt::format("{}: was changed while it was denoised; run again", source.path));
-}
-
 /// A file that is written again with changes. write() and verify() are the two steps of write_atomically.
 class Rewrite {
  public:
@@ -219,6 +207,7 @@ class Rewrite {
     for (const Replacement& replacement : replacements) add_replacement(source, replacement, options, parts_);
     for (std::size_t p = 0; p < parts_.size(); ++p) {
       parts_[p].header.zipCompressionLevel() = zip_level;
+      remove_stray_tiles(parts_[p].header);
       if (parts_[p].copied_raw() || !is_lossy(parts_[p].header)) continue;
       parts_[p].header.compression() = Imf::ZIP_COMPRESSION;
       notes_.push_back(
@@ -226,16 +215,16 @@ class Rewrite {
                       part_title(parts_[p].header, static_cast<int>(p))));
     }
     add_provenance(parts_.front().header, options.provenance);
+    require_writable(path_, headers());
   }
 
   void write(const std::string& path) {
-    std::vector<Imf::Header> headers;
-    for (const PartRewrite& part : parts_) headers.push_back(part.header);
+    const std::vector<Imf::Header> written = headers();
     saturated_ = 0;
     hashes_.clear();
-    Imf::MultiPartOutputFile output(path.c_str(), headers.data(), static_cast<int>(headers.size()), true);
+    Imf::MultiPartOutputFile output(path.c_str(), written.data(), static_cast<int>(written.size()), true);
     for (int p = 0; p < static_cast<int>(parts_.size()); ++p)
-      parts_[static_cast<std::size_t>(p)].copied_raw() ? copy_raw(output, p) : write_changed(output, p);
+      parts_[static_cast<std::size_t>(p)].copied_raw() ? copy_part(output, p) : write_changed(output, p);
     if (saturated_ > 0)
       notes_.push_back(fmt::format("{} half samples were beyond {} and are written as that", saturated_, largest_half));
   }
@@ -255,6 +244,22 @@ class Rewrite {
   std::vector<std::string> take_notes() { return std::move(notes_); }
 
  private:
+  std::vector<Imf::Header> headers() const {
+    std::vector<Imf::Header> all;
+    for (const PartRewrite& part : parts_) all.push_back(part.header);
+    return all;
+  }
+
+  void copy_part(Imf::MultiPartOutputFile& output, int p) {
+    try {
+      copy_raw(output, p);
+    } catch (const Iex::InputExc& problem) {
+      throw_if_out_of_memory(problem);
+      throw Error(ExitCode::BadInput, fmt::format("{}: incomplete or damaged: {} cannot be copied ({})", path_,
+                                                  part_title(input_.header(p), p), first_line(problem.what())));
+    }
+  }
+
   void copy_raw(Imf::MultiPartOutputFile& output, int p) {
     const std::string& type = input_.header(p).type();
     if (type == Imf::DEEPSCANLINE) {
@@ -278,6 +283,7 @@ class Rewrite {
     try {
       read_band(from, old);
     } catch (const Iex::BaseExc& problem) {
+      throw_if_out_of_memory(problem);
       throw Error(ExitCode::BadInput,
                   fmt::format("{}: incomplete or damaged: {} cannot be read at scanlines {} to {} ({})", path_,
                               part_title(input_.header(p), p), old.y0, old.y1 - 1, first_line(problem.what())));
@@ -391,11 +397,15 @@ void fill_map_band(const std::vector<MapChannel>& channels, const Rect& data_win
 std::vector<std::string> write_result(const FrameSource& source, const std::vector<Replacement>& replacements,
                                       const std::string& target, const WriteOptions& options) {
   if (source.files.front().format != "openexr") return write_as_exr(source, replacements, target, options);
-  check_unchanged(source);
+  const FileInfo& input = source.files.front();  // it is read a second time
+  require_unchanged(input);
   Rewrite rewrite(source, replacements, options);
+  const auto verify = [&](const std::string& path) {
+    rewrite.verify(path);
+    require_unchanged(input);
+  };
   write_atomically(
-      target, [&](const std::string& path) { rewrite.write(path); },
-      [&](const std::string& path) { rewrite.verify(path); });
+      target, [&](const std::string& path) { rewrite.write(path); }, verify);
   return rewrite.take_notes();
 }
 

@@ -253,7 +253,7 @@ Image variance_from_halves(const Pass& beauty, const Image& picture) {
   for (int c = 0; c < 3; ++c)
     for (std::size_t i = 0; i < out.pixels(); ++i)
       out.plane(c)[i] = variance_of_mean(beauty.half_a.plane(c)[i], beauty.half_b.plane(c)[i]);
-  repair_nonfinite(out, 2);
+  repair_nonfinite(out, 2, largest_variance(beauty.mean));
   return gaussian_blur(out, half_difference_sigma, picture);
 }
 

@@ -1,6 +1,9 @@
 #include "polyrecon/reconstruct.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "blend/noise_bound.h"
@@ -10,6 +13,7 @@
 #include "core/parallel.h"
 #include "core/picture.h"
 #include "core/rect.h"
+#include "core/repair.h"
 #include "core/wrap.h"
 #include "features/prepare.h"
 #include "maps/error_map.h"
@@ -24,6 +28,7 @@
 #include "pipeline/savings.h"
 #include "pipeline/solve.h"
 #include "pipeline/stage.h"
+#include "polyrecon/error.h"
 #include "temporal/join.h"
 #include "temporal/neighbour.h"
 
@@ -34,6 +39,7 @@ namespace {
 
 constexpr double max_restored_gain = 0.001;  // a tenth of the least visible step in brightness (Weber)
 constexpr double max_total_gain = 0.05;      // above what is lost because weights favour ordinary pixels
+constexpr double most_energy_change = 0.5;   // share of the input's; what fireflies and signs may cost is less
 
 /// The parameters for a frame: an estimated noise variance needs other patches than a measured one.
 Params params_for_frame(const Frame& frame, Params params) {
@@ -118,6 +124,30 @@ void put_layers(const Image& image, const Image& input_alpha, Result& result) {
   for (int layer = 1; layer < layout.layers(); ++layer) result.aovs.push_back(layer_of(layer));
   result.alpha =
       layout.has_alpha() ? within_coverage(crop(image, image.bounds(), layout.alpha_channel(), 1)) : input_alpha;
+}
+
+/// Throws where a channel of the result has another energy than the input, over the pixels that are usable there.
+void require_energy(const Pass& beauty, const Image& result) {
+  for (int c = 0; c < beauty.mean.channels(); ++c) {
+    const auto sum = [&](const auto& term) {
+      return ordered_sum(static_cast<std::size_t>(result.height()), [&](std::size_t y) {
+        double row = 0;
+        for (int x = 0; x < result.width(); ++x)
+          if (const Real in = beauty.mean.at(x, static_cast<int>(y), c); usable(in))
+            row += term(static_cast<double>(in), static_cast<double>(result.at(x, static_cast<int>(y), c)));
+        return row;
+      });
+    };
+    const double energy = sum([](double in, double) { return std::abs(in); });
+    const double change = sum([](double in, double out) { return out - in; });
+    if (std::abs(change) > most_energy_change * energy)
+      throw Error(
+          ExitCode::CheckFailed,
+          fmt::format("layer '{}', channel {}: the result would change the energy by {:+.0f} % (limit {:.0f} %): "
+                      "its halves, variance or features are not those of this picture; render them again, or "
+                      "leave them out",
+                      beauty.name, c, 100 * change / energy, 100 * most_energy_change));
+  }
 }
 
 /// Reconstructs a panorama with columns of its other end beyond both ends, and takes them away again.
@@ -217,6 +247,7 @@ Result reconstruct(Frame& frame, const std::vector<TimedNeighbour>& neighbours, 
   Image image =
       phases.run("energy", 1, [&](Progress&) { return restore(frame, halves, solved, bound, params, report); });
   if (!ours.empty()) image = follow_beauty(std::move(ours), image);
+  require_energy(frame.beauty, image);
   put_layers(image, frame.alpha, result);
   note_result(result);
   return result;

@@ -12,6 +12,7 @@
 #include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <iterator>
 #include <random>
 #include <stdexcept>
@@ -82,6 +83,7 @@ class ProgramTest : public ::testing::Test {
     const int err = ::open(path("stderr").c_str(), O_CREAT | O_TRUNC | O_WRONLY, 0600);
     ::dup2(out, STDOUT_FILENO);
     ::dup2(err, STDERR_FILENO);
+    in_child_();
     std::vector<char*> argv{const_cast<char*>(program_path())};
     for (const std::string& a : arguments) argv.push_back(const_cast<char*>(a.c_str()));
     argv.push_back(nullptr);
@@ -99,6 +101,7 @@ class ProgramTest : public ::testing::Test {
   Outcome run(const std::vector<std::string>& arguments) const { return finish(start(arguments)); }
 
   std::filesystem::path folder_;
+  std::function<void()> in_child_ = [] {};  ///< Called in the child before the program, to set limits.
 };
 
 /// A file of float channels; value(x, y, channel).

@@ -77,8 +77,8 @@ TEST(InspectFile, NoiseLevelFromVarianceOrHalves) {
   EXPECT_NEAR(with_variance.noise_level, 5, 1e-5);  // 0.3 is no float
   EXPECT_EQ(with_variance.samples, 8);
   EXPECT_THAT(with_variance.missing, Not(Contains("variance")));
-  part.channels = join({flat_layer("V.Combined", "RGB", 0.3), flat_layer("V.Combined A", "RGB", 1),
-                        flat_layer("V.Combined B", "RGB", 3)});
+  part.channels = join({flat_layer("V.Combined", "RGB", 0.3), flat_layer("V.Combined A", "RGB", -0.7),
+                        flat_layer("V.Combined B", "RGB", 1.3)});
   const Inspection with_halves = inspect(write_exr(folder / "b.exr", {part}));
   EXPECT_NEAR(with_halves.noise_level, 10, 1e-5);
   EXPECT_THAT(with_halves.missing, Contains("variance"));

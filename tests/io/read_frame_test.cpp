@@ -34,6 +34,27 @@ TestPart part_of(std::vector<testing::TestChannel> channels) {
   return part;
 }
 
+/// Whether channel c holds these samples over the whole window.
+bool holds(const Image& image, int c, const Rect& window, const testing::Samples& samples) {
+  for (int y = window.y0; y < window.y1; ++y)
+    for (int x = window.x0; x < window.x1; ++x)
+      if (static_cast<double>(image.at(x - window.x0, y - window.y0, c)) != samples(x, y)) return false;
+  return true;
+}
+
+/// The mean of two patterns, as of the halves of a picture.
+testing::Samples mean_of(int seed_a, int seed_b) {
+  return [=](int x, int y) { return (pattern(seed_a)(x, y) + pattern(seed_b)(x, y)) / 2; };
+}
+
+/// The layer whose halves are those of the two seeds.
+std::vector<testing::TestChannel> mean_layer(const std::string& name, const std::string& letters, int seed_a,
+                                             int seed_b) {
+  std::vector<testing::TestChannel> channels = layer(name, letters, 0);
+  for (testing::TestChannel& channel : channels) channel.samples = mean_of(seed_a++, seed_b++);
+  return channels;
+}
+
 double everywhere(const Image& image, int c = 0) {
   for (std::size_t i = 1; i < image.pixels(); ++i)
     if (image.plane(c)[i] != image.plane(c)[0]) ADD_FAILURE() << "not constant";
@@ -42,12 +63,12 @@ double everywhere(const Image& image, int c = 0) {
 
 TEST(ReadFrame, FillsEveryRoleAndCompanionOfASinglePartFile) {
   const TemporaryFolder folder;
-  TestPart part = part_of(
-      join({layer("V.Combined", "RGBA", 0), layer("V.Combined Variance", "RGB", 10), layer("V.Combined A", "RGB", 20),
-            layer("V.Combined B", "RGB", 30), layer("V.Denoising Normal", "XYZ", 40),
-            layer("V.Denoising Normal Variance", "XYZ", 43), layer("V.Denoising Albedo", "RGB", 50),
-            layer("V.Denoising Depth", "Z", 60), layer("V.Denoising Depth A", "Z", 61),
-            layer("V.Denoising Depth B", "Z", 62), layer("V.Visibility", "Z", 63), layer("V.Sample Count", "X", 64)}));
+  TestPart part = part_of(join(
+      {mean_layer("V.Combined", "RGB", 20, 30), layer("V.Combined", "A", 3), layer("V.Combined Variance", "RGB", 10),
+       layer("V.Combined A", "RGB", 20), layer("V.Combined B", "RGB", 30), layer("V.Denoising Normal", "XYZ", 40),
+       layer("V.Denoising Normal Variance", "XYZ", 43), layer("V.Denoising Albedo", "RGB", 50),
+       mean_layer("V.Denoising Depth", "Z", 61, 62), layer("V.Denoising Depth A", "Z", 61),
+       layer("V.Denoising Depth B", "Z", 62), layer("V.Visibility", "Z", 63), layer("V.Sample Count", "X", 64)}));
   part.window = {-4, 3, 9, 14};
   const ReadResult read = read_frame(write_exr(folder / "a.exr", {part}));
   const Frame& frame = read.frame;
@@ -56,7 +77,7 @@ TEST(ReadFrame, FillsEveryRoleAndCompanionOfASinglePartFile) {
   EXPECT_EQ(frame.height(), 11);
   EXPECT_EQ(frame.beauty.name, "V.Combined");
   for (int c = 0; c < 3; ++c) {
-    EXPECT_TRUE(holds(frame.beauty.mean, c, part.window, c));
+    EXPECT_TRUE(holds(frame.beauty.mean, c, part.window, mean_of(20 + c, 30 + c)));
     EXPECT_TRUE(holds(frame.beauty.variance, c, part.window, 10 + c));
     EXPECT_TRUE(holds(frame.beauty.half_a, c, part.window, 20 + c));
     EXPECT_TRUE(holds(frame.beauty.half_b, c, part.window, 30 + c));
@@ -295,10 +316,10 @@ TEST(ReadFrame, StereoViews) {
 
 TEST(ReadFrame, RolesByHand) {
   const TemporaryFolder folder;
-  const std::string path =
-      write_exr(folder / "a.exr",
-                {part_of(join({layer("V.Foo", "RGB", 0), layer("V.FooVar", "RGB", 10), layer("V.One", "RGB", 20),
-                               layer("V.Two", "RGB", 30), layer("V.Kd", "RGB", 40), layer("V.Pos", "XYZ", 50)}))});
+  const std::string path = write_exr(
+      folder / "a.exr",
+      {part_of(join({mean_layer("V.Foo", "RGB", 20, 30), layer("V.FooVar", "RGB", 10), layer("V.One", "RGB", 20),
+                     layer("V.Two", "RGB", 30), layer("V.Kd", "RGB", 40), layer("V.Pos", "XYZ", 50)}))});
   EXPECT_EQ(error_of([&] { read_frame(path); }).code(), ExitCode::Missing);
   ReadOptions options;
   for (const char* text :
@@ -306,7 +327,7 @@ TEST(ReadFrame, RolesByHand) {
     options.map.push_back(parse_mapping(text));
   const Rect window{0, 0, 8, 6};
   const Frame frame = read_frame(path, options).frame;
-  EXPECT_TRUE(holds(frame.beauty.mean, 0, window, 0));
+  EXPECT_TRUE(holds(frame.beauty.mean, 0, window, mean_of(20, 30)));
   EXPECT_TRUE(holds(frame.beauty.variance, 0, window, 10));
   EXPECT_TRUE(holds(frame.beauty.half_a, 0, window, 20));
   EXPECT_TRUE(holds(frame.beauty.half_b, 0, window, 30));
@@ -354,9 +375,10 @@ TEST(ReadFrame, OnePassAFileIsGathered) {
   for (const char* name : {"sceneColor", "sceneColorVariance", "sceneColorA", "sceneColorB", "sceneAlbedo",
                            "sceneNormal", "sceneDepth", "otherVisibility", "sceneNotes"})
     write_exr(folder / (std::string(name) + ".exr"), {part_of(layer("", "RGB", 10 * seed++))});
+  write_exr(folder / "sceneColor.exr", {part_of(mean_layer("", "RGB", 20, 30))});
   const Rect window{0, 0, 8, 6};
   const ReadResult read = read_frame(folder / "sceneColor.exr");
-  EXPECT_TRUE(holds(read.frame.beauty.mean, 0, window, 0));
+  EXPECT_TRUE(holds(read.frame.beauty.mean, 0, window, mean_of(20, 30)));
   EXPECT_TRUE(holds(read.frame.beauty.variance, 0, window, 10));
   EXPECT_TRUE(holds(read.frame.beauty.half_a, 0, window, 20));
   EXPECT_TRUE(holds(read.frame.beauty.half_b, 0, window, 30));
@@ -369,10 +391,10 @@ TEST(ReadFrame, OnePassAFileIsGathered) {
 
 TEST(ReadFrame, RequestedAovsAndTheirCompanions) {
   const TemporaryFolder folder;
-  const std::string path = write_exr(
-      folder / "a.exr",
-      {part_of(join({layer("V.Combined", "RGB", 0), layer("V.DiffDir", "RGB", 10), layer("V.DiffDir A", "RGB", 20),
-                     layer("V.DiffDir B", "RGB", 30), layer("V.GlossDir", "RGB", 40), layer("V.UV", "UV", 50)}))});
+  const std::string path =
+      write_exr(folder / "a.exr", {part_of(join({layer("V.Combined", "RGB", 0), mean_layer("V.DiffDir", "RGB", 20, 30),
+                                                 layer("V.DiffDir A", "RGB", 20), layer("V.DiffDir B", "RGB", 30),
+                                                 layer("V.GlossDir", "RGB", 40), layer("V.UV", "UV", 50)}))});
   EXPECT_THAT(read_frame(path).frame.aovs, IsEmpty());
   ReadOptions options;
   options.aovs = {"V.GlossDir", "DiffDir"};

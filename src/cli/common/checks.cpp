@@ -32,6 +32,8 @@ void require_readable(const std::string& path) {
   std::error_code error;
   if (!fs::exists(path, error)) throw Error(ExitCode::Missing, path + ": no such file");
   if (fs::is_directory(path, error)) throw Error(ExitCode::BadInput, path + ": is a folder; name a file");
+  // Opening a pipe waits for its writer, and a device may have no end.
+  if (!fs::is_regular_file(path, error)) throw Error(ExitCode::BadInput, path + ": is a pipe or a device; name a file");
   if (!std::ifstream(path)) throw Error(ExitCode::BadInput, path + ": cannot be opened; check its permissions");
 }
 

@@ -3,11 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cstdlib>
 #include <filesystem>
-#include <regex>
 #include <set>
 #include <stdexcept>
+#include <string_view>
 #include <system_error>
 
 #include "polyrecon/error.h"
@@ -18,17 +19,10 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int max_frames = 1000000;
+constexpr std::size_t max_width = 255;  // NAME_MAX of Linux
 
 [[noreturn]] void bad_frames(const std::string& text, const std::string& why) {
   throw Error(ExitCode::Usage, fmt::format("--frames {}: {}; write it as 1-10,20-40x2,50", text, why));
-}
-
-int number_of(const std::string& all, const std::string& digits) {
-  try {
-    return std::stoi(digits);
-  } catch (const std::out_of_range&) {
-    bad_frames(all, digits + " is too large");
-  }
 }
 
 std::string without_spaces_around(const std::string& text) {
@@ -40,23 +34,83 @@ struct FrameRange {
   long long first, last, step;
 };
 
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+/// Reads the parts of a piece of --frames from left to right.
+class RangeReader {
+ public:
+  RangeReader(const std::string& all, const std::string& piece) : all_(all), piece_(piece), rest_(piece) {}
+
+  int number() {
+    int value = 0;
+    const auto [end, problem] = std::from_chars(rest_.data(), rest_.data() + rest_.size(), value);
+    if (problem == std::errc::invalid_argument) fail();
+    const auto length = static_cast<std::size_t>(end - rest_.data());
+    if (problem == std::errc::result_out_of_range)
+      bad_frames(all_, fmt::format("{} is too large", rest_.substr(0, length)));
+    rest_.remove_prefix(length);
+    return value;
+  }
+  int count() { return !rest_.empty() && is_digit(rest_.front()) ? number() : fail(); }
+  bool take(std::string_view any_of) {
+    if (rest_.empty() || any_of.find(rest_.front()) == std::string_view::npos) return false;
+    rest_.remove_prefix(1);
+    return true;
+  }
+  void end() const {
+    if (!rest_.empty()) fail();
+  }
+
+ private:
+  [[noreturn]] int fail() const { bad_frames(all_, fmt::format("'{}' is neither a frame nor a range", piece_)); }
+
+  const std::string &all_, &piece_;
+  std::string_view rest_;
+};
+
 FrameRange parse_range(const std::string& all, const std::string& piece) {
-  static const std::regex range(R"((-?[0-9]+)(?:-(-?[0-9]+)(?:[x:]([0-9]+))?)?)");
-  std::smatch match;
-  if (!std::regex_match(piece, match, range))
-    bad_frames(all, fmt::format("'{}' is neither a frame nor a range", piece));
-  const int first = number_of(all, match[1]);
-  const int last = match[2].matched ? number_of(all, match[2]) : first;
-  const int step = match[3].matched ? number_of(all, match[3]) : 1;
+  RangeReader reader(all, piece);
+  const int first = reader.number();
+  const bool is_range = reader.take("-");
+  const int last = is_range ? reader.number() : first;
+  const int step = is_range && reader.take("x:") ? reader.count() : 1;
+  reader.end();
   if (step < 1) bad_frames(all, fmt::format("the step of '{}' is 0", piece));
   if (last < first) bad_frames(all, fmt::format("'{}' runs backwards", piece));
   return {first, last, step};
 }
 
-/// A place for a frame's number; C's format may have one digit that sets the length.
-const std::regex& place_of_number() {
-  static const std::regex place(R"(#+|%(?:0([1-9]))?d)");
-  return place;
+/// A place for a frame's number: #, ## ..., or C's format %d, which may have one digit that sets the length.
+struct Place {
+  std::size_t begin = 0, length = 0;
+  int width = 1;  ///< Of the number.
+};
+
+/// The first place from `begin` on; its length is 0 where there is none.
+Place find_place(const std::string& text, std::size_t begin) {
+  for (begin = text.find_first_of("#%", begin); begin != std::string::npos;
+       begin = text.find_first_of("#%", begin + 1)) {
+    if (text[begin] == '#') {
+      const std::size_t length = std::min(text.find_first_not_of('#', begin), text.size()) - begin;
+      if (length > max_width)
+        throw Error(
+            ExitCode::Usage,
+            fmt::format("a name has {} # in a row; {} are the most that a file's name can have", length, max_width));
+      return {begin, length, static_cast<int>(length)};
+    }
+    if (text.compare(begin, 2, "%d") == 0) return {begin, 2, 1};
+    if (text.compare(begin, 2, "%0") == 0 && text.size() > begin + 3 && is_digit(text[begin + 2]) &&
+        text[begin + 2] != '0' && text[begin + 3] == 'd')
+      return {begin, 4, text[begin + 2] - '0'};
+  }
+  return {};
+}
+
+std::vector<Place> places_in(const std::string& text, std::size_t begin) {
+  std::vector<Place> places;
+  for (Place place = find_place(text, begin); place.length > 0; place = find_place(text, place.begin + place.length))
+    places.push_back(place);
+  return places;
 }
 
 }  // namespace
@@ -91,24 +145,21 @@ std::string frames_text(std::vector<int> frames) {
 std::optional<FramePattern> FramePattern::parse(const std::string& text) {
   std::error_code ignored;
   if (fs::exists(text, ignored)) return std::nullopt;
-  const auto name_begins = static_cast<std::ptrdiff_t>(text.rfind('/') + 1);  // 0 where there is no folder
-  const std::sregex_iterator first(text.begin(), text.end(), place_of_number()), end;
-  std::optional<std::smatch> last;
-  for (auto place = first; place != end; ++place)
-    if (place->position() >= name_begins) last = *place;
-  if (!last) return std::nullopt;
+  const std::size_t name_begins = text.rfind('/') + 1;  // 0 where there is no folder
+  const std::vector<Place> in_name = places_in(text, name_begins);
+  if (in_name.empty()) return std::nullopt;
+  const Place& last = in_name.back();
+  const std::string number = text.substr(last.begin, last.length);
   FramePattern pattern;
-  pattern.sign_counts_ = last->str().front() == '%';
-  pattern.width_ = !pattern.sign_counts_ ? static_cast<int>(last->length())
-                   : (*last)[1].matched  ? std::stoi((*last)[1])
-                                         : 1;
+  pattern.sign_counts_ = number.front() == '%';
+  pattern.width_ = last.width;
+  const bool is_folder = name_begins > 0 && fs::is_directory(text.substr(0, name_begins), ignored);
   std::size_t done = 0;
-  for (auto place = first; place != end; ++place) {
-    if (place->str() != last->str()) continue;
-    const auto at = static_cast<std::size_t>(place->position());
-    pattern.pieces_.push_back(text.substr(done, at - done));
-    done = at + static_cast<std::size_t>(place->length());
-    pattern.in_folder_ = pattern.in_folder_ || place->position() < name_begins;
+  for (const Place& place : places_in(text, is_folder ? name_begins : 0)) {
+    if (text.compare(place.begin, place.length, number) != 0) continue;
+    pattern.pieces_.push_back(text.substr(done, place.begin - done));
+    done = place.begin + place.length;
+    pattern.in_folder_ = pattern.in_folder_ || place.begin < name_begins;
   }
   pattern.pieces_.push_back(text.substr(done));
   return pattern;
@@ -156,11 +207,13 @@ std::vector<int> FramePattern::existing_frames() const {
 }
 
 std::optional<int> frame_in_name(const std::string& path) {
-  static const std::regex number(R"(^.*?(\d{1,9})\D*$)");
+  constexpr std::size_t most_digits = 9;  // that an int holds
   const std::string stem = fs::path(path).stem().string();
-  std::smatch match;
-  if (!std::regex_match(stem, match, number)) return std::nullopt;
-  return std::stoi(match[1]);
+  const std::size_t last = stem.find_last_of("0123456789");
+  if (last == std::string::npos) return std::nullopt;
+  std::size_t first = last;
+  while (first > 0 && is_digit(stem[first - 1]) && last - first + 1 < most_digits) --first;
+  return std::stoi(stem.substr(first, last - first + 1));
 }
 
 }  // namespace polyrecon

@@ -18,11 +18,13 @@ std::string frames_text(std::vector<int> frames);
 /// `####` stands for at least as many digits, with a minus sign before them where the number is negative, as Blender
 /// writes it: -0005. `%04d` and `%d` are those of C, where the sign counts as a digit, as Nuke writes it: -005. The
 /// last such place in the file's name is the frame's number. Other places, in the name or in its folders, stand for the
-/// number only where their text is the same: "####/shot.####.exr". The drivers follow the same rules
+/// number only where their text is the same: "####/shot.####.exr". Folders that exist under exactly this name have no
+/// places. The drivers follow the same rules
 /// (pipelines/common/frame_names.py); tests/inputs/frame_names.json has examples of each.
 class FramePattern {
  public:
-  /// Nothing where the file's name has no such place, or where a file of exactly this name exists.
+  /// Nothing where the file's name has no such place, or where a file of exactly this name exists. Throws Error{Usage}
+  /// where a place is longer than a file's name can be.
   static std::optional<FramePattern> parse(const std::string& text);
 
   std::string path(int frame) const;

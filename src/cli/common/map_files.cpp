@@ -7,6 +7,7 @@
 
 #include "core/rect.h"
 #include "io/exr/file.h"
+#include "io/pass_values.h"
 #include "maps/error_map_images.h"
 #include "polyrecon/error.h"
 #include "polyrecon/write_result.h"
@@ -80,6 +81,7 @@ ErrorMapFile read_error_map(const std::string& path) {
                   path + ": no channel " + *missing + "; name a file that denoise --error-map wrote");
   }
   if (has_channel(part, "samples.Y")) result.sample_count = read_channels(file, 0, {"samples.Y"});
+  if (repair_counts(result.sample_count) == result.sample_count.pixels()) result.sample_count = {};
   result.windows = {part.data_window, part.display_window};
   return result;
 }

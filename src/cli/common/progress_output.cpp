@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "cli/common/printed_text.h"
 #include "cli/common/signals.h"
 #include "core/stopwatch.h"
 #include "polyrecon/report.h"
@@ -69,7 +70,7 @@ class ShownProgress : public SignalProgress {
 };
 
 void put(const std::string& line) {
-  std::fputs((line + "\n").c_str(), stderr);
+  std::fputs(text_line("{}", line).c_str(), stderr);
   std::fflush(stderr);
 }
 
@@ -105,13 +106,13 @@ class JsonProgress final : public ShownProgress {
                                       {"done", event == Event::End ? total() : done()},
                                       {"total", total()},
                                       {"seconds", seconds()}};
-    put(line.dump());
+    put(json_line(line));
   }
 
  public:
   void frame(const std::string& label, std::size_t done, std::size_t total) override {
     if (total < 2) return;
-    put(nlohmann::ordered_json{{"event", "frame"}, {"frame", label}, {"done", done}, {"total", total}}.dump());
+    put(json_line({{"event", "frame"}, {"frame", label}, {"done", done}, {"total", total}}));
   }
 };
 

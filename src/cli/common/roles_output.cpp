@@ -2,18 +2,19 @@
 
 #include <fmt/format.h>
 
+#include "cli/common/printed_text.h"
+
 namespace polyrecon {
 
 std::string roles_text(const FrameSource& source) {
   std::string text;
   for (const RoleChoice& choice : source.chosen) {
     const std::string layer = choice.layer.empty() ? "(no name)" : choice.layer;
-    if (choice.companion == Companion::Mean)
-      text += (text.empty() ? "" : "\n") + fmt::format("  {:<26} {} ({})", name_of(choice.role), layer, choice.why);
-    else
-      text += fmt::format("\n  {:<26} {}", fmt::format("  {}", name_of(choice.companion)), layer);
+    text += choice.companion == Companion::Mean
+                ? text_line("  {:<26} {} ({})", name_of(choice.role), layer, choice.why)
+                : text_line("  {:<26} {}", fmt::format("  {}", name_of(choice.companion)), layer);
   }
-  return text + "\n";
+  return text;
 }
 
 nlohmann::ordered_json roles_json(const FrameSource& source) {

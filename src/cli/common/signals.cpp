@@ -47,6 +47,7 @@ void catch_signals() {
   handle(SIGTERM, stop);
   handle(SIGALRM, stop_at_last);
   handle(SIGPIPE, note_closed_pipe);
+  handle(SIGXFSZ, SIG_IGN);  // a write beyond the limit then fails, as on a full disk
 }
 
 void poll_signals() { polled = 1; }

@@ -4,7 +4,8 @@ namespace polyrecon {
 
 /// After this call, SIGINT and SIGTERM end the process with exit code 130 or 143 and leave no temporary file. After
 /// poll_signals they only request that the work stops; a second signal, or four seconds without effect, ends the
-/// process. A reader of standard output that goes away (SIGPIPE) stops nothing.
+/// process. A reader of standard output that goes away (SIGPIPE) stops nothing, and a file that reaches the limit of
+/// its size (SIGXFSZ) fails as one on a full disk does.
 void catch_signals();
 
 /// States that the work checks caught_signal() regularly and stops once a signal has arrived.

@@ -8,6 +8,8 @@
 #include "cli/common/checks.h"
 #include "cli/common/display_options.h"
 #include "cli/common/layers.h"
+#include "cli/common/memory_limit.h"
+#include "cli/common/printed_text.h"
 #include "cli/common/progress_output.h"
 #include "cli/compare/comparison.h"
 #include "cli/compare/comparison_output.h"
@@ -24,9 +26,11 @@ struct CompareOptions {
   std::string html, picture;
   DisplayParams display;
   bool json = false;
+  std::size_t max_memory = default_memory;
 };
 
 void run(const CompareOptions& o) {
+  limit_memory(o.max_memory);
   if (o.files.size() < 2) throw Error(ExitCode::Usage, "compare needs at least two files: an image and the reference");
   for (const std::string& file : o.files) require_readable(file);
   require_outputs(o.files, {{"--html", o.html}, {"--picture", o.picture}});
@@ -40,7 +44,7 @@ void run(const CompareOptions& o) {
       found.push_back(std::move(c));
   if (!o.html.empty()) write_bytes(o.html, comparison_page(reference_path, found, o.display));
   if (!o.picture.empty()) write_png(o.picture, comparison_picture(found, o.display));
-  std::fputs((o.json ? comparison_json(reference_path, found).dump(2) + "\n" : comparison_text(found)).c_str(), stdout);
+  std::fputs((o.json ? json_text(comparison_json(reference_path, found)) : comparison_text(found)).c_str(), stdout);
 }
 
 }  // namespace
@@ -56,6 +60,7 @@ void setup_compare(CLI::App& app, Command& chosen) {
   sub->add_option("--picture", o->picture, "Write a PNG of the reference, the images and their errors")
       ->type_name("FILE");
   add_display_options(*sub, o->display);
+  add_memory_limit(*sub, o->max_memory);
   sub->footer(
       "relMSE is the mean over pixels and RGB of ((x - r)^2 - Var(r)) / (r^2 + 0.01), with Var(r) from the "
       "reference's\n"

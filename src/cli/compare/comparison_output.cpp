@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "cli/common/printed_text.h"
 #include "io/pictures/false_color.h"
 
 namespace polyrecon {
@@ -30,9 +31,9 @@ std::string file_name(const std::string& path) { return std::filesystem::path(pa
 std::string comparison_text(const std::vector<Comparison>& comparisons) {
   std::string text;
   for (const Comparison& c : comparisons)
-    text += fmt::format("{}: {}  relMSE {:.5f}  trimmed {:.5f}  energy {:+.5f}  FLIP {:.4f}  bad {}\n", c.image,
-                        shown_layer(c), c.score.relative_mse, c.score.trimmed, c.score.energy, c.flip, c.score.bad);
-  for (const std::string& note : notes_of(comparisons)) text += fmt::format("note: {}\n", note);
+    text += text_line("{}: {}  relMSE {:.5f}  trimmed {:.5f}  energy {:+.5f}  FLIP {:.4f}  bad {}", c.image,
+                      shown_layer(c), c.score.relative_mse, c.score.trimmed, c.score.energy, c.flip, c.score.bad);
+  for (const std::string& note : notes_of(comparisons)) text += text_line("note: {}", note);
   return text;
 }
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "cli/commands.h"
+#include "cli/common/printed_text.h"
 #include "cli/common/progress_output.h"
 #include "cli/denoise/fetch_frame.h"
 #include "cli/denoise/file_run.h"
@@ -37,7 +38,7 @@ void run_single(const Job& job, RunProgress& progress) {
   if (auto loaded = fetcher.fetch(files))
     denoise_file(job, files, std::move(*loaded), fetcher, progress);
   else if (!job.run.quiet)
-    std::fputs(fmt::format("{}: finished already\n", files.outputs.picture).c_str(), stdout);
+    std::fputs(text_line("{}: finished already", files.outputs.picture).c_str(), stdout);
   progress.frame("", 1, 1);
 }
 

@@ -13,6 +13,7 @@
 #include "cli/common/checks.h"
 #include "cli/denoise/finished.h"
 #include "core/stopwatch.h"
+#include "io/file_identity.h"
 #include "polyrecon/error.h"
 #include "polyrecon/reconstruct.h"
 
@@ -36,6 +37,12 @@ bool may_become_readable(const Error& error, const std::string& path) {
 }
 
 std::string key_of(const std::string& path, const PictureChoice& picture) { return path + '\n' + picture.name(); }
+
+/// The identity of a file that could not be read; of no file where it has changed since.
+std::string unread_identity(const std::string& path, const FileStamp& stamp) {
+  const std::string identity = file_identity(path);
+  return stamp_of(path) == stamp ? identity : "changed while it was read";
+}
 
 /// Shows nothing; asks the fetcher's owner whether to stop.
 class Cancellable final : public Progress {
@@ -88,38 +95,45 @@ LoadedFrame FrameFetcher::load_with_neighbours(const FrameFiles& files, const Re
 
 void FrameFetcher::add_neighbours(const FrameFiles& files, LoadedFrame& loaded) {
   const Stopwatch watch;
-  std::map<std::string, Prepared> kept;
-  for (const NeighbourFile& file : files.neighbours)
-    if (Prepared prepared = neighbour(file, loaded)) {
-      loaded.neighbours.push_back({file.offset, prepared});
-      kept[key_of(file.path, loaded.picture)] = std::move(prepared);
-    }
+  std::map<std::string, LoadedNeighbour> kept;
+  for (const NeighbourFile& file : files.neighbours) {
+    LoadedNeighbour found = neighbour(file, loaded);
+    if (found.frame) kept[key_of(file.path, loaded.picture)] = found;
+    found.offset = file.offset;
+    if (!found.identity.empty()) loaded.neighbours.push_back(std::move(found));
+  }
   // The frame itself is a neighbour of the next one.
   Cancellable progress(cancelled_);
   const std::string key = key_of(files.input, loaded.picture);
   const auto known = prepared_.find(key);
   kept[key] =
-      known != prepared_.end() ? known->second : prepare_neighbour(loaded.in.frame, files.place, job_.params, progress);
+      known != prepared_.end()
+          ? known->second
+          : LoadedNeighbour{0, prepare_neighbour(loaded.in.frame, files.place, job_.params, progress), loaded.identity};
   prepared_ = std::move(kept);
   loaded.read_seconds += watch.seconds();
 }
 
-FrameFetcher::Prepared FrameFetcher::neighbour(const NeighbourFile& file, LoadedFrame& loaded) {
+LoadedNeighbour FrameFetcher::neighbour(const NeighbourFile& file, LoadedFrame& loaded) {
   const auto known = prepared_.find(key_of(file.path, loaded.picture));
   if (known != prepared_.end()) return known->second;
   const double patience = file.is_denoised_too ? job_.run.wait : 0;
   Cancellable progress(cancelled_);
+  FileStamp stamp;
   try {
     return wait_for(file.path, patience, [&] {
+      stamp = stamp_of(file.path);
       LoadedFrame frame = load_frame(file.path, with_picture(read_options_for(job_, file.frame), loaded.picture));
-      return prepare_neighbour(std::move(frame.in.frame), file.number, job_.params, progress);
+      const auto prepared = prepare_neighbour(std::move(frame.in.frame), file.number, job_.params, progress);
+      return LoadedNeighbour{0, prepared, std::move(frame.identity)};
     });
   } catch (const Error& error) {
     if (error.code() == ExitCode::Interrupted) throw;
     std::error_code ignored;
-    if (fs::exists(file.path, ignored))
-      loaded.in.notes.push_back(fmt::format("denoised without this neighbour: {}", error.what()));
-    return nullptr;
+    if (!fs::exists(file.path, ignored)) return {};
+    loaded.in.notes.push_back(fmt::format("denoised without this neighbour: {}", error.what()));
+    if (!fs::is_regular_file(file.path, ignored)) return {};
+    return {0, nullptr, unread_identity(file.path, stamp)};
   }
 }
 

@@ -29,9 +29,9 @@ class FrameFetcher {
   LoadedFrame fetch(const FrameFiles& files, const PictureChoice& picture);
 
  private:
-  using Prepared = std::shared_ptr<const Neighbour>;
   LoadedFrame load_with_neighbours(const FrameFiles& files, const ReadOptions& options);
-  Prepared neighbour(const NeighbourFile& file, LoadedFrame& loaded);
+  /// Reads a neighbour, or takes it from those that are kept; its offset is not set.
+  LoadedNeighbour neighbour(const NeighbourFile& file, LoadedFrame& loaded);
   void add_neighbours(const FrameFiles& files, LoadedFrame& loaded);
   /// Repeats attempt() while the file at path may become readable and has changed within the last `seconds`.
   template <typename Attempt>
@@ -40,7 +40,7 @@ class FrameFetcher {
   const Job& job_;
   std::function<bool()> cancelled_;
   /// Neighbours by path and picture, kept for the next frame. A file of several pictures keeps those of one.
-  std::map<std::string, Prepared> prepared_;
+  std::map<std::string, LoadedNeighbour> prepared_;
 };
 
 }  // namespace polyrecon

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "cli/common/printed_text.h"
 #include "cli/common/roles_output.h"
 #include "cli/denoise/write_outputs.h"
 #include "core/stopwatch.h"
@@ -36,15 +37,15 @@ void note_shared_noise(const Report& report, std::vector<std::string>& notes) {
 std::string input_text(const LoadedFrame& loaded) {
   const ReadResult& in = loaded.in;
   const std::string picture = loaded.picture.name();
-  std::string text = fmt::format("{}: {} x {}{}\n", in.source.path, in.frame.width(), in.frame.height(),
-                                 picture.empty() ? "" : ", " + picture);
+  std::string text = text_line("{}: {} x {}{}", in.source.path, in.frame.width(), in.frame.height(),
+                               picture.empty() ? "" : ", " + picture);
   return text + roles_text(in.source);
 }
 
 std::vector<TimedNeighbour> neighbours_of(const LoadedFrame& loaded) {
   std::vector<TimedNeighbour> neighbours;
   for (const LoadedNeighbour& neighbour : loaded.neighbours)
-    neighbours.push_back({neighbour.offset, neighbour.frame.get()});
+    if (neighbour.frame) neighbours.push_back({neighbour.offset, neighbour.frame.get()});
   return neighbours;
 }
 
@@ -102,7 +103,7 @@ std::optional<PictureChoice> FileRun::next() {
 void FileRun::denoise(LoadedFrame loaded, std::size_t max_memory, Progress& progress) {
   const Stopwatch watch;
   print(job_.run.quiet, input_text(loaded));
-  DonePicture done{std::move(loaded.in), {}, {}};
+  DonePicture done{std::move(loaded.in), {}, {}, loaded.identity, loaded.neighbours_identity()};
   RunReport& report = done.report;
   if (job_.limits)
     report.chosen = choose_settings_for(job_, limits_left(), done.in.frame, loaded.read_seconds, progress);
@@ -163,7 +164,7 @@ void FileRun::write(Progress& progress) {
   }
   if (!files_.outputs.report.empty()) {
     reports.front()["others"] = std::vector<nlohmann::ordered_json>(reports.begin() + 1, reports.end());
-    write_bytes(files_.outputs.report, reports.front().dump(2) + "\n");
+    write_bytes(files_.outputs.report, json_text(reports.front()));
   }
   print(job_.run.quiet, text);
 }

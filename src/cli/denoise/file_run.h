@@ -19,6 +19,7 @@ struct DonePicture {
   ReadResult in;  ///< Without the images that are not written.
   Result result;
   RunReport report;
+  std::string identity, neighbours_identity;  ///< Those of the LoadedFrame.
 };
 
 /// Denoises the pictures of one file, one after the other, and writes them together: one for each view layer and view

@@ -1,7 +1,5 @@
 #include "cli/denoise/finished.h"
 
-#include <fmt/format.h>
-
 #include <filesystem>
 #include <system_error>
 
@@ -24,12 +22,6 @@ bool has_attribute(const FileInfo& file, const std::string& attribute, const std
   return found && found->value == value;
 }
 
-std::string identity_of(const FrameSource& source) {
-  std::string text;
-  for (const FileInfo& file : source.files) text += (text.empty() ? "" : "; ") + file_identity(file.path);
-  return text;
-}
-
 /// Of all files with its passes; of the one that is named where they cannot be found.
 std::string neighbour_identity(const Job& job, const NeighbourFile& neighbour) {
   try {
@@ -39,15 +31,16 @@ std::string neighbour_identity(const Job& job, const NeighbourFile& neighbour) {
   }
 }
 
-}  // namespace
-
-std::string input_identity(const Job& job, const FrameFiles& files, const FrameSource& source) {
+/// The identity that a result would have if the frame was read now.
+std::string present_identity(const Job& job, const FrameFiles& files, const FrameSource& source) {
   std::string text = identity_of(source);
   for (const NeighbourFile& neighbour : files.neighbours)
-    if (exists(neighbour.path))
-      text += fmt::format("; {:+d}: {}", neighbour.offset, neighbour_identity(job, neighbour));
+    if (std::error_code ignored; std::filesystem::is_regular_file(neighbour.path, ignored))
+      text += neighbour_text(neighbour.offset, neighbour_identity(job, neighbour));
   return text;
 }
+
+}  // namespace
 
 bool is_finished(const Job& job, const FrameFiles& files) {
   const OutputPaths& outputs = files.outputs;
@@ -61,7 +54,7 @@ bool is_finished(const Job& job, const FrameFiles& files) {
     const FileInfo picture = describe_file(outputs.picture);
     if (!has_attribute(picture, "polyrecon/version", POLYRECON_VERSION) ||
         !has_attribute(picture, "polyrecon/settings", settings_of(job, files)) ||
-        !has_attribute(picture, "polyrecon/input", input_identity(job, files, source)))
+        !has_attribute(picture, "polyrecon/input", present_identity(job, files, source)))
       return false;
     for (const OutputPaths& paths : of_pictures)
       for (const OutputOption& option : output_options())

@@ -1,9 +1,12 @@
 #include "cli/denoise/load_frame.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <filesystem>
 
 #include "core/stopwatch.h"
+#include "io/file_identity.h"
 
 namespace polyrecon {
 
@@ -34,9 +37,27 @@ ReadOptions with_picture(ReadOptions options, const PictureChoice& picture) {
   return options;
 }
 
+std::string identity_of(const FrameSource& source) {
+  std::string text;
+  for (const FileInfo& file : source.files) text += (text.empty() ? "" : "; ") + file_identity(file.path);
+  return text;
+}
+
+std::string neighbour_text(int offset, const std::string& identity) {
+  return fmt::format("; {:+d}: {}", offset, identity);
+}
+
+std::string LoadedFrame::neighbours_identity() const {
+  std::string text;
+  for (const LoadedNeighbour& neighbour : neighbours) text += neighbour_text(neighbour.offset, neighbour.identity);
+  return text;
+}
+
 LoadedFrame load_frame(const std::string& path, const ReadOptions& options) {
   const Stopwatch watch;
-  LoadedFrame loaded{read_frame(path, options), 0, {}, {}};
+  LoadedFrame loaded{read_frame(path, options), 0, {}, {}, {}};
+  loaded.identity = identity_of(loaded.in.source);
+  for (const FileInfo& file : loaded.in.source.files) require_unchanged(file);
   loaded.read_seconds = watch.seconds();
   loaded.picture = {{loaded.in.source.view_layer, loaded.in.source.view}, options.own_windows};
   return loaded;

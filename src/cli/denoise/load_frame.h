@@ -29,7 +29,8 @@ ReadOptions with_picture(ReadOptions options, const PictureChoice& picture);
 /// A frame before or after, prepared for reconstruct; several frames in work may share it.
 struct LoadedNeighbour {
   int offset = 0;
-  std::shared_ptr<const Neighbour> frame;
+  std::shared_ptr<const Neighbour> frame;  ///< Empty where the file could not be read.
+  std::string identity;                    ///< Of the bytes that it was read from, or that could not be read.
 };
 
 /// A picture in memory, with the frames that help it.
@@ -38,9 +39,19 @@ struct LoadedFrame {
   double read_seconds = 0;
   std::vector<LoadedNeighbour> neighbours;
   PictureChoice picture;
+  std::string identity;  ///< Of the bytes of all files that `in` was read from; see io/file_identity.h.
+
+  /// What stands behind it for the neighbours.
+  std::string neighbours_identity() const;
 };
 
-/// Throws as read_frame does.
+/// The identity of all files of a frame.
+std::string identity_of(const FrameSource& source);
+
+/// What stands for a neighbour in time behind the identity of a frame.
+std::string neighbour_text(int offset, const std::string& identity);
+
+/// Throws Error{BadInput} where a file changes while it is read, and as read_frame does.
 LoadedFrame load_frame(const std::string& path, const ReadOptions& options);
 
 }  // namespace polyrecon

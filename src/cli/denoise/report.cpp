@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "cli/common/decisions_output.h"
+#include "cli/common/printed_text.h"
 #include "cli/common/roles_output.h"
 
 namespace polyrecon {
@@ -41,9 +42,7 @@ double energy_change(const Report& r) {
   return before != 0 ? after / before - 1 : 0;
 }
 
-std::string line(const std::string& name, const std::string& value) {
-  return fmt::format("  {:<26} {}\n", name, value);
-}
+std::string line(const std::string& name, const std::string& value) { return text_line("  {:<26} {}", name, value); }
 
 std::string windows_text(const Report& r) {
   std::string orders;
@@ -71,8 +70,8 @@ std::size_t peak_memory() {
 
 std::string report_text(const RunReport& run) {
   const Report& r = run.reconstruction;
-  std::string text = fmt::format("{} -> {}, {} x {}{}\n", run.input, run.output, r.width, r.height,
-                                 run.title.empty() ? "" : ", " + run.title);
+  std::string text = text_line("{} -> {}, {} x {}{}", run.input, run.output, r.width, r.height,
+                               run.title.empty() ? "" : ", " + run.title);
   text += line("read", fmt::format("{:.2f} s", run.read_seconds));
   for (const PhaseTime& phase : r.phases) text += line(phase.phase, fmt::format("{:.2f} s", phase.seconds));
   text += line("write", fmt::format("{:.2f} s", run.write_seconds));

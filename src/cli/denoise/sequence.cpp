@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <cstdio>
+#include <exception>
 #include <functional>
 #include <future>
 #include <optional>
@@ -12,7 +13,9 @@
 #include <string>
 #include <utility>
 
+#include "cli/common/current_error.h"
 #include "cli/common/frame_names.h"
+#include "cli/common/printed_text.h"
 #include "cli/denoise/fetch_frame.h"
 #include "cli/denoise/file_run.h"
 #include "cli/denoise/finished.h"
@@ -25,7 +28,7 @@ namespace {
 /// Whether the next frame may still succeed.
 bool concerns_one_frame(ExitCode code) {
   return code == ExitCode::BadInput || code == ExitCode::Missing || code == ExitCode::CheckFailed ||
-         code == ExitCode::OutOfMemory;
+         code == ExitCode::OutOfMemory || code == ExitCode::Internal;
 }
 
 /// Counts the frames that were written, skipped or failed, and those that lacked a layer of the first frame.
@@ -36,7 +39,7 @@ class Outcome {
   /// Call it inside a catch block.
   void failed(const FrameFiles& files, const Error& error) {
     if (strict_ || !concerns_one_frame(error.code())) throw;
-    std::fputs(fmt::format("polyrecon: {}: {}\n", files.label(), error.what()).c_str(), stderr);
+    std::fputs(text_line("polyrecon: {}: {}", files.label(), error.what()).c_str(), stderr);
     failed_.push_back(&files);
   }
   void skipped() { ++skipped_; }
@@ -184,8 +187,8 @@ void run_frame(const Job& job, std::size_t k, ReadAhead& ahead, Consistency& con
     } else {
       outcome.skipped();
     }
-  } catch (const Error& error) {
-    outcome.failed(files, error);
+  } catch (const std::exception&) {
+    outcome.failed(files, current_error());
   }
   begin_next();
 }
@@ -203,7 +206,7 @@ void run_sequence(const Job& job, RunProgress& progress) {
     run_frame(job, k, ahead, consistency, outcome, progress);
   }
   progress.frame("", count, count);
-  if (!job.run.quiet) std::fputs((outcome.summary() + "\n").c_str(), stdout);
+  if (!job.run.quiet) std::fputs(text_line("{}", outcome.summary()).c_str(), stdout);
   outcome.throw_if_any_failed(count);
 }
 
@@ -213,8 +216,8 @@ void show_dry_run(const Job& job) {
       read_frame_header(files.input,
                         read_options_for(job, files.number_in_names()));  // throws where the frame would fail
       const bool skip = job.run.skip_existing && is_finished(job, files);
-      std::fputs(fmt::format("{}: {} -> {}{}\n", files.label(), files.input, files.outputs.picture,
-                             skip ? ", finished already: skipped" : "")
+      std::fputs(text_line("{}: {} -> {}{}", files.label(), files.input, files.outputs.picture,
+                           skip ? ", finished already: skipped" : "")
                      .c_str(),
                  stdout);
     } catch (const Error& error) {

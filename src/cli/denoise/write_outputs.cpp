@@ -5,9 +5,9 @@
 #include <algorithm>
 
 #include "cli/common/map_files.h"
-#include "cli/denoise/finished.h"
 #include "io/channel_names.h"
 #include "io/renderers/renderers.h"
+#include "polyrecon/error.h"
 #include "polyrecon/write_result.h"
 
 namespace polyrecon {
@@ -94,6 +94,18 @@ std::vector<std::string> write_maps_of(const Job& job, const FrameFiles& files, 
                                                      sample_map_for(job, files), progress)};
 }
 
+/// The identity of the input of all pictures. Each was read for itself.
+std::string input_identity(const std::vector<DonePicture>& pictures) {
+  const DonePicture& first = pictures.front();
+  const auto all = [&](const auto& has) { return std::all_of(pictures.begin(), pictures.end(), has); };
+  if (!all(
+          [&](const DonePicture& p) { return p.in.source.files.front().stamp == first.in.source.files.front().stamp; }))
+    throw Error(ExitCode::BadInput,
+                fmt::format("{}: was changed while its pictures were read; run again", first.in.source.path));
+  const bool same = all([&](const DonePicture& p) { return p.neighbours_identity == first.neighbours_identity; });
+  return first.identity + first.neighbours_identity + (same ? "" : "; a neighbour was changed");
+}
+
 }  // namespace
 
 std::vector<std::string> write_outputs(const Job& job, const FrameFiles& files,
@@ -101,8 +113,7 @@ std::vector<std::string> write_outputs(const Job& job, const FrameFiles& files,
   const DonePicture& first = pictures.front();
   WriteOptions options;
   options.keep_noisy = job.keep_noisy;
-  options.provenance = {settings_of(job, files), input_identity(job, files, first.in.source),
-                        first.result.report.estimated_relative_mse};
+  options.provenance = {settings_of(job, files), input_identity(pictures), first.result.report.estimated_relative_mse};
   std::vector<Replacement> replacements;
   for (const DonePicture& done : pictures)
     add_replacements(done, job.params.reconstruct_alpha && done.report.picture.layer.empty(), replacements);

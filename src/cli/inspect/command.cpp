@@ -6,6 +6,8 @@
 #include "cli/commands.h"
 #include "cli/common/checks.h"
 #include "cli/common/denoiser_options.h"
+#include "cli/common/memory_limit.h"
+#include "cli/common/printed_text.h"
 #include "cli/common/read_limits.h"
 #include "cli/inspect/report.h"
 #include "pipeline/part_of_beauty.h"
@@ -23,6 +25,7 @@ struct InspectOptions {
   ReadOptions read;
   DenoiserOptions denoiser;
   bool json = false;
+  std::size_t max_memory = default_memory;
 };
 
 /// The steps that denoise would run, and the time that each skipped one would take at standard quality, as a pilot on
@@ -52,6 +55,7 @@ std::vector<FoundDenoiser> find_denoisers(const DenoiserOptions& options) {
 }
 
 void run(const InspectOptions& o) {
+  limit_memory(o.max_memory);
   require_readable(o.input);
   InspectReport report{inspect(o.input, o.read), {}, find_denoisers(o.denoiser)};
   if (report.file.frame) try {
@@ -62,7 +66,7 @@ void run(const InspectOptions& o) {
       if (problem.code() != ExitCode::CheckFailed) throw;
       report.file.notes.emplace_back(problem.what());
     }
-  const std::string text = o.json ? inspect_json(report).dump(2) + "\n" : inspect_text(report);
+  const std::string text = o.json ? json_text(inspect_json(report)) : inspect_text(report);
   std::fputs(text.c_str(), stdout);
 }
 
@@ -81,6 +85,7 @@ void setup_inspect(CLI::App& app, Command& chosen) {
       ->type_name("LAYER");
   OptionSet set(*sub);
   add_denoiser_options(set, o->denoiser);
+  add_memory_limit(*sub, o->max_memory);
   add_read_limits(set, o->read.limits);
   sub->footer(
       "Examples:\n"

@@ -2,6 +2,7 @@
 #include <fmt/ranges.h>
 
 #include "cli/common/decisions_output.h"
+#include "cli/common/printed_text.h"
 #include "cli/common/roles_output.h"
 #include "cli/inspect/report.h"
 #include "io/channel_names.h"
@@ -14,9 +15,9 @@ std::string text_of(const Rect& r) { return fmt::format("{}x{}{:+d}{:+d}", r.wid
 std::string text_of(const PartInfo& part, std::size_t index) {
   std::string kind = part.deep ? "deep " : "";
   kind += part.tiled ? "tiled" : "scanline";
-  return fmt::format("part {} {}: data {}, display {}, {} {}, {} channels\n", index,
-                     part.name.empty() ? "(no name)" : "'" + part.name + "'", text_of(part.data_window),
-                     text_of(part.display_window), kind, part.compression, part.channels.size());
+  return text_line("part {} {}: data {}, display {}, {} {}, {} channels", index,
+                   part.name.empty() ? "(no name)" : "'" + part.name + "'", text_of(part.data_window),
+                   text_of(part.display_window), kind, part.compression, part.channels.size());
 }
 
 std::string text_of(const Layer& layer, const LayerStatistics* s) {
@@ -29,7 +30,7 @@ std::string text_of(const Layer& layer, const LayerStatistics* s) {
     if (s->infinite) line += fmt::format(" {} Inf", s->infinite);
     if (s->negative) line += fmt::format(" {} negative", s->negative);
   }
-  return line + "\n";
+  return text_line("{}", line);
 }
 
 }  // namespace
@@ -38,20 +39,19 @@ std::string inspect_text(const InspectReport& report) {
   const Inspection& found = report.file;
   std::string text;
   for (const FileInfo& file : found.source.files) {
-    text += fmt::format("{}: {}, {} bytes\n", file.path, file.format, file.bytes);
+    text += text_line("{}: {}, {} bytes", file.path, file.format, file.bytes);
     for (std::size_t i = 0; i < file.parts.size(); ++i) text += text_of(file.parts[i], i);
   }
-  text += fmt::format("  {:<38} {:<12} {:<20} {}\n", "layer", "role", "holds", "values");
+  text += text_line("  {:<38} {:<12} {:<20} {}", "layer", "role", "holds", "values");
   for (const Layer& layer : found.source.layers) text += text_of(layer, found.statistics_of(layer.name));
   text += roles_text(found.source);
-  if (!found.missing.empty()) text += fmt::format("missing: {}\n", fmt::join(found.missing, ", "));
-  if (found.samples > 0) text += fmt::format("samples per pixel: {:g}\n", found.samples);
-  if (found.noise_level >= 0)
-    text += fmt::format("noise level (variance / (mean^2 + 0.01)): {:.4g}\n", found.noise_level);
-  for (const Decision& d : report.steps) text += fmt::format("step: {}: {}\n", d.step, decision_text(d));
+  if (!found.missing.empty()) text += text_line("missing: {}", fmt::join(found.missing, ", "));
+  if (found.samples > 0) text += text_line("samples per pixel: {:g}", found.samples);
+  if (found.noise_level >= 0) text += text_line("noise level (variance / (mean^2 + 0.01)): {:.4g}", found.noise_level);
+  for (const Decision& d : report.steps) text += text_line("step: {}: {}", d.step, decision_text(d));
   for (const FoundDenoiser& d : report.denoisers)
-    text += fmt::format("--prior {}: {}\n", d.option, d.name.empty() ? d.problem : d.name + ", " + d.place);
-  for (const std::string& note : found.notes) text += fmt::format("note: {}\n", note);
+    text += text_line("--prior {}: {}", d.option, d.name.empty() ? d.problem : d.name + ", " + d.place);
+  for (const std::string& note : found.notes) text += text_line("note: {}", note);
   return text;
 }
 

@@ -40,4 +40,9 @@ std::string attribute_text(const Imf::Attribute& attribute) {
   return {};
 }
 
+void set_attribute(Imf::Header& header, const std::string& name, const Imf::Attribute& value) {
+  header.erase(name);
+  header.insert(name, value);
+}
+
 }  // namespace polyrecon

@@ -14,6 +14,8 @@
 #include <exception>
 #include <filesystem>
 #include <fstream>
+#include <new>
+#include <string_view>
 
 #include "core/first_line.h"
 #include "core/parallel.h"
@@ -22,6 +24,8 @@
 #include "io/exr/chunks.h"
 #include "io/exr/compression.h"
 #include "io/exr/guard.h"
+#include "io/exr/out_of_memory.h"
+#include "io/file_identity.h"
 #include "io/plain_image_file.h"
 #include "polyrecon/error.h"
 
@@ -57,11 +61,17 @@ PartInfo describe_part(const Imf::Header& header) {
   return part;
 }
 
-bool begins_with_zeros(const std::string& path) {
+/// Zeros where the file is shorter.
+std::array<char, 8> first_bytes(const std::string& path) {
   std::ifstream stream(path, std::ios::binary);
   std::array<char, 8> head{};
   stream.read(head.data(), head.size());
-  return std::all_of(head.begin(), head.begin() + stream.gcount(), [](char c) { return c == 0; });
+  return head;
+}
+
+bool begins_with_zeros(const std::string& path) {
+  const auto head = first_bytes(path);
+  return std::all_of(head.begin(), head.end(), [](char c) { return c == 0; });
 }
 
 std::uint64_t size_of_existing(const std::string& path) {
@@ -80,7 +90,10 @@ void describe_exr(FileInfo& file, const ReadLimits& limits) {
   try {
     Imf::MultiPartInputFile input(file.path.c_str(), 0, false);
     for (int p = 0; p < input.parts(); ++p) headers.push_back(input.header(p));
+  } catch (const std::bad_alloc&) {
+    throw;
   } catch (const std::exception& problem) {
+    throw_if_out_of_memory(problem);
     fail(file.path, fmt::format("incomplete or damaged header ({})", first_line(problem.what())));
   }
   check_claims(file.path, file.bytes, headers, limits);
@@ -89,13 +102,33 @@ void describe_exr(FileInfo& file, const ReadLimits& limits) {
   for (const Imf::Header& header : headers) file.parts.push_back(describe_part(header));
 }
 
-/// Linear formats that renderers write; others are refused by name rather than guessed at.
-bool is_plain_image(const std::string& path) {
+/// A linear format that renderers write.
+struct PlainFormat {
+  std::string_view extension, name;
+  std::array<std::string_view, 4> beginnings;  ///< Of its files.
+};
+
+constexpr std::array<std::string_view, 4> tiff_beginnings{{{"II*\0", 4}, {"MM\0*", 4}, {"II+\0", 4}, {"MM\0+", 4}}};
+constexpr std::array<PlainFormat, 4> plain_formats{{{".pfm", "pnm", {"PF", "Pf"}},
+                                                    {".hdr", "hdr", {"#?"}},
+                                                    {".tif", "tiff", tiff_beginnings},
+                                                    {".tiff", "tiff", tiff_beginnings}}};
+
+/// The format that the name stands for. Throws where there is none, and where the file begins as another format: what
+/// is not needed is refused, since each decoder has holes of its own.
+std::string plain_format_of(const std::string& path) {
   std::string extension = std::filesystem::path(path).extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  static constexpr std::array known{".pfm", ".hdr", ".tif", ".tiff"};
-  return std::find(known.begin(), known.end(), extension) != known.end();
+  const auto found = std::find_if(plain_formats.begin(), plain_formats.end(),
+                                  [&](const PlainFormat& f) { return f.extension == extension; });
+  if (found == plain_formats.end()) fail(path, "not an OpenEXR file");
+  const auto head = first_bytes(path);
+  if (std::none_of(found->beginnings.begin(), found->beginnings.end(), [&](std::string_view beginning) {
+        return !beginning.empty() && std::string_view(head.data(), beginning.size()) == beginning;
+      }))
+    fail(path, fmt::format("does not begin as a {} file does; give it the extension of its format", extension));
+  return std::string(found->name);
 }
 
 }  // namespace
@@ -135,13 +168,14 @@ void set_codec_threads(int threads) { Imf::setGlobalThreadCount(threads); }
 FileInfo describe_file(const std::string& path, const ReadLimits& limits) {
   FileInfo file;
   file.path = path;
+  file.stamp = stamp_of(path);
   file.bytes = size_of_existing(path);
-  if (Imf::isOpenExrFile(path.c_str()))
+  if (Imf::isOpenExrFile(path.c_str())) {
     describe_exr(file, limits);
-  else if (!is_plain_image(path))
-    fail(path, "not an OpenEXR file");
-  else
+  } else {
+    file.format = plain_format_of(path);
     describe_plain_image(file, limits);
+  }
   return file;
 }
 

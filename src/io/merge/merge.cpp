@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "io/exr/single_part.h"
+#include "io/file_identity.h"
 #include "io/merge/area.h"
 #include "io/merge/copy_layer.h"
 #include "io/merge/counts.h"
@@ -71,6 +72,8 @@ MergeResult merge(const std::vector<std::string>& paths, const std::string& targ
     merger.merge(weights, band);
     for (const std::size_t layer : task.kept) copy_layer(task, layer, band);
     for (const std::string& view_layer : task.counted) write_counts(view_layer, weights, band, samples);
+    for (const Render& render : task.renders)
+      for (const FileInfo& file : render.files) require_unchanged(file);
   };
   write_single_part(target, output_header(task, options.compress), make, lines_per_band(task));
   merger.note(report);

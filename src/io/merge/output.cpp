@@ -17,7 +17,9 @@
 
 #include "io/channel_groups.h"
 #include "io/channel_names.h"
+#include "io/exr/attributes.h"
 #include "io/exr/bands.h"
+#include "io/exr/writable.h"
 #include "io/renderers/known_names.h"
 
 namespace polyrecon {
@@ -106,10 +108,13 @@ Imf::Header output_header(const MergeTask& task, bool compress) {
   if (const auto views = stereo_views(task); !views.empty()) Imf::addMultiView(header, views);
   for (const auto& [view_layer, samples] : task.metadata_samples) {
     for (const SamplesAttribute& copied : samples_attributes(view_layer)) replace_number(header, copied.name, samples);
-    header.insert(with_view_layer(samples_attribute, view_layer), Imf::FloatAttribute(static_cast<float>(samples)));
+    set_attribute(header, with_view_layer(samples_attribute, view_layer),
+                  Imf::FloatAttribute(static_cast<float>(samples)));
   }
-  header.insert("polyrecon/version", Imf::StringAttribute(POLYRECON_VERSION));
-  if (!task.shared_samples.empty()) header.insert(shared_samples_attribute, Imf::StringAttribute(task.shared_samples));
+  set_attribute(header, "polyrecon/version", Imf::StringAttribute(POLYRECON_VERSION));
+  if (!task.shared_samples.empty())
+    set_attribute(header, shared_samples_attribute, Imf::StringAttribute(task.shared_samples));
+  require_writable(path_of(task.first()), {header});
   return header;
 }
 

@@ -91,6 +91,12 @@ TEST(FrameNames, FramesInAFolder) {
     }
     return ExitCode::Done;
   };
+  std::filesystem::create_directory(folder / "####");  // a folder of this very name has no places
+  std::ofstream(folder / "####" / "s.0005.exr").flush();
+  EXPECT_EQ(frames("####/s.####.exr"), std::vector<int>{5});
+  EXPECT_EQ(FramePattern::parse((folder / "####" / "s.####.exr").string())->path(5), folder / "####" / "s.0005.exr");
+  std::filesystem::remove_all(folder / "####");
+  EXPECT_EQ(code_of(std::string(300, '#')), ExitCode::Usage);  // longer than a name can be
   EXPECT_EQ(code_of("none.####.exr"), ExitCode::Missing);
   EXPECT_EQ(code_of("####/shot.####.exr"), ExitCode::Usage);
   std::filesystem::remove_all(folder);

@@ -36,6 +36,16 @@ class Names(unittest.TestCase):
                     self.assertNotEqual(frame_path(row["pattern"], number), row["name"])
 
 
+class Folders(unittest.TestCase):
+    def test_a_folder_of_this_very_name_has_no_places(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for name in ("####", "job #3", "%04d"):
+                place = name if name != "job #3" else "#"
+                os.mkdir(os.path.join(folder, name))
+                self.assertEqual(frame_path(f"{folder}/{name}/s.{place}.exr", 7)[len(folder) :].split("/")[1], name)
+            self.assertEqual(frame_path(f"{folder}/###/s.###.exr", 7), f"{folder}/007/s.007.exr")
+
+
 class Ranges(unittest.TestCase):
     def test_every_range_of_the_table(self):
         for row in TABLE["ranges"]:
