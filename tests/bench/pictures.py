@@ -34,14 +34,20 @@ FIGURES = ("relMSE", "trimmed", "FLIP", "energy", "false edges")
 MEASURED = re.compile(r" (A|B|Variance)(\.\w+)?$")  # channels that a single render does not have
 
 
+def size_of(path):
+    with exr.opened(path) as file:
+        return file.spec().width, file.spec().height
+
+
 def renders_of(folder):
-    """[(render, its reference)] by name."""
+    """[(render, its reference)] by name. A render of another size than the reference has none."""
     found = []
     for render in sorted(folder.glob("*.exr")):
         name = re.fullmatch(r"(.+)_\d+", render.stem)
         words = name[1].split("_") if name else []
         known = [folder / f"{'_'.join(words[:count])}_ref.exr" for count in range(len(words), 0, -1)]
-        found += [(render, reference) for reference in known if reference.is_file()][:1]
+        references = [reference for reference in known if reference.is_file()][:1]
+        found += [(render, reference) for reference in references if size_of(render) == size_of(reference)]
     return found
 
 
