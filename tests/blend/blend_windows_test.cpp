@@ -358,7 +358,8 @@ TEST(FitAndBlend, HasTheSameBitsForAnyNumberOfThreads) {
 }
 
 TEST(FitAndBlend, ACropAlignedToTwoBlocksHasTheSameBitsInside) {
-  const Pictures p = make_pictures(210, 150, 8);
+  Pictures p = make_pictures(210, 150, 8);
+  p.bound = image_of(210, 150, 1, [](int x, int y, int) { return 0.01 * (1 + (x + y) % 5); });
   for (const int stride : {1, 2, 3, 6, 8}) {
     FitParams params = small_windows();
     params.radius = std::max(3, stride / 2);
@@ -366,8 +367,8 @@ TEST(FitAndBlend, ACropAlignedToTwoBlocksHasTheSameBitsInside) {
     params.coverage = 3;
     const auto whole = fit(p, params);
     for (const Rect& r : {Rect{128, 0, 210, 150}, Rect{0, 0, 150, 100}, Rect{128, 0, 200, 64}}) {
-      const Pictures part{crop(p.response, r), crop(p.variance, r), crop(p.features, r), crop(p.guide, r),
-                          crop(p.guess, r)};
+      const Pictures part{crop(p.response, r), crop(p.variance, r), crop(p.features, r),
+                          crop(p.guide, r),    crop(p.guess, r),    crop(p.bound, r)};
       const auto cropped = fit(part, params);
       const int halo = fit_halo(params);
       const Rect inside{r.x0 == 0 ? 0 : r.x0 + halo, r.y0 == 0 ? 0 : r.y0 + halo, r.x1 == 210 ? 210 : r.x1 - halo,
