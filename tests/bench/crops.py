@@ -26,8 +26,8 @@ CROPS = (  # sample, left, top, what the crop shows
     ("glass", 90, 130, "the gold ring: dots in its hole and on the table"),
     ("glass", 170, 25, "the copper ball: the mirror image of the ring"),
     ("glass", 190, 110, "the amber caustic"),
-    ("study", 230, 10, "the right wall: mottle; the lamp's shade"),
-    ("study", 100, 90, "the table: small things in shadow"),
+    ("study", 190, 55, "the lamp: its shade; the walls: texture and mottle"),
+    ("study", 0, 30, "the window: its bars"),
     ("lighthouse", 100, 100, "the sea: grain"),
 )
 LAYER = "ViewLayer.Combined"  # of the samples
