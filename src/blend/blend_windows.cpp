@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/fast_math.h"
 #include "core/parallel.h"
 #include "core/picture_mask.h"
 #include "core/real.h"
@@ -180,16 +181,20 @@ POLYRECON_SIMD bool energies_of_fit(const Real* fit, std::size_t pitch, std::siz
   return finite;
 }
 
-/// Multiplies the weight of each pixel of a window by b / (b + d^2); see BlendedFit.
+/// Multiplies the weight of each pixel of a window by exp(-max(0, d^2 / b - 1)); see BlendedFit.
 POLYRECON_SIMD void within_bound(const Window& window, const Image& other, const Image& bound, const Real* fit,
                                  std::size_t pitch, const Real* weight, Real* out) {
   constexpr Real tiny = std::numeric_limits<Real>::min();  // so that 0 / 0 is 0
+  constexpr Real most = 80;                                // exp(-most) is still a normal float
   const Real *red = other.plane(0), *green = other.plane(1), *blue = other.plane(2), *bounds = bound.plane(0);
   const int* const offset = window.offset.data();
   for (int j = 0; j < window.count; ++j, fit += pitch) {
     const auto i = static_cast<std::size_t>(offset[j]);
-    const Real r = fit[0] - red[i], g = fit[1] - green[i], b = fit[2] - blue[i], most = bounds[i];
-    out[j] = weight[j] * (most / (most + (r * r + g * g + b * b + tiny)));
+    const Real r = fit[0] - red[i], g = fit[1] - green[i], b = fit[2] - blue[i];
+    const Real excess = (r * r + g * g + b * b) / (bounds[i] + tiny) - 1;
+    const auto factor =
+        static_cast<Real>(exp_minus(static_cast<float>(excess > 0 ? excess < most ? excess : most : 0)));
+    out[j] = bounds[i] > 0 ? weight[j] * factor : 0;
   }
 }
 

@@ -47,10 +47,10 @@ struct FitSource {
 /// fully in the dark part next to it.
 ///
 /// A window may fit most of its pixels and contradict a few: one that covers a glint smears it over its neighbours. So
-/// where the squared distance d^2 of a fit from the other half's pixel, summed over the colours, is not small against
-/// the noise bound b, the window's weight at that pixel is multiplied by b / (b + d^2), the weight of Cauchy's robust
-/// estimator. All colours and layers share the factor, so layers that add up to the beauty still do, and no pixel is
-/// clipped, which would draw an edge.
+/// where the squared distance d^2 of a fit from the other half's pixel, summed over the colours, exceeds the noise
+/// bound b, the window's weight at that pixel is multiplied by exp(1 - d^2 / b). A pixel without noise takes no fit.
+/// All colours and layers share the factor, so layers that add up to the beauty still do, and no pixel is clipped,
+/// which would draw an edge.
 struct BlendedFit {
   Image value;         ///< Channels as in FitSource::response.
   Image squared_bias;  ///< Of value, from the windows' bias (5), 3 channels; radiance squared.

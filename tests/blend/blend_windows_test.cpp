@@ -207,7 +207,7 @@ class Reference {
     VectorXd blended = w;  // weights
     if (!p_.bound.empty()) {
       const VectorXd bound = value(p_.bound, 0);
-      blended = w.array() * bound.array() / (bound + squared_distance).array();
+      blended = w.array() * (1 - (squared_distance.array() / bound.array()).max(1)).exp();
     }
     for (Eigen::Index j = 0; j < n; ++j) {
       VectorXd& s = sum_at(px, py, j);
@@ -257,7 +257,7 @@ void expect_equation_3(const Pictures& p, const FitParams& params) {
 
 TEST(FitAndBlend, IsEquation3OfExplicitWindowsAndFits) { expect_equation_3(make_pictures(15, 11, 1), small_windows()); }
 
-/// b / (b + d^2), from bounds that hardly matter to bounds that only the nearest fits keep within.
+/// exp(1 - d^2 / b) beyond the bound, from bounds that hardly matter to bounds that only the nearest fits keep within.
 TEST(FitAndBlend, WindowsCountLessForPixelsThatTheyContradict) {
   Pictures p = make_pictures(15, 11, 6);
   Random random(7);
