@@ -12,7 +12,7 @@ BUILDS = ("release", "dev")
 
 def find_polyrecon(given=None):
     """The path of the program. `given` is the value of --polyrecon. Without it, $POLYRECON, the PATH and the builds of
-    this checkout are tried."""
+    this checkout are tried. The Blender extension has the same rule (pipelines/blender/extension/programs.py)."""
     named = given or os.environ.get("POLYRECON")
     if named:
         if not (found := shutil.which(named)):  # a path, or a name on the PATH

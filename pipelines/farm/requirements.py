@@ -13,7 +13,6 @@ from ..common.errors import DriverError, ExitCode
 MODEL_FILE = pathlib.Path(__file__).with_name("model.json")
 MEMORY_MARGIN = 1.15  # requested memory over that of the model
 MIB = 1 << 20
-AOV_BYTES = 24  # a pixel of a neighbouring frame and an --aov: two halves of three floats
 DEFAULT_RADIUS = 2  # default of `polyrecon denoise --frame-radius`
 
 
@@ -67,7 +66,7 @@ class Model:
         m = self.memory
         per_pixel = m["per_pixel"][quality] + m["per_fit_channel"] * (frame.fit_channels + 3 * aovs)
         held = 2 * radius + 2 if radius else 0  # neighbours of this frame and of the next one
-        per_pixel += held * (self.neighbour["bytes"] + AOV_BYTES * aovs)
+        per_pixel += held * (self.neighbour["bytes"] + self.neighbour["bytes_per_aov"] * aovs)
         return m["base"] + frame.pixels * (per_pixel + m["per_channel"] * frame.channels)
 
     def request_bytes(self, frame, quality, aovs=0, radius=DEFAULT_RADIUS):

@@ -19,7 +19,7 @@ UNIFORM_SHARE = 0.25
 MAX_DECISION_SHARE = 0.05
 
 # The error falls with n^-CONVERGENCE_RATE, n being the samples per pixel: convergence_rate of
-# include/polyrecon/sample_map.h.
+# include/polyrecon/sample_map.h. tests/pipelines/loop/test_counts.py compares the two.
 CONVERGENCE_RATE = 0.75
 
 # Seconds of the last merge, the last reconstruction and the report over the seconds of a decision, for each --quality.

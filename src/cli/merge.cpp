@@ -10,6 +10,7 @@
 
 #include "cli/commands.h"
 #include "cli/common/checks.h"
+#include "cli/common/numbers.h"
 #include "cli/common/option_set.h"
 #include "cli/common/read_limits.h"
 #include "core/parallel.h"
@@ -31,6 +32,7 @@ void run(const MergeCommandOptions& o) {
   inputs.insert(inputs.end(), o.merge.half_b.begin(), o.merge.half_b.end());
   if (inputs.size() < 2) throw Error(ExitCode::Usage, "merge needs at least two renders");
   for (const std::string& input : inputs) require_readable(input);
+  require_exr_name({"-o", o.output});
   require_outputs(inputs, {{"-o", o.output}});
   set_codec_threads(processors());
   const MergeResult result = merge(o.inputs, o.output, o.merge);
@@ -66,7 +68,7 @@ void setup_merge(CLI::App& app, Command& chosen) {
          "--samples", o->merge.samples,
          "Samples per pixel of each render, if the files are wrong: subsets by Blender 5 contain the number of "
          "the whole")
-      ->check(CLI::PositiveNumber)
+      ->check(above_zero())
       ->type_name("N");
   OptionSet set(*sub);
   const std::map<std::string, bool> compressions{{"zip", true}, {"none", false}};

@@ -7,6 +7,7 @@
 #include "cli/commands.h"
 #include "cli/common/checks.h"
 #include "cli/common/map_files.h"
+#include "cli/common/numbers.h"
 #include "cli/common/option_set.h"
 #include "cli/common/progress_output.h"
 #include "cli/common/sample_map_options.h"
@@ -25,6 +26,7 @@ void run(const SamplemapOptions& o) {
   check_sample_map_options(o.map);
   require_readable(o.error_map);
   if (!o.map.cost.empty()) require_readable(o.map.cost);
+  require_exr_name({"-o", o.output});
   require_outputs({o.error_map, o.map.cost}, {{"-o", o.output}});
   ErrorMapFile error = read_error_map(o.error_map);
   const Image& map = error.map.relative_mse;
@@ -45,7 +47,7 @@ void setup_samplemap(CLI::App& app, Command& chosen) {
   sub->add_option("-e,--error-map", o->error_map, "Error map that denoise wrote")->required()->type_name("FILE");
   sub->add_option("-o,--output", o->output, "Sample map to write")->required()->type_name("FILE");
   sub->add_option("--samples", o->samples, "Samples per pixel so far, if the error map does not contain them")
-      ->check(CLI::PositiveNumber);
+      ->check(above_zero());
   sub->add_flag("-q,--quiet", o->quiet, "Print nothing but errors");
   OptionSet set(*sub);
   add_sample_map_options(set, o->map);

@@ -213,7 +213,7 @@ Real half_noise_of(const Pass& pass) {
 /// Moves the halves out of a pass and repairs them. A pass without halves has its mean split, with half_variance as the
 /// noise variance of one half; where that is empty both halves are the mean.
 std::array<Image, 2> halves_of(Pass& pass, const Image& half_variance, std::uint64_t stream, const Image& picture,
-                               std::size_t& repaired) {
+                               std::size_t& repaired, double correlation = 0) {
   if (pass.has_halves()) {
     std::array<Image, 2> halves{std::move(pass.half_a), std::move(pass.half_b)};
     for (Image& half : halves) repaired += repair(half, picture);
@@ -224,7 +224,7 @@ std::array<Image, 2> halves_of(Pass& pass, const Image& half_variance, std::uint
   if (half_variance.empty()) return {mean, mean};
   Image variance = half_variance;
   scale(variance, Real(0.5));
-  return split_halves(mean, variance, stream);
+  return split_halves(mean, variance, stream, correlation);
 }
 
 /// Sky has no noise, whatever the distances that a mean over sky and objects mixes.
@@ -342,13 +342,14 @@ Decision decide_on_prefilter(const std::string& feature, const Pass& pass, const
 }
 
 /// Fills out.pair.color, and takes the halves and variances of the colour passes.
-void prepare_colors(Frame& frame, std::uint64_t stream, bool with_alpha, Prepared& out) {
+void prepare_colors(Frame& frame, const Preparation& preparation, bool with_alpha, Prepared& out) {
   const bool alpha = with_alpha && !frame.alpha.empty();
   const int channels = ColorLayout(static_cast<int>(frame.aovs.size()), alpha).channels();
   for (Image& color : out.pair.color) color = Image(frame.width(), frame.height(), channels);
   int channel = 0;
   const Image& picture = out.pair.sampled;
-  const auto beauty = halves_of(frame.beauty, out.pair.variance, stream, picture, out.repaired_pixels);
+  const auto beauty = halves_of(frame.beauty, out.pair.variance, preparation.stream, picture, out.repaired_pixels,
+                                preparation.noise_correlation);
   append(beauty, out.pair.color, channel);
   frame.beauty.variance = {};
   for (Pass& aov : frame.aovs) {
@@ -433,7 +434,7 @@ Prepared prepare(Frame& frame, const Preparation& preparation, const Image& vari
   make_non_negative(out.pair.variance);
   scale(out.pair.variance, half_noise_of(frame.beauty));
   out.negative_pixels = negative_pixels(frame.beauty.mean);
-  prepare_colors(frame, preparation.stream, with_alpha, out);
+  prepare_colors(frame, preparation, with_alpha, out);
   prepare_features(frame, preparation, prefilter_params, out, progress);
   return out;
 }

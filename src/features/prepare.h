@@ -28,9 +28,10 @@ constexpr std::uint64_t streams_per_frame = 64;  ///< Random streams for the spl
 /// The decisions about a frame before it is reconstructed.
 struct Preparation {
   std::vector<FeatureUse> features;
-  double epsilon = 1;        ///< HalfPair::epsilon: (0.3 x mean brightness)^2, so that exposure does not matter.
-  std::uint64_t stream = 0;  ///< Random stream of the first of streams_per_frame splits, at most. Frames that are
-                             ///< joined need different ones.
+  double epsilon = 1;            ///< HalfPair::epsilon: (0.3 x mean brightness)^2, so that exposure does not matter.
+  std::uint64_t stream = 0;      ///< Random stream of the first of streams_per_frame splits, at most. Frames that are
+                                 ///< joined need different ones.
+  double noise_correlation = 0;  ///< Of the beauty's noise in pixels next to each other (noise/variance.h).
   std::vector<Decision> decisions;
   Image picture = {};  ///< Mask of the pixels that hold a picture; the others stay 0 (core/picture.h).
   Image sampled = {};  ///< Mask of the pixels that are samples of it; the others are hidden.

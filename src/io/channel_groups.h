@@ -21,12 +21,13 @@ inline bool is_bare_name(const std::string& pass) {
 ///
 /// The name of a layer is the prefix of its channels: "diffuse.R" and "diffuse.red" belong to "diffuse". Channels
 /// without a dot that end in the letters of a colour or a vector are a layer too: "AlbedoR", "AlbedoG", "AlbedoB" are
-/// "Albedo", "albedo:R", "albedo:G", "albedo:B" are "albedo". In files with several named parts, channels without a prefix belong to a layer with the name of the part
-/// (OpenEXR's convention), except those next to a bare colour or to channels with a prefix, and those of a part whose
-/// name only counts ("subimage03"). In other files R, G, B, A without a prefix are one layer, and every other channel is
-/// a layer.
+/// "Albedo", "albedo:R", "albedo:G", "albedo:B" are "albedo". In files with several named parts, channels without a
+/// prefix belong to a layer with the name of the part (OpenEXR's convention), except those next to a bare colour or to
+/// channels with a prefix, and those of a part whose name only counts ("subimage03"). In other files R, G, B, A without
+/// a prefix are one layer, and every other channel is a layer.
 ///
-/// Features among the channels of a colour, the Z of "right.R", "right.G", "right.B", "right.Z", are layers of their own.
+/// Features among the channels of a colour, the Z of "right.R", "right.G", "right.B", "right.Z", are layers of their
+/// own.
 ///
 /// A view is the last or the first word of a name, or at either end of a part's name. A file that does not list its
 /// views has "left" and "right" where several names contain one of them.

@@ -24,9 +24,7 @@ constexpr int tallest_chunk = 256;
 constexpr std::size_t most_lines = std::size_t{1} << 20;
 
 [[noreturn]] void fail(const FileInfo& file, int part, const std::string& what) {
-  const std::string& name = file.parts[static_cast<std::size_t>(part)].name;
-  const std::string title = name.empty() ? fmt::format("part {}", part) : fmt::format("part {} \"{}\"", part, name);
-  throw Error(ExitCode::BadInput, fmt::format("{}: {} {}", file.path, title, what));
+  throw Error(ExitCode::BadInput, fmt::format("{}: {} {}", file.path, title_of(file, part), what));
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include "io/channel_names.h"
 #include "io/choose_picture.h"
 #include "io/renderers/known_names.h"
+#include "io/renderers/polyrecon.h"
 #include "io/sibling_files.h"
 #include "polyrecon/error.h"
 
@@ -21,6 +22,12 @@ namespace {
 
 const PartInfo& part_of(const FrameSource& source, const Layer& layer) {
   return source.files[static_cast<std::size_t>(layer.file)].parts[static_cast<std::size_t>(layer.part)];
+}
+
+/// Names the part of a layer in a file of several parts: " (part 2 "right")".
+std::string in_part(const FrameSource& source, const Layer& layer) {
+  const FileInfo& file = source.files[static_cast<std::size_t>(layer.file)];
+  return file.parts.size() == 1 ? std::string() : fmt::format(" ({})", title_of(file, layer.part));
 }
 
 bool covers(const Rect& outer, const Rect& inner) { return intersect(outer, inner) == inner; }
@@ -93,9 +100,7 @@ bool lacks(const FrameSource& source, const std::string& pass) {
 }
 
 /// Whether this program has written the file as a result.
-bool is_result(const std::string& path, const ReadLimits& limits) {
-  return find_attribute(describe_file(path, limits).parts.front(), "polyrecon/settings") != nullptr;
-}
+bool is_result(const FileInfo& file) { return find_attribute(file.parts.front(), "polyrecon/settings") != nullptr; }
 
 /// The name of a sibling's layer. The beauty of a file of several layers keeps the name that it has there, so that its
 /// companions are called after it.
@@ -184,8 +189,8 @@ bool is_shaped(Role role, const Layer& layer) { return info_of(role).layer_chann
 void require_fitting(const FrameSource& source, const Layer& layer, const RoleMapping& mapping) {
   const RoleInfo& info = info_of(mapping.role);
   if (!part_of(source, layer).readable())
-    throw Error(ExitCode::BadInput,
-                fmt::format("{}: layer {} is {}", source.path, layer.name, part_of(source, layer).obstacle()));
+    throw Error(ExitCode::BadInput, fmt::format("{}: layer {}{} is {}", source.path, layer.name, in_part(source, layer),
+                                                part_of(source, layer).obstacle()));
   if (mapping.role == Role::Beauty && mapping.companion == Companion::Mean && layer.file > 0)
     throw Error(ExitCode::BadInput,
                 fmt::format("{}: the beauty is a layer of the input, which takes the result; denoise {} instead",
@@ -287,7 +292,6 @@ PassChoice with_companions(const FrameSource& source, Role role, int mean) {
   pass.variance = find_companion(source, layer, is_variance);
   pass.half_a = find_companion(source, layer, [](Companion c) { return c == Companion::HalfA; });
   pass.half_b = find_companion(source, layer, [](Companion c) { return c == Companion::HalfB; });
-  if (pass.half_a < 0 || pass.half_b < 0) pass.half_a = pass.half_b = -1;
   return pass;
 }
 
@@ -301,13 +305,16 @@ const Layer* misshapen_beauty(const FrameSource& source) {
 }
 
 [[noreturn]] void no_beauty(const FrameSource& source) {
-  if (const int beauty = find_mean(source, Role::Beauty, false); beauty >= 0)
-    throw Error(ExitCode::BadInput,
-                fmt::format("{}: the beauty is {}", source.path,
-                            part_of(source, source.layers[static_cast<std::size_t>(beauty)]).obstacle()));
+  if (const int beauty = find_mean(source, Role::Beauty, false); beauty >= 0) {
+    const Layer& layer = source.layers[static_cast<std::size_t>(beauty)];
+    throw Error(ExitCode::BadInput, fmt::format("{}: the beauty{} is {}", source.path, in_part(source, layer),
+                                                part_of(source, layer).obstacle()));
+  }
   const std::vector<PartInfo>& parts = source.files.front().parts;
   if (std::none_of(parts.begin(), parts.end(), [](const PartInfo& part) { return part.readable(); }))
-    throw Error(ExitCode::BadInput, fmt::format("{}: the image is {}", source.path, parts.front().obstacle()));
+    throw Error(ExitCode::BadInput, fmt::format("{}: {} is {}", source.path,
+                                                parts.size() == 1 ? "the image" : title_of(source.files.front(), 0),
+                                                parts.front().obstacle()));
   if (const Layer* layer = misshapen_beauty(source))
     throw Error(
         ExitCode::Missing,
@@ -343,6 +350,18 @@ void note_seeming(LayerChoice& choice, const RoleInfo& info) {
           layer.name, info.name, info.name, layer.name));
 }
 
+/// Leaves out one half without the other, with a note if the user named it.
+void require_both_halves(LayerChoice& choice, PassChoice& pass) {
+  if ((pass.half_a < 0) == (pass.half_b < 0)) return;
+  const Layer& half = choice.source.layers[static_cast<std::size_t>(std::max(pass.half_a, pass.half_b))];
+  if (half.rank == rank_by_hand)
+    choice.notes.push_back(fmt::format("{} is not used: it is one half without the other, which --map {}{}=LAYER names",
+                                       half.name,
+                                       pass.role == Role::Beauty ? "" : fmt::format("{}-", name_of(pass.role)),
+                                       pass.half_a < 0 ? "half-a" : "half-b"));
+  pass.half_a = pass.half_b = -1;
+}
+
 /// Drops the layers of a pass that cannot be laid over the beauty.
 void drop_misfits(LayerChoice& choice, PassChoice& pass) {
   const FrameSource& source = choice.source;
@@ -355,18 +374,41 @@ void drop_misfits(LayerChoice& choice, PassChoice& pass) {
     choice.notes.push_back(fmt::format("{} is not used: {}", layer.name, why));
     *index = -1;
   }
-  if (pass.half_a < 0 || pass.half_b < 0) pass.half_a = pass.half_b = -1;
+  require_both_halves(choice, pass);
+}
+
+/// The index of a layer that the user wants to be denoised; elsewhere if other pictures have it. One channel of a
+/// colour is refused: the others would stay noisy.
+int find_aov(FrameSource& source, const std::string& name) {
+  const std::size_t known = source.layers.size();
+  const int index = find_layer(source, name);
+  if (index == nowhere) no_such_layer(source, name);
+  if (index < 0 || static_cast<std::size_t>(index) < known) return index;
+  for (std::size_t l = 0; l < known; ++l) {
+    const auto& channels = source.layers[l].channels;
+    if (channels.size() > 1 && std::find(channels.begin(), channels.end(), name) != channels.end())
+      throw Error(ExitCode::BadInput, fmt::format("{}: {} is one channel of layer {}; --aov {} denoises all of them",
+                                                  source.path, name, source.layers[l].name, source.layers[l].name));
+  }
+  return index;
+}
+
+/// Whether one of the names is the whole name of a layer of this picture.
+bool names_one_of(const FrameSource& source, const std::vector<std::string>& names) {
+  return std::any_of(source.layers.begin(), source.layers.end(), [&](const Layer& layer) {
+    return place_of(layer) == place_of(source) && std::find(names.begin(), names.end(), layer.name) != names.end();
+  });
 }
 
 /// Adds the layers that the user wants to be denoised with the beauty.
 void choose_aovs(LayerChoice& choice, const ReadOptions& options) {
   FrameSource& source = choice.source;
-  const auto& beauty = source.layers[static_cast<std::size_t>(choice.passes.front().mean)];
+  const Layer beauty = source.layers[static_cast<std::size_t>(choice.passes.front().mean)];
   for (const std::string& name : options.aovs) {
-    const int index = find_layer(source, name);
-    if (index == nowhere) no_such_layer(source, name);
+    const int index = find_aov(source, name);
     if (index == elsewhere) {
-      choice.notes.push_back(fmt::format("{} has no layer {} to be denoised", name_of(place_of(source)), name));
+      if (!names_one_of(source, options.aovs))
+        choice.notes.push_back(fmt::format("{} has no layer {} to be denoised", name_of(place_of(source)), name));
       continue;
     }
     const Layer& layer = source.layers[static_cast<std::size_t>(index)];
@@ -379,7 +421,15 @@ void choose_aovs(LayerChoice& choice, const ReadOptions& options) {
     if (const std::string why = misfit(part, part_of(source, beauty)); !why.empty())
       throw Error(ExitCode::BadInput,
                   fmt::format("{}: layer {} cannot be denoised with the beauty: {}", source.path, layer.name, why));
-    choice.passes.push_back(with_companions(source, Role::Color, index));
+    if (covers(part_of(source, beauty).data_window, part.data_window)) {
+      PassChoice pass = with_companions(source, Role::Color, index);
+      require_both_halves(choice, pass);
+      choice.passes.push_back(pass);
+      continue;
+    }
+    choice.beside_beauty.push_back(layer.name);
+    choice.notes.push_back(fmt::format(
+        "{} gets windows of its own: its data window reaches beyond the beauty's, so it is no part of it", layer.name));
   }
 }
 
@@ -455,6 +505,27 @@ void note_other_beauties(LayerChoice& choice, const ReadOptions& options) {
   }
 }
 
+/// Repeats what `merge` noted of the noise of the file.
+void note_shared_samples(LayerChoice& choice, const ReadOptions& options) {
+  if (options.picture) return;
+  const AttributeInfo* note = find_attribute(choice.source.files.front().parts.front(), shared_samples_attribute);
+  if (note) choice.notes.push_back(note->value);
+}
+
+/// Notes a picture that this program has denoised already.
+void note_own_result(LayerChoice& choice, const Layer& beauty, const ReadOptions& options) {
+  const FrameSource& source = choice.source;
+  if (options.picture) return;  // noted with the first one
+  const bool has_prior = std::any_of(choice.passes.begin(), choice.passes.end(), [&](const PassChoice& pass) {
+    return pass.role == Role::Prior && source.layers[static_cast<std::size_t>(pass.mean)].file == 0;
+  });
+  if (!has_prior && is_result(source.files.front()))
+    choice.notes.push_back(
+        fmt::format("{} holds a result of this program: {} is denoised once more; give the render, or write results "
+                    "with --keep-noisy",
+                    source.path, beauty.name));
+}
+
 /// The beauty's alpha channel, unless the user named another layer or the beauty has none. Then it is an alpha layer,
 /// else the alpha of the beauty that the renderer's denoiser left.
 void choose_alpha(LayerChoice& choice, const Layer& beauty) {
@@ -497,12 +568,13 @@ FrameSource open_source(const std::string& path, const ReadLimits& limits, std::
   const bool bare = is_one_bare_image(source);
   if (!bare && !may_lack_passes(source)) return source;
   std::vector<SiblingFile> siblings = find_siblings(path);
-  siblings.erase(std::remove_if(siblings.begin(), siblings.end(),
-                                [&](const SiblingFile& sibling) {
-                                  return (!bare && !lacks(source, sibling.pass)) ||
-                                         (is_denoised_name(sibling.pass) && is_result(sibling.path, limits));
-                                }),
-                 siblings.end());
+  siblings.erase(
+      std::remove_if(siblings.begin(), siblings.end(),
+                     [&](const SiblingFile& sibling) {
+                       return (!bare && !lacks(source, sibling.pass)) ||
+                              (is_denoised_name(sibling.pass) && is_result(describe_file(sibling.path, limits)));
+                     }),
+      siblings.end());
   if (siblings.empty()) return source;
   const std::string pass = pass_in_file_name(path);
   if (bare && !pass.empty()) source.layers.front().name = source.layers.front().pass = pass;
@@ -545,6 +617,8 @@ LayerChoice choose_layers(const std::string& path, const ReadOptions& options) {
   }
   choose_aovs(choice, options);
   note_other_beauties(choice, options);
+  note_shared_samples(choice, options);
+  note_own_result(choice, source.layers[static_cast<std::size_t>(beauty)], options);
   choose_alpha(choice, source.layers[static_cast<std::size_t>(beauty)]);
   describe_choice(choice);
   return choice;

@@ -17,7 +17,8 @@ struct PassChoice {
 /// What is read of a file.
 struct LayerChoice {
   FrameSource source;
-  std::vector<PassChoice> passes;  ///< In the order of the roles, beauty first; the AOVs follow.
+  std::vector<PassChoice> passes;          ///< In the order of the roles, beauty first; the AOVs follow.
+  std::vector<std::string> beside_beauty;  ///< As ReadResult::beside_beauty.
   std::vector<std::string> notes;
 };
 

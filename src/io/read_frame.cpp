@@ -146,6 +146,7 @@ class FrameBuilder {
   FrameBuilder(LayerChoice choice, const ReadOptions& options)
       : options_(options), passes_(std::move(choice.passes)), reader_(result_.source, options.limits) {
     result_.source = std::move(choice.source);
+    result_.beside_beauty = std::move(choice.beside_beauty);
     result_.notes = std::move(choice.notes);
   }
 
@@ -166,11 +167,9 @@ class FrameBuilder {
  private:
   const Layer& layer(int index) const { return result_.source.layers[static_cast<std::size_t>(index)]; }
 
-  /// The frame covers the layers that are reconstructed, whatever boxes their parts are cut to.
+  /// The frame is the beauty's, whatever boxes the parts of other passes are cut to.
   void choose_window() {
-    for (const PassChoice& pass : passes_)
-      if (pass.role == Role::Beauty || pass.role == Role::Color)
-        window_ = bounding(window_, reader_.window_of(layer(pass.mean)));
+    window_ = reader_.window_of(layer(passes_.front().mean));
     reader_.cover(window_);
   }
 

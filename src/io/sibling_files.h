@@ -16,7 +16,8 @@ struct SiblingFile {
 
 /// The other passes of a render that has a file for each: files in the folder of path with the same extension, whose
 /// names differ from that of path in one of two ways. The numbers of a frame and a version may follow.
-/// - Another pass that some renderer is known to write, or a companion, stands in place of the pass in the name of path:
+/// - Another pass that some renderer is known to write, or a companion, stands in place of the pass in the name of
+/// path:
 ///   "Color" | "Albedo", "NormalB"; "shot_beauty.0001" | "shot_N.0001", "shot_beauty_variance.0001".
 /// - A feature, or a companion of the beauty, is added to the name: "shot.0001" | "shot_albedo.0001".
 std::vector<SiblingFile> find_siblings(const std::string& path);

@@ -23,20 +23,49 @@ double normal(std::uint64_t key) {
   return std::sqrt(-2 * std::log(u)) * std::cos(6.28318530717958648 * v);
 }
 
+/// The part b of a neighbour in xi'(x) = (xi(x) + b (xi(x - 1) + xi(x + 1))) / sqrt(1 + 2 b^2) that gives neighbours
+/// the correlation 2 b / (1 + 2 b^2).
+double part_of_neighbour(double correlation) {
+  return correlation > 0 ? (1 - std::sqrt(1 - 2 * correlation * correlation)) / (2 * correlation) : 0;
+}
+
+/// A standard normal number a pixel, correlated along rows and along columns.
+class Normals {
+ public:
+  Normals(std::uint64_t key, int width, double correlation)
+      : key_(key), part_(part_of_neighbour(correlation)), pitch_(width + (part_ > 0 ? 2 : 0)) {}
+
+  double at(int x, int y) const {
+    if (part_ == 0) return white(x, y);
+    return (along_row(x, y) + part_ * (along_row(x, y - 1) + along_row(x, y + 1))) / (1 + 2 * part_ * part_);
+  }
+
+ private:
+  double white(int x, int y) const {
+    return normal(hash(key_ ^ static_cast<std::uint64_t>(std::int64_t{y} * pitch_ + x)));
+  }
+  double along_row(int x, int y) const { return white(x, y) + part_ * (white(x - 1, y) + white(x + 1, y)); }
+
+  std::uint64_t key_;
+  double part_;
+  int pitch_;  ///< Numbers of a row: one more at either end where neighbours take part.
+};
+
 }  // namespace
 
-std::array<Image, 2> split_halves(const Image& mean, const Image& variance, std::uint64_t stream) {
+std::array<Image, 2> split_halves(const Image& mean, const Image& variance, std::uint64_t stream, double correlation) {
   std::array<Image, 2> halves{mean, mean};
   for_rows(mean.height(), [&](int y) {
-    for (int c = 0; c < mean.channels(); ++c)
+    for (int c = 0; c < mean.channels(); ++c) {
+      const Normals xi(hash(stream * 64 + static_cast<std::uint64_t>(c)), mean.width(), correlation);
       for (int x = 0; x < mean.width(); ++x) {
         const double v = static_cast<double>(variance.at(x, y, c));
         if (!(v > 0)) continue;
-        const std::uint64_t key = hash(hash(stream * 64 + static_cast<std::uint64_t>(c)) ^ mean.index(x, y));
-        const auto offset = static_cast<Real>(std::sqrt(v) * normal(key));
+        const auto offset = static_cast<Real>(std::sqrt(v) * xi.at(x, y));
         halves[0].at(x, y, c) += offset;
         halves[1].at(x, y, c) -= offset;
       }
+    }
   });
   return halves;
 }

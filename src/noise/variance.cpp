@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -22,7 +24,16 @@ namespace polyrecon {
 namespace {
 
 constexpr int fit_radius = 3;
-constexpr double texture_correlation = 0.5;    // a in variance.h
+constexpr double texture_correlation = 0.5;   // a in variance.h, for white noise
+constexpr int flat_stride = 4;                // pixels between the windows that noise_correlation looks at
+constexpr int least_flat_features = 5;        // channels without variation that make a window flat: albedo and normal,
+                                              // of which one may vary
+constexpr double most_far_correlation = 0.2;  // with residuals two pixels away; texture and shadows have more
+constexpr double least_flat_share = 0.03;     // of all windows
+constexpr double most_correlation = 0.5;      // wider filters blur the picture
+constexpr double left_by_plane = 0.85;      // of the correlation, in the residuals of a plane (0.84 to 0.86 for 0.1 to
+                                            // 0.5, by the covariance M C M of the residuals)
+constexpr double least_correlation = 0.15;  // box filters: below 0.05; a tent, the narrowest other filter: 0.25
 constexpr double half_difference_sigma = 1.5;  // pixels; the variance from the halves of one pixel has one degree of
                                                // freedom, so it is averaged by a Gaussian
 
@@ -101,12 +112,13 @@ void residuals_of(const NestedFactor& factor, const Window& window, const std::v
 }
 
 /// Variance N of the noise in the residuals of a fit; see variance.h.
-double noise_in(const std::vector<double>& rest, const Places& places, double freedom, double hat) {
+double noise_in(const std::vector<double>& rest, const Places& places, double freedom, double hat, double correlation) {
   double squares = 0, covariance = 0;
   for (const double r : rest) squares += r * r;
   const int pairs = for_neighbours(places, [&](std::size_t i, std::size_t j) { covariance += rest[i] * rest[j]; });
   if (pairs > 0) covariance /= pairs;
-  return std::max((squares / freedom - covariance / texture_correlation) / (1 + hat / texture_correlation), 0.0);
+  const double of_texture = texture_correlation * (1 + correlation);
+  return std::max((squares / freedom - covariance / of_texture) / (1 + (hat - correlation) / of_texture), 0.0);
 }
 
 /// Buffers of one thread.
@@ -117,13 +129,8 @@ struct Scratch {
   std::vector<double> rest;
 };
 
-/// Estimates the variance of the noise per channel from the fit around a centre; -1 where the window has too few pixels
-/// for the columns, or its centre is outside the picture.
-void fit_noise(const Image& y, const Image& features, const Image& picture, int cx, int cy, Scratch& s, Real* out) {
-  if (!in_picture(picture, y.index(cx, cy))) {
-    std::fill_n(out, y.channels(), Real(-1));
-    return;
-  }
+/// Fits constant, features and plane around a centre.
+Places fit_around(const Image& y, const Image& features, const Image& picture, int cx, int cy, Scratch& s) {
   const BasisLayout layout(features.channels(), 1);
   Window& window = s.window;
   window.reserve(fit_radius, layout.columns(), y.channels());
@@ -145,26 +152,78 @@ void fit_noise(const Image& y, const Image& features, const Image& picture, int 
     }
   gather({&y, &y, &features, nullptr}, layout, cx, cy, fit_radius, window);
   factorise(window, window.layout.columns(), s.weight.data(), s.factor);
-  const double freedom = window.count - degrees_of_freedom(s.factor, window);
-  const double hat = mean_hat_of_neighbours(s.factor, window, places);
-  for (int c = 0; c < y.channels(); ++c) {
-    residuals_of(s.factor, window, s.weight, c, s.rest);
-    out[c] = freedom > 0.5 ? storable(noise_in(s.rest, places, freedom, hat)) : Real(-1);
+  return places;
+}
+
+/// Estimates the variance of the noise per channel from the fit around a centre; -1 where the window has too few pixels
+/// for the columns, or its centre is outside the picture.
+void fit_noise(const Image& y, const Image& features, const Image& picture, int cx, int cy, double correlation,
+               Scratch& s, Real* out) {
+  if (!in_picture(picture, y.index(cx, cy))) {
+    std::fill_n(out, y.channels(), Real(-1));
+    return;
   }
+  const Places places = fit_around(y, features, picture, cx, cy, s);
+  const double freedom = s.window.count - degrees_of_freedom(s.factor, s.window);
+  const double hat = mean_hat_of_neighbours(s.factor, s.window, places);
+  for (int c = 0; c < y.channels(); ++c) {
+    residuals_of(s.factor, s.window, s.weight, c, s.rest);
+    out[c] = freedom > 0.5 ? storable(noise_in(s.rest, places, freedom, hat, correlation)) : Real(-1);
+  }
+}
+
+/// Mean product of the values of a full window that are `lag` apart along rows and along columns.
+double mean_product(const std::vector<double>& values, int lag) {
+  constexpr int side = 2 * fit_radius + 1;
+  double sum = 0;
+  for (int v = 0; v < side; ++v)
+    for (int u = 0; u + lag < side; ++u) {
+      const auto along = [&](int x, int y) { return values[static_cast<std::size_t>(y * side + x)]; };
+      sum += along(u, v) * along(u + lag, v) + along(v, u) * along(v, u + lag);
+    }
+  return sum / (2 * side * (side - lag));
+}
+
+/// Correlation of the residuals with those one and two pixels away around a centre, if the features say that the place
+/// is flat and the beauty is noisy there; else nothing.
+std::optional<std::array<double, 2>> correlations_if_flat(const Image& y, const Image& features, const Image& picture,
+                                                          int cx, int cy, Scratch& s) {
+  const Places places = fit_around(y, features, picture, cx, cy, s);
+  if (!places.whole || s.window.count < (2 * fit_radius + 1) * (2 * fit_radius + 1) ||
+      features.channels() - s.window.layout.features() < least_flat_features)
+    return std::nullopt;
+  double squares = 0, next = 0, second = 0, rounding = 0;
+  for (int c = 0; c < y.channels(); ++c) {
+    residuals_of(s.factor, s.window, s.weight, c, s.rest);
+    for (const double r : s.rest) squares += r * r / s.window.count;
+    next += mean_product(s.rest, 1);
+    second += mean_product(s.rest, 2);
+    const double value = half_float_rounding * static_cast<double>(y.at(cx, cy, c));
+    rounding += value * value;
+  }
+  if (squares <= rounding) return std::nullopt;
+  const double hat = mean_hat_of_neighbours(s.factor, s.window, places);
+  return std::array<double, 2>{next / squares + hat, second / squares + hat};
+}
+
+Image repaired(const Pass& feature) {
+  Image mean = feature.mean;
+  repair_nonfinite(mean, 1);
+  return mean;
 }
 
 /// A feature that explains the beauty, repaired. Where a variation is noise, it would explain the beauty's noise, as
 /// the same samples make both.
 Image explaining(const Pass& feature, const Image& picture) {
-  Image mean = feature.mean;
-  repair_nonfinite(mean, 1);
+  Image mean = repaired(feature);
   if (!feature.variance_is_estimated) return mean;
   const Image part = noise_in_variation(mean, feature.variance, picture);
   return flattened(std::move(mean), part, picture);
 }
 
-/// The features that fit into the local model, in the frame's order.
-Image explaining_features(const Frame& frame, const Image& picture) {
+/// The features that fit into the local model, in the frame's order, with the values that `values` makes of a pass.
+template <typename Values>
+Image fitting_features(const Frame& frame, const Values& values) {
   std::vector<const Pass*> used;
   int channels = 0;
   for (const Feature& feature : frame.features) {
@@ -176,7 +235,7 @@ Image explaining_features(const Frame& frame, const Image& picture) {
   Image out(frame.width(), frame.height(), channels);
   int channel = 0;
   for (const Pass* feature : used) {
-    const Image mean = explaining(*feature, picture);
+    const Image mean = values(*feature);
     for (int c = 0; c < mean.channels(); ++c, ++channel)
       std::copy(mean.plane(c), mean.plane(c) + mean.pixels(), out.plane(channel));
   }
@@ -202,15 +261,38 @@ Image variance_from_halves(const Pass& beauty, const Image& picture) {
 
 bool noise_is_measured(const Frame& frame) { return frame.beauty.noise_is_known(); }
 
+double noise_correlation(const Frame& frame, Progress& progress, const Image& picture) {
+  Image y = frame.beauty.mean;
+  repair_nonfinite(y, 2);
+  const Image features = fitting_features(frame, [](const Pass& pass) { return repaired(pass); });
+  const int columns = y.width() / flat_stride, rows = y.height() / flat_stride;
+  if (features.channels() < least_flat_features || columns * rows == 0) return 0;
+  std::vector<std::vector<double>> found(static_cast<std::size_t>(rows));
+  parallel_for(found.size(), progress, [&](std::size_t row) {
+    Scratch scratch;
+    for (int x = 0; x < columns; ++x)
+      if (const auto r =
+              correlations_if_flat(y, features, picture, x * flat_stride, static_cast<int>(row) * flat_stride, scratch))
+        if (std::abs((*r)[1]) < most_far_correlation) found[row].push_back((*r)[0]);
+  });
+  std::vector<double> all;
+  for (const auto& row : found) all.insert(all.end(), row.begin(), row.end());
+  if (static_cast<double>(all.size()) < least_flat_share * columns * rows) return 0;
+  const auto middle = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2);
+  std::nth_element(all.begin(), middle, all.end());
+  const double correlation = *middle / left_by_plane;
+  return correlation < least_correlation ? 0 : std::min(correlation, most_correlation);
+}
+
 Image estimate_variance(const Image& y, const Image& features, Progress& progress, const Image& picture,
-                        const Image& samples) {
+                        const Image& samples, double correlation) {
   Image fits = lattice_of(y);
   parallel_for(static_cast<std::size_t>(fits.height()), progress, [&](std::size_t row) {
     Scratch scratch;
     std::vector<Real> variance(static_cast<std::size_t>(y.channels()));
     const int v = static_cast<int>(row);
     for (int x = 0; x < fits.width(); ++x) {
-      fit_noise(y, features, picture, x * lattice_stride, v * lattice_stride, scratch, variance.data());
+      fit_noise(y, features, picture, x * lattice_stride, v * lattice_stride, correlation, scratch, variance.data());
       for (int c = 0; c < y.channels(); ++c) fits.at(x, v, c) = variance[static_cast<std::size_t>(c)];
     }
   });
@@ -229,21 +311,23 @@ Image estimate_variance(const Image& y, const Image& features, Progress& progres
   return out;
 }
 
-NoiseVariance noise_variance(const Frame& frame, Progress& progress, const Image& picture) {
+NoiseVariance noise_variance(const Frame& frame, Progress& progress, const Image& picture, double correlation) {
   if (!frame.beauty.variance.empty()) return {frame.beauty.variance, "from the file", true};
   if (frame.beauty.has_halves()) return {variance_from_halves(frame.beauty, picture), "from the half buffers", true};
   Image y = frame.beauty.mean;
   repair_nonfinite(y, 2);
-  return {estimate_variance(y, explaining_features(frame, picture), progress, picture, frame.sample_count),
+  const Image features = fitting_features(frame, [&](const Pass& pass) { return explaining(pass, picture); });
+  return {estimate_variance(y, features, progress, picture, frame.sample_count, correlation),
           "estimated from the image", false};
 }
 
-void estimate_feature_variance(Frame& frame, Progress& progress, const Image& picture) {
+void estimate_feature_variance(Frame& frame, Progress& progress, const Image& picture, double correlation) {
   for (Feature& feature : frame.features) {
     if (!noise_is_estimated(feature.role, feature.pass.noise_is_known())) continue;
     Image mean = feature.pass.mean;
     repair_nonfinite(mean, 2);
-    feature.pass.variance = estimate_variance(mean, Image(mean.width(), mean.height(), 0), progress, picture);
+    feature.pass.variance =
+        estimate_variance(mean, Image(mean.width(), mean.height(), 0), progress, picture, {}, correlation);
     feature.pass.variance_is_estimated = true;
   }
 }

@@ -2,12 +2,14 @@
 
 #include <algorithm>
 
+#include "blend/noise_bound.h"
 #include "blend/prior.h"
 #include "core/candidate.h"
 #include "core/color_layout.h"
 #include "core/wrap.h"
 #include "features/prepare.h"
 #include "maps/error_map_images.h"
+#include "noise/variance.h"
 #include "outliers/restore.h"
 #include "pipeline/prior.h"
 #include "pipeline/stage.h"
@@ -43,9 +45,10 @@ bool prior_has_halves(const FrameShape& shape) { return shape.prior_channels > 3
 
 /// Channels held to the end of a reconstruction: images of the frame and the noise variance of the beauty.
 std::size_t kept_channels(const FrameShape& shape) {
-  constexpr std::size_t alpha = 1, sample_count = 1, noise_variance = 3;
+  constexpr std::size_t alpha = 1, sample_count = 1;
   const std::size_t prior = count(shape.prior_channels) + (prior_has_halves(shape) ? judge_halves_channels : 0);
-  return count(shape.color_channels) + alpha + sample_count + prior + noise_variance + count(shape.other_channels);
+  return count(shape.color_channels) + alpha + sample_count + prior + noise_variance_channels +
+         count(shape.other_channels);
 }
 
 /// Channels held while windows are fitted: the pair and the results of this stage and the one before, each with its
@@ -96,7 +99,7 @@ void add_denoiser(FrameShape& shape) {
 
 int neighbours_channels(const FrameShape& shape, int neighbours, const Params& params) {
   // The frame's own geometry and its noise are held until the neighbours have joined.
-  const std::size_t own = neighbours > 0 ? geometry_channels + surfaces : 0;
+  const std::size_t own = neighbours > 0 ? geometry_channels() + surfaces : 0;
   return static_cast<int>(
       static_cast<std::size_t>(neighbours) * neighbour_channels(count(reconstructed_channels(shape, params))) + own);
 }
@@ -106,7 +109,6 @@ int channels_ahead(const FrameShape& shape, const Params& params) {
 }
 
 MemoryNeeds memory_needs(const FrameShape& passes, const Params& params) {
-  constexpr std::size_t noise_variance = 3;
   FrameShape shape = passes;
   shape.pixels += static_cast<std::size_t>(shape.wrapped_rows) * 2 * wrap_margin;
   shape.color_channels = reconstructed_channels(passes, params);
@@ -114,8 +116,8 @@ MemoryNeeds memory_needs(const FrameShape& passes, const Params& params) {
     return static_cast<std::size_t>(allocator * static_cast<double>(bytes));
   };
   const auto image_bytes = [&](std::size_t channels) { return shape.pixels * channels * sizeof(Real); };
-  const std::size_t preparing = count(shape.channels + shape.other_channels) + noise_variance + pair_channels(shape) +
-                                feature_in_preparation_channels;
+  const std::size_t preparing = count(shape.channels + shape.other_channels) + noise_variance_channels +
+                                pair_channels(shape) + feature_in_preparation_channels;
   const std::size_t denoising = kept_channels(shape) + pair_channels(shape) + denoiser_features_channels;
   const std::size_t judging =
       prior_has_halves(shape) ? pair_channels(shape) + judge_channels(count(model_features(shape))) : 0;

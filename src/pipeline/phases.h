@@ -1,9 +1,9 @@
 #pragma once
 
-#include <chrono>
 #include <cstddef>
 #include <string>
 
+#include "core/stopwatch.h"
 #include "polyrecon/progress.h"
 #include "polyrecon/report.h"
 
@@ -18,11 +18,11 @@ class Phases {
   /// in all.
   template <typename Phase>
   auto run(const std::string& name, std::size_t units, const Phase& phase) {
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     progress_.begin(name, units);
     auto result = phase(progress_);
     progress_.end();
-    report_.phases.push_back({name, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()});
+    report_.phases.push_back({name, watch.seconds()});
     return result;
   }
 

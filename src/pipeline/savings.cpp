@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 
 #include "core/rect.h"
+#include "core/stopwatch.h"
 #include "features/prefilter.h"
 
 namespace polyrecon {
@@ -19,10 +19,9 @@ constexpr double seconds_per_channel = 0.05;
 double prefilter_seconds(const Frame& frame, const PrefilterParams& prefilter_params) {
   const Rect block = intersect({0, 0, 128, 32}, frame.beauty.mean.bounds());
   const Image part = crop(frame.beauty.mean, block);
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch watch;
   prefilter({part, part}, Image(part.width(), part.height(), 3, Real(1)), prefilter_params, silent_progress());
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  return seconds / (3.0 * static_cast<double>(part.pixels()));
+  return watch.seconds() / (3.0 * static_cast<double>(part.pixels()));
 }
 
 }  // namespace

@@ -17,6 +17,11 @@ Decision decide_on_void(const Image& picture) {
           fmt::format("{:.1f} % of the frame: alpha, features and all colours are 0", 100 * share)};
 }
 
+Decision decide_on_correlation(double correlation) {
+  return {"correlated noise", true,
+          fmt::format("the pixel filter spreads samples: noise of neighbours correlates by {:.2f}", correlation)};
+}
+
 }  // namespace
 
 Survey survey_frame(Frame& frame, const Steps& steps, Progress& progress) {
@@ -24,10 +29,13 @@ Survey survey_frame(Frame& frame, const Steps& steps, Progress& progress) {
   Survey survey;
   Image picture = picture_of(frame), sampled = sampled_of(picture, frame);
   hide_void(sampled, frame);
-  if (steps.prefilter) estimate_feature_variance(frame, progress, sampled);
-  survey.noise = noise_variance(frame, progress, sampled);
+  const double correlation = noise_is_measured(frame) ? 0 : noise_correlation(frame, progress, sampled);
+  if (steps.prefilter) estimate_feature_variance(frame, progress, sampled, correlation);
+  survey.noise = noise_variance(frame, progress, sampled, correlation);
   survey.preparation = choose_features(frame, steps, sampled);
   if (!picture.empty()) survey.preparation.decisions.push_back(decide_on_void(picture));
+  survey.preparation.noise_correlation = correlation;
+  if (correlation > 0) survey.preparation.decisions.push_back(decide_on_correlation(correlation));
   survey.preparation.picture = std::move(picture);
   survey.preparation.sampled = std::move(sampled);
   return survey;

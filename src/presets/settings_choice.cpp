@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cassert>
-#include <chrono>
 #include <cmath>
 #include <numeric>
 
@@ -12,6 +11,7 @@
 #include "core/rect.h"
 #include "core/relmse.h"
 #include "core/repair.h"
+#include "core/stopwatch.h"
 #include "features/prepare.h"
 #include "polyrecon/reconstruct.h"
 #include "presets/pareto.h"
@@ -92,7 +92,7 @@ Pilot run_pilot(const Frame& frame, Progress& progress) {
       frame, std::clamp<std::size_t>(wanted, least_tiles, static_cast<std::size_t>(tiles_per_thread * threads)));
   std::vector<double> error(tiles.size()), area(tiles.size());
   const Params params = presets()[pilot_preset].params;
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch watch;
   progress.begin("pilot", tiles.size());
   parallel_for(tiles.size(), progress, [&](std::size_t i) {
     Frame part = crop(frame, tiles[i]);
@@ -101,7 +101,7 @@ Pilot run_pilot(const Frame& frame, Progress& progress) {
   });
   progress.end();
   Pilot pilot;
-  pilot.spent = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  pilot.spent = watch.seconds();
   const double tried = std::accumulate(area.begin(), area.end(), 0.0);
   pilot.share = tried / pixels;
   pilot.relative_mse = std::accumulate(error.begin(), error.end(), 0.0) / tried;

@@ -1,9 +1,9 @@
 #include "sweep/trial.h"
 
 #include <algorithm>
-#include <chrono>
 #include <utility>
 
+#include "core/stopwatch.h"
 #include "polyrecon/reconstruct.h"
 
 namespace polyrecon {
@@ -29,9 +29,10 @@ struct Run {
 
 /// frame: a copy, because reconstruct moves passes out of it.
 Run run_once(Frame frame, const Params& params, Progress& progress) {
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch watch;
   Result result = reconstruct(frame, params, progress);
-  return {std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), std::move(result)};
+  const double seconds = watch.seconds();
+  return {seconds, std::move(result)};
 }
 
 }  // namespace

@@ -13,17 +13,10 @@ namespace {
 constexpr int repair_depth = 8;       // pixels, as for features
 constexpr double least_depth = 1e-6;  // depths below it, and 0 of an empty background, are one
 
-std::optional<Surface> surface_of(Role role) {
-  switch (role) {
-    case Role::Albedo:
-      return AlbedoSurface;
-    case Role::Normal:
-      return NormalSurface;
-    case Role::Depth:
-      return DepthSurface;
-    default:
-      return std::nullopt;
-  }
+std::optional<std::size_t> surface_of(Role role) {
+  const auto found = std::find(surface_roles.begin(), surface_roles.end(), role);
+  if (found == surface_roles.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - surface_roles.begin());
 }
 
 void to_logarithm(Image& depth, double sky) {
@@ -41,6 +34,12 @@ double noise_at(const Pass& pass, int c, std::size_t i) {
 }
 
 }  // namespace
+
+std::size_t geometry_channels() {
+  int channels = info_of(Role::Motion).channels;
+  for (const Role role : surface_roles) channels += info_of(role).channels;
+  return static_cast<std::size_t>(channels);
+}
 
 Geometry geometry_of(const Frame& frame) {
   Geometry out{frame.data_window, frame.motion, {}};

@@ -9,7 +9,8 @@ namespace polyrecon {
 
 /// The passes that say which surface a pixel shows.
 enum Surface { AlbedoSurface, NormalSurface, DepthSurface };
-inline constexpr std::size_t surfaces = 3;
+inline constexpr std::array surface_roles{Role::Albedo, Role::Normal, Role::Depth};
+inline constexpr std::size_t surfaces = surface_roles.size();
 
 /// What tells where the points of a frame are in another frame, and whether a pixel shows the same surface there.
 struct Geometry {
@@ -19,7 +20,7 @@ struct Geometry {
 };
 
 /// Channels of a Geometry.
-inline constexpr std::size_t geometry_channels = 4 + 3 + 3 + 1;
+std::size_t geometry_channels();
 
 /// The geometry of a frame; its passes are copied and made finite.
 Geometry geometry_of(const Frame& frame);

@@ -21,7 +21,7 @@ inline bool is_noisy(const Image& variance, int x, int y) {
 
 /// Channels of a Neighbour.
 inline std::size_t neighbour_channels(std::size_t color_channels) {
-  return half_pair_channels(color_channels, 0) + geometry_channels;
+  return half_pair_channels(color_channels, 0) + geometry_channels();
 }
 
 }  // namespace polyrecon

@@ -37,6 +37,7 @@ RUNS = (
 CHECK = ((960, 540), "standard")  # a size and quality that the fit has not seen
 SCALING_SIZE = (640, 360)
 THREADS = 2
+AOV_BYTES = 2 * 3 * 4.0  # of a pixel of a neighbour: two halves of three floats
 TURNS = 3  # of --scaling
 TRAITS = (" Variance", " A", " B", " Count")
 
@@ -224,7 +225,7 @@ def measure_neighbours(program, shots):
     scaling.row("peak MB", *(f"{r['peak'] / 1e6:.0f}" for r in (alone, joined)), f"{extra:.0f} bytes")
     seconds = (joined["cpu"] - alone["cpu"]) / frame.pixels / in_reach
     scaling.row("CPU s a frame", *(f"{r['cpu']:.2f}" for r in (alone, joined)), f"{1e6 * seconds:.2f} us")
-    return {"bytes": extra, "seconds": seconds}
+    return {"bytes": extra, "bytes_per_aov": AOV_BYTES, "seconds": seconds}
 
 
 def measure_constants(program, shots):
@@ -261,7 +262,7 @@ def main():
             **rounded(fit_model(runs)),
         )
         constants.setdefault("parallel_part", 1.0)
-        constants.setdefault("neighbour", {"bytes": 0.0, "seconds": 0.0})
+        constants.setdefault("neighbour", {"bytes": 0.0, "bytes_per_aov": AOV_BYTES, "seconds": 0.0})
         write_model(args.model, constants)
         size, quality = CHECK
         place, frame = shots.get("merged", *size)

@@ -14,6 +14,7 @@ import tempfile
 import numpy as np
 import OpenImageIO as oiio
 from accuracy import ROOT, table, write_between
+from relmse import relative_squares
 
 WIDTH, HEIGHT = 160, 96
 FULL = (0, 0, WIDTH, HEIGHT)  # a window: left, top, right, bottom; right and bottom are outside
@@ -71,7 +72,7 @@ def noisy(mean, rng, samples=SAMPLES):
 
 
 def relmse(image, truth, mask=None):
-    error = ((image - truth) ** 2 / (truth**2 + 0.01)).mean(-1)
+    error = relative_squares(image, truth).mean(-1)
     return error[mask].mean() if mask is not None else error.mean()
 
 

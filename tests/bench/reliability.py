@@ -12,12 +12,12 @@ import matplotlib
 import numpy as np
 import OpenImageIO as oiio
 from accuracy import ROOT, SAMPLES, table, write_between
+from relmse import relative_squares
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
 DECILES = 10
-FLOOR = 0.01  # of relMSE
 
 
 def read(path, *suffixes):
@@ -41,8 +41,8 @@ def errors(program, render, reference):
         result, estimated = read(out, "Combined.R", "Combined.G", "Combined.B"), read(maps, "relmse.Y")[..., 0]
     truth = read(reference, "Combined.R", "Combined.G", "Combined.B")
     noise = read(reference, *(f"Combined Variance.{c}" for c in "RGB"))
-    squared = (result - truth) ** 2 - (0 if noise is None else np.nan_to_num(noise))
-    return estimated.ravel(), (squared / (truth**2 + FLOOR)).mean(-1).ravel()
+    true = relative_squares(result, truth, 0 if noise is None else np.nan_to_num(noise))
+    return estimated.ravel(), true.mean(-1).ravel()
 
 
 def deciles(estimated, true):

@@ -20,7 +20,6 @@ import numpy
 import pyoidn
 from pyoidn.filter import OIDN_FORMAT_FLOAT3, OIDN_QUALITY_HIGH
 
-
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT))
 from pipelines.common import exr  # noqa: E402

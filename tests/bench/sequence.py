@@ -14,6 +14,7 @@ import subprocess
 
 import numpy
 import OpenImageIO
+from relmse import denominator
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SHOTS = (range(1, 7), range(7, 11))
@@ -31,7 +32,7 @@ def measure(folder, results):
     errors, noises = {}, {}
     for frame in (frame for shot in SHOTS for frame in shot):
         reference = layer(folder / f"ref.{frame:04d}.exr", "Combined")
-        scale = reference**2 + 0.01
+        scale = denominator(reference)
         noises[frame] = layer(folder / f"ref.{frame:04d}.exr", "Combined Variance") / scale
         errors[frame] = (layer(results(frame), "Combined") - reference) / numpy.sqrt(scale)
     relmse = {frame: (errors[frame] ** 2 - noises[frame]).mean() for frame in errors}

@@ -199,6 +199,63 @@ TEST_F(OwnWindows, ALayerThatIsNoPartOfTheBeautyIsDenoisedByItself) {
   EXPECT_THAT(before.out, Not(HasSubstr("key gets")));
 }
 
+/// A beauty that is a crop of the frame, next to an albedo and a light of the whole frame.
+class Cropped : public OwnWindows {
+ protected:
+  static constexpr int left = 6, right = 34;
+
+  void write_cropped(const std::string& name) const {
+    std::vector<OIIO::ImageSpec> specs;
+    for (const char* part : {"beauty", "albedo", "light"}) {
+      OIIO::ImageSpec spec(width, height, 3, OIIO::TypeDesc::FLOAT);
+      const bool is_beauty = specs.empty();
+      spec.x = is_beauty ? left : 0;
+      spec.width = is_beauty ? right - left : width;
+      spec.full_width = width;
+      spec.full_height = height;
+      spec.channelnames = {"R", "G", "B"};
+      spec.attribute("oiio:subimagename", part);
+      specs.push_back(spec);
+    }
+    const auto out = OIIO::ImageOutput::create(path(name));
+    out->open(path(name), static_cast<int>(specs.size()), specs.data());
+    for (std::size_t s = 0; s < specs.size(); ++s) {
+      if (s > 0) out->open(path(name), specs[s], OIIO::ImageOutput::AppendSubimage);
+      std::vector<float> samples;
+      for (int y = 0; y < height; ++y)
+        for (int x = specs[s].x; x < specs[s].x + specs[s].width; ++x)
+          for (int c = 0; c < 3; ++c) {
+            const double color = albedo(x, 0);
+            samples.push_back(static_cast<float>(s == 1 ? color : color * noise(x, y, c) / (s == 2 ? 2 : 1)));
+          }
+      out->write_image(OIIO::TypeDesc::FLOAT, samples.data());
+    }
+    out->close();
+  }
+
+  std::vector<float> part(const std::string& name, int subimage) const {
+    const auto input = OIIO::ImageInput::open(path(name));
+    const OIIO::ImageSpec spec = input->spec(subimage);
+    std::vector<float> samples(static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height) * 3);
+    input->read_image(subimage, 0, 0, 3, OIIO::TypeDesc::FLOAT, samples.data());
+    return samples;
+  }
+};
+
+TEST_F(Cropped, ALayerThatReachesBeyondTheBeautyLeavesItAsItIs) {
+  write_cropped("in.exr");
+  const Outcome o = denoise("in.exr", "with.exr", {"--aov", "light", "--report", "r.json"});
+  ASSERT_EQ(o.code, 0) << o.err;
+  ASSERT_EQ(denoise("in.exr", "without.exr").code, 0);
+  ASSERT_EQ(denoise("in.exr", "alone.exr", {"--map", "beauty=light"}).code, 0);
+  EXPECT_EQ(part("with.exr", 0), part("without.exr", 0));
+  EXPECT_EQ(part("with.exr", 2), part("alone.exr", 2));
+  EXPECT_NE(part("with.exr", 0), part("in.exr", 0));
+  EXPECT_NE(part("with.exr", 2), part("in.exr", 2));
+  EXPECT_THAT(report("r.json")["notes"], Contains(HasSubstr("light gets windows of its own")));
+  EXPECT_THAT(run({"inspect", "in.exr", "--aov", "light"}).out, HasSubstr("light gets windows of its own"));
+}
+
 TEST_F(OwnWindows, LayersThatAddUpAreTheSameWithAndWithoutIt) {
   write_scene("in.exr");
   ASSERT_EQ(denoise("in.exr", "with.exr", {"--aov", "key", "--aov", "shadow"}).code, 0);

@@ -1,3 +1,4 @@
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <string>
@@ -42,6 +43,28 @@ TEST_F(Usage, UnknownCommandsAndOptionsAreUsageErrors) {
     EXPECT_TRUE(is_one_error_line(o.err));
     EXPECT_TRUE(o.out.empty()) << o.out;
   }
+}
+
+TEST_F(Usage, NumbersHaveToBeFiniteAndAboveZero) {
+  for (const char* number : {"nan", "inf", "0", "-3", "x"}) {
+    const Outcome o = run({"denoise", "-i", "in.exr", "-o", "out.exr", "--samples", number});
+    EXPECT_EQ(o.code, 2) << number;
+    EXPECT_THAT(o.err, ::testing::HasSubstr(std::string(number) + " is no number above 0"));
+  }
+}
+
+TEST_F(Usage, ResultsAreNotNamedAsOtherPictures) {
+  testing::write_exr(path("in.exr"), 4, 4, {"R", "G", "B"}, [](int, int, int) { return 0.5; });
+  const std::vector<std::vector<std::string>> calls{
+      {"denoise", "-i", "in.exr", "-o", "out.PNG"},
+      {"denoise", "-i", "in.exr", "-o", "out.exr", "--error-map", "map.tif"},
+      {"merge", "in.exr", "in.exr", "-o", "out.jpg"}};
+  for (const auto& call : calls) {
+    const Outcome o = run(call);
+    EXPECT_EQ(o.code, 2);
+    EXPECT_THAT(o.err, ::testing::HasSubstr("an EXR file is written; give it the ending .exr"));
+  }
+  EXPECT_FALSE(std::filesystem::exists(path("out.PNG")));
 }
 
 TEST_F(Usage, MissingFilesAreNamed) {

@@ -7,9 +7,13 @@ that ends early fails too.
 import os
 import pathlib
 import subprocess
+import sys
 
 import numpy as np
 import OpenImageIO as oiio
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2]))
+from tests.bench.relmse import relative_squares
 
 PROGRAM = os.environ["POLYRECON"]
 SAMPLES = pathlib.Path(os.environ["POLYRECON_SAMPLES"])
@@ -83,7 +87,7 @@ def relative_mse(image, reference_path):
     found = channels(reference_path)
     reference = layer(found, "Combined")
     variance = layer(found, "Combined Variance") if "ViewLayer.Combined Variance.R" in found else 0.0
-    return float((((image - reference) ** 2 - variance) / (reference**2 + 1e-2)).mean())
+    return float(relative_squares(image, reference, variance).mean())
 
 
 def same_bits(a, b):

@@ -20,11 +20,8 @@ const Rect display{0, 0, 12, 9};
 
 /// A part of one layer whose values are 0 outside `box`, with that box or the whole picture as its data window.
 TestPart boxed(const std::string& name, const std::string& letters, int seed, const Rect& box, bool cut) {
-  TestPart part;
+  TestPart part = part_over(cut ? box : display, display, layer(name, letters, seed));
   part.name = name;
-  part.display = display;
-  part.window = cut ? box : display;
-  part.channels = layer(name, letters, seed);
   for (TestChannel& channel : part.channels)
     channel.samples = [box, inside = channel.samples](int x, int y) { return box.contains(x, y) ? inside(x, y) : 0; };
   return part;
@@ -58,24 +55,43 @@ TEST(AutoCrop, PassesAreZeroOutsideTheirBoxes) {
     EXPECT_EQ(samples(cut.frame.features[f].pass.mean, all), samples(whole.frame.features[f].pass.mean, box)) << f;
 }
 
-TEST(AutoCrop, TheFrameCoversEveryLayerThatIsDenoised) {
+TEST(AutoCrop, LayersWithinTheBoxOfTheBeautyAreReadWithIt) {
   const TemporaryFolder folder;
+  std::vector<TestPart> parts = render(true);
+  parts[4] = boxed("diffuse", "RGB", 40, {2, 3, 9, 8}, true);
   ReadOptions options;
   options.aovs = {"diffuse"};
-  const Frame frame = read_frame(write_exr(folder / "cut.exr", render(true)), options).frame;
-  EXPECT_EQ(frame.data_window, (Rect{0, 1, 12, 9}));
-  ASSERT_THAT(frame.aovs, SizeIs(1));
-  EXPECT_EQ(static_cast<double>(frame.aovs[0].mean.at(2, 0, 0)), pattern(40)(2, 1));
-  EXPECT_EQ(static_cast<double>(frame.beauty.mean.at(2, 0, 0)), 0);
-  EXPECT_EQ(static_cast<double>(frame.beauty.mean.at(2, 1, 0)), pattern(0)(2, 2));
+  const ReadResult read = read_frame(write_exr(folder / "cut.exr", parts), options);
+  EXPECT_EQ(read.frame.data_window, (Rect{0, 2, 12, 9}));
+  ASSERT_THAT(read.frame.aovs, SizeIs(1));
+  EXPECT_EQ(static_cast<double>(read.frame.aovs[0].mean.at(2, 1, 0)), pattern(40)(2, 3));
+  EXPECT_EQ(read.frame.aovs[0].mean.at(2, 0, 0), 0);
+  EXPECT_THAT(read.beside_beauty, IsEmpty());
+}
+
+/// Beyond its box the beauty is 0, so a layer that is not is no part of it; and the beauty may be a crop.
+TEST(AutoCrop, ALayerThatReachesBeyondTheBeautyIsReadByItself) {
+  const TemporaryFolder folder;
+  const std::string path = write_exr(folder / "cut.exr", render(true));
+  ReadOptions options;
+  options.aovs = {"diffuse"};
+  const ReadResult read = read_frame(path, options);
+  EXPECT_EQ(read.frame.data_window, (Rect{0, 2, 12, 9}));
+  EXPECT_THAT(read.frame.aovs, IsEmpty());
+  EXPECT_THAT(read.beside_beauty, ::testing::ElementsAre("diffuse"));
+  EXPECT_THAT(read.notes, ::testing::ElementsAre(HasSubstr("diffuse gets windows of its own")));
+  options.aovs.clear();
+  options.own_windows = "diffuse";
+  const Frame frame = read_frame(path, options).frame;
+  EXPECT_EQ(frame.data_window, (Rect{2, 1, 9, 8}));
+  EXPECT_EQ(static_cast<double>(frame.beauty.mean.at(0, 0, 0)), pattern(40)(2, 1));
+  EXPECT_EQ(static_cast<double>(frame.features[1].pass.mean.at(1, 0, 0)), pattern(10)(3, 1));
 }
 
 TEST(AutoCrop, ResultsAreWrittenIntoTheBoxes) {
   const TemporaryFolder folder;
-  ReadOptions options;
-  options.aovs = {"diffuse"};
-  const ReadResult read = read_frame(write_exr(folder / "cut.exr", render(true)), options);
-  const Rect window = read.frame.data_window;
+  const ReadResult read = read_frame(write_exr(folder / "cut.exr", render(true)));
+  const Rect window{0, 1, 12, 9};  // of all that is written
   const Image beauty(window.width(), window.height(), 3, 7), diffuse(window.width(), window.height(), 3, 5);
   Image numbered(window.width(), window.height(), 1);
   for (std::size_t i = 0; i < numbered.pixels(); ++i) numbered.plane(0)[i] = static_cast<Real>(i);

@@ -116,6 +116,36 @@ TEST(Containers, MipMapped) {
   expect_refused(path, "mip-mapped", "save one level");
 }
 
+TEST(Containers, MessagesNameThePart) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "parts.exr";
+  TestPart albedo, beauty;
+  albedo.name = "albedo";
+  beauty.name = "picture";
+  albedo.window = albedo.display = beauty.window = beauty.display = {0, 0, 8, 8};
+  albedo.channels = layer("albedo", "RGB");
+  beauty.channels = layer("beauty", "RGB");
+  beauty.tile = 8;
+  beauty.edit = [](Imf::Header& header) { header.setTileDescription({8, 8, Imf::MIPMAP_LEVELS}); };
+  {
+    const std::vector<Imf::Header> headers{testing::header_of(albedo), testing::header_of(beauty)};
+    Imf::MultiPartOutputFile file(path.c_str(), headers.data(), 2);
+    std::map<std::string, std::vector<char>> bytes;
+    for (const TestPart& part : {albedo, beauty})
+      for (const auto& channel : part.channels) bytes[channel.name] = testing::bytes_of(channel, part.window);
+    Imf::OutputPart lines(file, 0);
+    lines.setFrameBuffer(testing::buffer_of(albedo, bytes));
+    lines.writePixels(8);
+    Imf::TiledOutputPart tiles(file, 1);
+    tiles.setFrameBuffer(testing::buffer_of(beauty, bytes));
+    for (int level = 0; level < tiles.numLevels(); ++level) tiles.writeTile(0, 0, level);
+  }
+  const char* message = "the beauty (part 1 \"picture\") is mip-mapped";
+  EXPECT_THAT(error_of([&] { read_frame(path); }).what(), HasSubstr(message));
+  std::filesystem::copy_file(path, path + ".copy");
+  EXPECT_THAT(error_of([&] { merge({path, path + ".copy"}, folder / "merged.exr"); }).what(), HasSubstr(message));
+}
+
 TEST(Containers, Subsampled) {
   const TemporaryFolder folder;
   const std::string path = folder / "sub.exr";

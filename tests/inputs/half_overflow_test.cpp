@@ -36,13 +36,12 @@ bool in_lamp(int x, int y) { return std::hypot(x - 24, y - 20) < 11.5; }  // wid
 
 /// A lamp of +Inf before a noisy wall of about 0.3.
 TestPart lamp(Imf::PixelType type, int seed, double brightness = inf) {
-  TestPart part;
-  part.window = part.display = {0, 0, width, height};
-  for (TestChannel& channel : part.channels = layer("", "RGB", 0, type)) {
-    const int letter = channel.name[0];
+  const Rect picture{0, 0, width, height};
+  TestPart part = testing::part_over(picture, picture, layer("", "RGB", 0, type));
+  for (TestChannel& channel : part.channels) {
+    const int own_seed = 1000 * channel.name[0] + seed;
     channel.samples = [=](int x, int y) {
-      const unsigned mixed = static_cast<unsigned>(x * 7919 + y * 104729 + letter * 31 + seed * 1299709) * 2654435761U;
-      return in_lamp(x, y) ? brightness : 0.25 + 0.1 * (mixed >> 16 & 1023U) / 1023;
+      return in_lamp(x, y) ? brightness : 0.25 + 0.1 * testing::grain(x, y, own_seed);
     };
   }
   return part;

@@ -20,6 +20,7 @@ namespace {
 using ::testing::Contains;
 using testing::error_of;
 using ::testing::HasSubstr;
+using testing::holds;
 using ::testing::IsEmpty;
 using testing::TemporaryFolder;
 using testing::TestChannel;
@@ -54,15 +55,6 @@ std::vector<TestChannel> channels_of(const Naming& naming) {
   add(channels, naming.alpha, alpha_seed);
   add(channels, naming.depth, depth_seed);
   return channels;
-}
-
-/// Whether plane c is the fixture's pattern of that seed.
-bool holds(const Image& image, int c, int seed) {
-  if (image.empty()) return false;
-  for (int y = 0; y < image.height(); ++y)
-    for (int x = 0; x < image.width(); ++x)
-      if (static_cast<double>(image.at(x, y, c)) != testing::pattern(seed)(x, y)) return false;
-  return true;
 }
 
 void expect_color(const Image& image, int seed, const std::string& what) {

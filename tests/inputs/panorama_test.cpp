@@ -114,9 +114,7 @@ TEST(Panorama, RepeatedColumnsCountInTheMemoryStatement) {
 }
 
 TestPart part_with_envmap(Imf::Envmap map, const Rect& window) {
-  TestPart part;
-  part.window = window;
-  part.channels = layer("", "RGB");
+  TestPart part = part_over(window, {0, 0, 8, 6}, layer("", "RGB"));
   part.edit = [map](Imf::Header& header) { header.insert("envmap", Imf::EnvmapAttribute(map)); };
   return part;
 }

@@ -18,23 +18,12 @@ using ::testing::Not;
 const Rect frame{0, 0, 12, 9};
 
 TestPart region(const Rect& window, std::vector<TestChannel> channels) {
-  TestPart part;
-  part.display = frame;
-  part.window = window;
-  part.channels = std::move(channels);
-  return part;
+  return part_over(window, frame, std::move(channels));
 }
 
 std::vector<TestChannel> passes() {
   return join({layer("V.Combined", "RGBA", 0), layer("V.Denoising Albedo", "RGB", 10, Imf::HALF),
                layer("V.IndexOB", "X", 20, Imf::UINT)});
-}
-
-std::vector<std::string> write_all(const TemporaryFolder& folder, const std::vector<TestPart>& parts) {
-  std::vector<std::string> paths;
-  for (const TestPart& part : parts)
-    paths.push_back(write_exr(folder / ("r" + std::to_string(paths.size()) + ".exr"), {part}));
-  return paths;
 }
 
 std::vector<std::string> channel_names(const std::string& path) {

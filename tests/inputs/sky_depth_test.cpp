@@ -24,14 +24,10 @@ constexpr int width = 40, height = 32;
 
 /// A slope under a sky of this depth, in the manner of Blender: the row at the horizon is sky in renders of odd seeds.
 TestPart render(double sky, int seed, const char* depth = "V.Denoising Depth") {
-  TestPart part;
-  part.window = part.display = {0, 0, width, height};
-  part.channels = testing::join({layer("V.Combined", "RGB"), layer(depth, "Z")});
+  const Rect picture{0, 0, width, height};
+  TestPart part = testing::part_over(picture, picture, testing::join({layer("V.Combined", "RGB"), layer(depth, "Z")}));
   for (TestChannel& channel : part.channels)
-    channel.samples = [=](int x, int y) {
-      const unsigned mixed = static_cast<unsigned>(x * 7919 + y * 104729 + seed * 1299709) * 2654435761U;
-      return y / 64.0 + 0.1 * (mixed >> 16 & 1023U) / 1023;
-    };
+    channel.samples = [=](int x, int y) { return y / 64.0 + 0.1 * testing::grain(x, y, seed); };
   part.channels.back().samples = [=](int x, int y) {
     return y < 16 || (y == 16 && seed % 2 == 1) ? sky : 100.0 - y + 0.01 * ((x + seed) % 3);
   };

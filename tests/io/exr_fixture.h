@@ -8,6 +8,7 @@
 #include <OpenEXR/ImfMultiPartOutputFile.h>
 #include <OpenEXR/ImfOutputPart.h>
 #include <OpenEXR/ImfPartType.h>
+#include <OpenEXR/ImfStringAttribute.h>
 #include <OpenEXR/ImfTiledOutputPart.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -20,10 +21,12 @@
 #include <iterator>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/rect.h"
 #include "polyrecon/error.h"
+#include "polyrecon/image.h"
 
 namespace polyrecon::testing {
 
@@ -61,6 +64,12 @@ inline Samples constant(double value) {
   return [value](int, int) { return value; };
 }
 
+/// Noise without sums: 0 to 1, unlike from pixel to pixel and from seed to seed.
+inline double grain(int x, int y, int seed) {
+  const unsigned mixed = static_cast<unsigned>(x * 7919 + y * 104729 + seed * 1299709) * 2654435761U;
+  return (mixed >> 16 & 1023U) / 1023.0;
+}
+
 struct TestChannel {
   std::string name;
   Imf::PixelType type = Imf::FLOAT;
@@ -77,6 +86,20 @@ struct TestPart {
   Imf::LineOrder order = Imf::INCREASING_Y;
   std::function<void(Imf::Header&)> edit = [](Imf::Header&) {};
 };
+
+/// A part whose channels cover a part of the picture.
+inline TestPart part_over(const Rect& window, const Rect& display, std::vector<TestChannel> channels) {
+  TestPart part;
+  part.window = window;
+  part.display = display;
+  part.channels = std::move(channels);
+  return part;
+}
+
+/// For TestPart::edit: sets an attribute of text.
+inline std::function<void(Imf::Header&)> with_text(const std::string& name, const std::string& value) {
+  return [=](Imf::Header& header) { header.insert(name, Imf::StringAttribute(value)); };
+}
 
 inline Imf::Header header_of(const TestPart& part) {
   Imf::Header header({{part.display.x0, part.display.y0}, {part.display.x1 - 1, part.display.y1 - 1}},
@@ -148,6 +171,14 @@ inline std::string write_exr(const std::string& path, const std::vector<TestPart
   return path;
 }
 
+/// Writes a file for each part, r0.exr, r1.exr, ... Returns their paths.
+inline std::vector<std::string> write_all(const TemporaryFolder& folder, const std::vector<TestPart>& parts) {
+  std::vector<std::string> paths;
+  for (const TestPart& part : parts)
+    paths.push_back(write_exr(folder / ("r" + std::to_string(paths.size()) + ".exr"), {part}));
+  return paths;
+}
+
 /// Channels LAYER.R, LAYER.G, LAYER.B (or other letters) with consecutive patterns.
 inline std::vector<TestChannel> layer(const std::string& name, const std::string& letters, int seed = 0,
                                       Imf::PixelType type = Imf::FLOAT) {
@@ -168,6 +199,17 @@ inline std::vector<TestChannel> join(const std::vector<std::vector<TestChannel>>
   for (const auto& l : layers) all.insert(all.end(), l.begin(), l.end());
   return all;
 }
+
+/// Whether channel c holds the pattern of that seed. window: that of the image, in file coordinates.
+inline bool holds(const Image& image, int c, const Rect& window, int seed) {
+  for (int y = window.y0; y < window.y1; ++y)
+    for (int x = window.x0; x < window.x1; ++x)
+      if (static_cast<double>(image.at(x - window.x0, y - window.y0, c)) != pattern(seed)(x, y)) return false;
+  return !image.empty();
+}
+
+/// The same for an image whose window begins at (0, 0).
+inline bool holds(const Image& image, int c, int seed) { return holds(image, c, image.bounds(), seed); }
 
 /// One channel of a flat part, decoded with OpenEXR alone, in the bytes of its own type.
 inline std::vector<char> stored_bytes(const std::string& path, int part, const std::string& channel) {

@@ -72,7 +72,7 @@ TEST(InspectFile, NoiseLevelFromVarianceOrHalves) {
   const TemporaryFolder folder;
   TestPart part;
   part.channels = join({flat_layer("V.Combined", "RGB", 0.3), flat_layer("V.Combined Variance", "RGB", 0.5)});
-  part.edit = [](Imf::Header& header) { header.insert("cycles.V.samples", Imf::StringAttribute("8")); };
+  part.edit = testing::with_text("cycles.V.samples", "8");
   const Inspection with_variance = inspect(write_exr(folder / "a.exr", {part}));
   EXPECT_NEAR(with_variance.noise_level, 5, 1e-5);  // 0.3 is no float
   EXPECT_EQ(with_variance.samples, 8);

@@ -17,6 +17,7 @@ using ::testing::Contains;
 using testing::error_of;
 using testing::flat_layer;
 using ::testing::HasSubstr;
+using testing::holds;
 using ::testing::IsEmpty;
 using testing::join;
 using testing::layer;
@@ -24,24 +25,13 @@ using testing::pattern;
 using ::testing::SizeIs;
 using testing::TemporaryFolder;
 using testing::TestPart;
+using testing::with_text;
 using testing::write_exr;
 
 TestPart part_of(std::vector<testing::TestChannel> channels) {
   TestPart part;
   part.channels = std::move(channels);
   return part;
-}
-
-std::function<void(Imf::Header&)> with_text(const std::string& name, const std::string& value) {
-  return [=](Imf::Header& header) { header.insert(name, Imf::StringAttribute(value)); };
-}
-
-/// Whether channel c holds the fixture's pattern of that seed over the whole window.
-bool holds(const Image& image, int c, const Rect& window, int seed) {
-  for (int y = window.y0; y < window.y1; ++y)
-    for (int x = window.x0; x < window.x1; ++x)
-      if (static_cast<double>(image.at(x - window.x0, y - window.y0, c)) != pattern(seed)(x, y)) return false;
-  return true;
 }
 
 double everywhere(const Image& image, int c = 0) {

@@ -57,5 +57,27 @@ TEST(SplitHalves, WithoutVarianceBothAreTheImage) {
   for (const Image& half : split_halves(mean, Image(5, 4, 3), 0)) EXPECT_TRUE(test::same_bits(half, mean));
 }
 
+/// What one half gets the other loses, so its correlations are those of the numbers: rho next to each other, rho^2
+/// diagonally. Of 128 x 128 of them a correlation is known to 1 / 128.
+TEST(SplitHalves, NoiseOfCorrelatedPixelsGetsTheirCorrelation) {
+  constexpr int side = 128;
+  const Image mean(side, side, 1), variance(side, side, 1, Real(4));
+  for (const double rho : {0.0, 0.25, 0.39}) {
+    const Image half = split_halves(mean, variance, 7, rho)[0];
+    const auto product = [&](int dx, int dy) {
+      double sum = 0;
+      for (int y = 0; y + dy < side; ++y)
+        for (int x = 0; x + dx < side; ++x)
+          sum += static_cast<double>(half.at(x, y, 0)) * static_cast<double>(half.at(x + dx, y + dy, 0));
+      return sum / ((side - dx) * (side - dy));
+    };
+    EXPECT_NEAR(product(0, 0), 4, 0.25) << rho;
+    EXPECT_NEAR(product(1, 0) / 4, rho, 0.04) << rho;
+    EXPECT_NEAR(product(0, 1) / 4, rho, 0.04) << rho;
+    EXPECT_NEAR(product(1, 1) / 4, rho * rho, 0.04) << rho;
+    EXPECT_NEAR(product(3, 0) / 4, 0, 0.04) << rho;
+  }
+}
+
 }  // namespace
 }  // namespace polyrecon

@@ -181,6 +181,62 @@ TEST(NoiseVariance, TextureOfANoisyFeatureStillExplains) {
   EXPECT_LT(mean_ratio(variance_of(of_same_samples(0.3, sigma)).variance, texture), 0.1);
 }
 
+/// White noise spread by a Gaussian of standard deviation `spread`, as splatting renderers spread samples. Walls with
+/// one shadow, features without variation but depth.
+Frame splatted(double sigma, double spread) {
+  test::Random random(21);
+  const Image white = test::image_of(width + 4, height + 4, 3, [&](int, int, int) { return random.normal(); });
+  double energy = 0;
+  for (int v = -2; v <= 2; ++v)
+    for (int u = -2; u <= 2; ++u) energy += std::exp(-(u * u + v * v) / (spread * spread));
+  Frame frame;
+  frame.beauty.mean = test::image_of(width, height, 3, [&](int x, int y, int c) {
+    double sum = 0;
+    for (int v = 0; v <= 4; ++v)
+      for (int u = 0; u <= 4; ++u)
+        sum += static_cast<double>(white.at(x + u, y + v, c)) *
+               std::exp(-((u - 2) * (u - 2) + (v - 2) * (v - 2)) / (2 * spread * spread));
+    return (x < 40 ? 1 : 2) + 0.01 * y + sigma * sum / std::sqrt(energy);
+  });
+  frame.features.push_back({Role::Albedo, {"Albedo", Image(width, height, 3, Real(0.5)), {}, {}, {}}});
+  frame.features.push_back({Role::Normal, {"Normal", Image(width, height, 3, Real(0.2)), {}, {}, {}}});
+  const Image depth = test::image_of(width, height, 1, [](int x, int y, int) { return 3 + 0.01 * x + 0.002 * x * y; });
+  frame.features.push_back({Role::Depth, {"Depth", depth, {}, {}, {}}});
+  return frame;
+}
+
+TEST(NoiseCorrelation, IsThatOfASplattingFilter) {
+  const auto kernel = [](double spread, int u) { return std::exp(-u * u / (2 * spread * spread)); };
+  for (const double spread : {0.5, 0.56}) {
+    double energy = 0, product = 0;
+    for (int u = -3; u <= 3; ++u) {
+      energy += kernel(spread, u) * kernel(spread, u);
+      product += kernel(spread, u) * kernel(spread, u + 1);
+    }
+    EXPECT_NEAR(noise_correlation(splatted(0.1, spread), silent_progress()), product / energy, 0.05) << spread;
+  }
+}
+
+TEST(NoiseCorrelation, IsNoneOfWhiteNoiseOrWithoutFlatPlaces) {
+  EXPECT_EQ(noise_correlation(splatted(0.1, 0.01), silent_progress()), 0);
+  Frame bare = splatted(0.1, 0.5);
+  bare.features.clear();
+  EXPECT_EQ(noise_correlation(bare, silent_progress()), 0);
+  test::Random random(22);
+  Frame grass = splatted(0.1, 0.5);
+  grass.features[0].pass.mean = grass.features[1].pass.mean =
+      test::image_of(width, height, 3, [&](int, int, int) { return random.uniform(); });
+  EXPECT_EQ(noise_correlation(grass, silent_progress()), 0);
+}
+
+/// The fit to texture takes correlated noise for texture: without the correlation the estimate is a quarter.
+TEST(NoiseVariance, OfSplattedNoiseIsOfTheRightSize) {
+  const Frame frame = splatted(0.1, 0.5);
+  const Image truth(width, height, 3, Real(0.01));
+  const double correlation = noise_correlation(frame, silent_progress());
+  EXPECT_NEAR(mean_ratio(noise_variance(frame, silent_progress(), {}, correlation).variance, truth), 1, 0.2);
+}
+
 TEST(NoiseVariance, FeaturesBeyondWhatTheModelHoldsAreLeftOut) {
   // The scene has 7 channels and each further pass 3, so the fourth of these does not fit into 16.
   Frame frame = test::make_scene(40, 36, 0.2, 8).frame;

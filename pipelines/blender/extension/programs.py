@@ -14,19 +14,20 @@ class SetupError(Exception):
 
 
 def find_program(given=""):
-    """The path of the program: `given`, else $POLYRECON, else the PATH, else the build of this checkout."""
+    """The path of the program: `given`, else $POLYRECON, each a path or a name on the PATH; else polyrecon on the PATH,
+    else the build of this checkout. The drivers' rule is the same (pipelines/common/polyrecon_cli.py), of which an
+    installed extension has no copy; tests/pipelines/common/test_program.py compares them."""
     for named, source in ((given, "the add-on's preferences"), (os.environ.get("POLYRECON"), "$POLYRECON")):
         if named:
-            if not os.access(named, os.X_OK) or os.path.isdir(named):
+            if not (found := shutil.which(named)):
                 raise SetupError(f"{named}: no such program ({source})")
-            return pathlib.Path(named)
-    places = [pathlib.Path(found) for found in (shutil.which("polyrecon"),) if found]
-    places += [
-        root / "build" / build / "src" / "polyrecon" for root in HERE.parents[2:3] for build in ("release", "dev")
-    ]
-    for place in places:
-        if os.access(place, os.X_OK):
-            return place
+            return pathlib.Path(found).absolute()
+    if found := shutil.which("polyrecon"):
+        return pathlib.Path(found)
+    for root in HERE.parents[2:3]:
+        for build in ("release", "dev"):
+            if os.access(program := root / "build" / build / "src" / "polyrecon", os.X_OK):
+                return program
     raise SetupError("polyrecon is not on the PATH: choose the program in the add-on's preferences")
 
 

@@ -1,5 +1,9 @@
 #include "cli/common/checks.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <fstream>
 #include <set>
@@ -43,6 +47,18 @@ void require_different_files(const std::vector<std::string>& inputs, const std::
       if (!outputs[j].path.empty() && same_file(output.path, outputs[j].path))
         throw Error(ExitCode::Usage, output.path + ": is named by both " + outputs[j].option + " and " + output.option);
   }
+}
+
+void require_exr_name(const NamedPath& output) {
+  static const std::set<std::string> others{".png", ".jpg", ".jpeg", ".tif", ".tiff",
+                                            ".hdr", ".pfm", ".dpx",  ".tga", ".bmp"};
+  std::string ending = std::filesystem::path(output.path).extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  if (others.count(ending) > 0)
+    throw Error(ExitCode::Usage,
+                fmt::format("{} {}: an EXR file is written; give it the ending .exr (polyrecon preview makes PNG)",
+                            output.option, output.path));
 }
 
 void require_writable(const std::vector<std::string>& outputs) {

@@ -5,13 +5,13 @@
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <cstdio>
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <string>
 
 #include "cli/common/signals.h"
+#include "core/stopwatch.h"
 #include "polyrecon/report.h"
 
 namespace polyrecon {
@@ -31,15 +31,16 @@ class ShownProgress : public SignalProgress {
     phase_ = phase;
     total_ = units;
     done_ = 0;
-    begun_ = shown_ = Clock::now();
+    since_begin_ = {};
+    since_shown_ = {};
     show(Event::Begin);
   }
   void advance(std::size_t units) override {
     done_ += units;
     // If another thread is printing, this one continues with its work.
     const std::unique_lock lock(mutex_, std::try_to_lock);
-    if (!lock || Clock::now() - shown_ < std::chrono::milliseconds(100)) return;
-    shown_ = Clock::now();
+    if (!lock || since_shown_.seconds() < seconds_between) return;
+    since_shown_ = {};
     show(Event::Progress);
   }
   void end() override {
@@ -55,16 +56,16 @@ class ShownProgress : public SignalProgress {
   /// At most total(), which is an estimate.
   std::size_t done() const { return std::min<std::size_t>(done_, total_); }
   std::size_t total() const { return total_; }
-  double seconds() const { return std::chrono::duration<double>(Clock::now() - begun_).count(); }
+  double seconds() const { return since_begin_.seconds(); }
 
  private:
-  using Clock = std::chrono::steady_clock;
+  static constexpr double seconds_between = 0.1;
 
   std::mutex mutex_;
   std::string phase_;
   std::atomic<std::size_t> done_{0};
   std::size_t total_ = 0;
-  Clock::time_point begun_, shown_;
+  Stopwatch since_begin_, since_shown_;
 };
 
 void put(const std::string& line) {

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "cli/common/layers.h"
+#include "cli/common/numbers.h"
 #include "polyrecon/error.h"
 
 namespace polyrecon {
@@ -49,16 +50,16 @@ std::string summary(const SampleMap& map, const SampleMapOptions& options) {
 
 std::vector<CLI::Option*> add_sample_map_options(OptionSet& set, SampleMapOptions& o) {
   set.begin_group("Sample map");
-  CLI::Option* budget = set.add(Changes::Result, "--budget", o.params.budget, "Extra samples per pixel, on average")
-                            ->check(CLI::PositiveNumber);
+  CLI::Option* budget =
+      set.add(Changes::Result, "--budget", o.params.budget, "Extra samples per pixel, on average")->check(above_zero());
   set.add(Changes::Result, "--target", o.params.target,
           "Mean relative MSE to reach, in place of a budget; denoise without a sample map reaches it by the fastest "
           "settings")
-      ->check(CLI::PositiveNumber)
+      ->check(above_zero())
       ->excludes(budget);
   CLI::Option* max_samples =
       set.add(Changes::Result, "--max-samples", o.params.max_samples, "Most extra samples of one pixel")
-          ->check(CLI::PositiveNumber)
+          ->check(above_zero())
           ->capture_default_str();
   CLI::Option* cost =
       set.add(Changes::Result, "--cost", o.cost,

@@ -12,6 +12,7 @@
 
 #include "cli/common/checks.h"
 #include "cli/denoise/finished.h"
+#include "core/stopwatch.h"
 #include "polyrecon/error.h"
 #include "polyrecon/reconstruct.h"
 
@@ -19,7 +20,6 @@ namespace polyrecon {
 namespace {
 
 namespace fs = std::filesystem;
-using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds first_pause{50}, longest_pause{2000};
 
@@ -52,16 +52,15 @@ class Cancellable final : public Progress {
 template <typename Attempt>
 auto FrameFetcher::wait_for(const std::string& path, double seconds, const Attempt& attempt) {
   auto last = size_and_time(path);
-  auto changed = Clock::now();
+  Stopwatch unchanged;
   auto pause = first_pause;
   for (;;) try {
       return attempt();
     } catch (const Error& error) {
       const auto now = size_and_time(path);
-      if (now != last) changed = Clock::now();
+      if (now != last) unchanged = {};
       last = now;
-      const std::chrono::duration<double> unchanged = Clock::now() - changed;
-      if (unchanged.count() >= seconds || !may_become_readable(error, path)) throw;
+      if (unchanged.seconds() >= seconds || !may_become_readable(error, path)) throw;
       if (cancelled_()) throw Error(ExitCode::Interrupted, "interrupted");
       std::this_thread::sleep_for(pause);
       pause = std::min(2 * pause, longest_pause);
@@ -88,7 +87,7 @@ LoadedFrame FrameFetcher::load_with_neighbours(const FrameFiles& files, const Re
 }
 
 void FrameFetcher::add_neighbours(const FrameFiles& files, LoadedFrame& loaded) {
-  const auto start = Clock::now();
+  const Stopwatch watch;
   std::map<std::string, Prepared> kept;
   for (const NeighbourFile& file : files.neighbours)
     if (Prepared prepared = neighbour(file, loaded)) {
@@ -102,7 +101,7 @@ void FrameFetcher::add_neighbours(const FrameFiles& files, LoadedFrame& loaded) 
   kept[key] =
       known != prepared_.end() ? known->second : prepare_neighbour(loaded.in.frame, files.place, job_.params, progress);
   prepared_ = std::move(kept);
-  loaded.read_seconds += std::chrono::duration<double>(Clock::now() - start).count();
+  loaded.read_seconds += watch.seconds();
 }
 
 FrameFetcher::Prepared FrameFetcher::neighbour(const NeighbourFile& file, LoadedFrame& loaded) {

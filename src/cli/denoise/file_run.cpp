@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <utility>
 
 #include "cli/common/roles_output.h"
 #include "cli/denoise/write_outputs.h"
+#include "core/stopwatch.h"
 #include "io/atomic_file.h"
 #include "pipeline/part_of_beauty.h"
 #include "pipeline/result_images.h"
@@ -16,12 +16,7 @@
 namespace polyrecon {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 constexpr double least_shared_noise = 0.1;  // share of the noisy pixels; below it chance may be the cause
-constexpr double least_seconds = 1e-3;       // a budget that is spent still selects the fastest settings
-
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 void print(bool quiet, const std::string& text) {
   if (quiet) return;
@@ -85,6 +80,7 @@ void FileRun::list_others(LoadedFrame& loaded) {
     for (const LayerView& place : loaded.in.source.pictures)
       if (!(place == loaded.picture.place)) add({place, {}});
   }
+  for (const std::string& layer : loaded.in.beside_beauty) add({loaded.picture.place, layer});
   for (const std::string& layer : take_own_windows(loaded.in.frame)) {
     add({loaded.picture.place, layer});
     loaded.in.notes.push_back(note_of_layer_beside_beauty(layer));
@@ -104,7 +100,7 @@ std::optional<PictureChoice> FileRun::next() {
 }
 
 void FileRun::denoise(LoadedFrame loaded, std::size_t max_memory, Progress& progress) {
-  const auto start = Clock::now();
+  const Stopwatch watch;
   print(job_.run.quiet, input_text(loaded));
   DonePicture done{std::move(loaded.in), {}, {}};
   RunReport& report = done.report;
@@ -119,16 +115,15 @@ void FileRun::denoise(LoadedFrame loaded, std::size_t max_memory, Progress& prog
   report.notes = done.in.notes;
   note_shared_noise(done.result.report, report.notes);
   report.read_seconds = loaded.read_seconds;
-  report.seconds = loaded.read_seconds + seconds_since(start);
+  report.seconds = loaded.read_seconds + watch.seconds();
   report.reconstruction = done.result.report;
   spent_ += report.seconds;
   done_.push_back(std::move(done));
 }
 
 FrameLimits FileRun::limits_left() const {
-  FrameLimits limits = *job_.limits;
-  if (limits.seconds > 0)
-    limits.seconds = std::max(limits.seconds - spent_, least_seconds) / static_cast<double>(count_ - done_.size());
+  FrameLimits limits = job_.limits->after(spent_);
+  limits.seconds /= static_cast<double>(count_ - done_.size());
   return limits;
 }
 
@@ -148,10 +143,10 @@ void FileRun::release_images(DonePicture& done) const {
 }
 
 void FileRun::write(Progress& progress) {
-  const auto start = Clock::now();
+  const Stopwatch watch;
   RunReport& first = done_.front().report;
   for (const std::string& note : write_outputs(job_, files_, done_, progress)) first.notes.push_back(note);
-  first.write_seconds = seconds_since(start);
+  first.write_seconds = watch.seconds();
   first.seconds += first.write_seconds;
   std::string text;
   std::vector<nlohmann::ordered_json> reports;

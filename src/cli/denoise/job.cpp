@@ -100,6 +100,11 @@ std::string settings_of(const OptionSet& set, Quality quality, const Job& job) {
 
 }  // namespace
 
+FrameLimits FrameLimits::after(double spent) const {
+  constexpr double least_seconds = 1e-3;
+  return {seconds > 0 ? std::max(seconds - spent, least_seconds) : 0, relative_mse};
+}
+
 Job make_job(const DenoiseOptions& o, const OptionSet& set) {
   Job job;
   job.limits = limits_of(o);
@@ -133,6 +138,8 @@ void check_files(const Job& job) {
       outputs.push_back({option.name, files.outputs.*option.path});
       all_outputs.push_back(files.outputs.*option.path);
     }
+    for (const NamedPath& output : outputs)
+      if (output.option != "--report") require_exr_name(output);
     require_different_files({files.input, job.sample_map ? sample_map_for(job, files).cost : std::string()}, outputs);
   }
   if (job.sample_map && !job.sample_map->cost.empty() && !FramePattern::parse(job.sample_map->cost))

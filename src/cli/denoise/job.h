@@ -19,6 +19,10 @@ namespace polyrecon {
 struct FrameLimits {
   double seconds = 0;       ///< For a whole frame, reading and writing included.
   double relative_mse = 0;  ///< Largest mean relative MSE.
+
+  /// What is left after so many seconds. Where none are left it is a millisecond, which still selects the fastest
+  /// settings.
+  FrameLimits after(double spent) const;
 };
 
 /// The work that a command line of `denoise` requests. Everything is decided, except the settings that a pilot chooses

@@ -1,8 +1,9 @@
 #include "cli/denoise/load_frame.h"
 
 #include <algorithm>
-#include <chrono>
 #include <filesystem>
+
+#include "core/stopwatch.h"
 
 namespace polyrecon {
 
@@ -34,9 +35,9 @@ ReadOptions with_picture(ReadOptions options, const PictureChoice& picture) {
 }
 
 LoadedFrame load_frame(const std::string& path, const ReadOptions& options) {
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch watch;
   LoadedFrame loaded{read_frame(path, options), 0, {}, {}};
-  loaded.read_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  loaded.read_seconds = watch.seconds();
   loaded.picture = {{loaded.in.source.view_layer, loaded.in.source.view}, options.own_windows};
   return loaded;
 }

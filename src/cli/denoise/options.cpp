@@ -2,6 +2,7 @@
 
 #include <map>
 
+#include "cli/common/numbers.h"
 #include "cli/common/read_limits.h"
 #include "cli/common/steps_option.h"
 
@@ -71,7 +72,7 @@ void add_input_options(OptionSet& set, DenoiseOptions& o) {
   set.add_choice(Changes::Result, "--wrap", o.read.wrap, wraps,
                  "Columns of a panorama go on around it: x; auto: if the file says so (envmap latlong); none");
   set.add(Changes::Result, "--samples", o.read.samples, "Samples per pixel, if the file does not contain them")
-      ->check(CLI::PositiveNumber);
+      ->check(above_zero());
 }
 
 void add_sequence_options(OptionSet& set, DenoiseOptions& o) {
@@ -105,7 +106,7 @@ void add_method_options(OptionSet& set, DenoiseOptions& o) {
   set.add(Changes::Result, "--time-budget", o.time_budget,
           "Seconds for one frame, reading and writing included: selects the most accurate settings that are predicted "
           "to fit")
-      ->check(CLI::PositiveNumber)
+      ->check(above_zero())
       ->type_name("SECONDS")
       ->excludes(quality)
       ->excludes(stages)

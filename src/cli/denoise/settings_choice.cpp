@@ -14,7 +14,6 @@ using Json = nlohmann::ordered_json;
 constexpr double write_over_read = 4;
 // Pixels whose relative noise is below this share of the requested error hardly change its mean; they are skipped.
 constexpr double skipped_noise = 0.1;
-constexpr double least_seconds = 1e-3;  // a budget that reading has used up still selects the fastest preset
 
 Json json_of(const Prediction& prediction) {
   return {{"settings", prediction.name}, {"seconds", prediction.seconds}, {"relmse", prediction.relative_mse}};
@@ -26,9 +25,7 @@ ChosenSettings choose_settings_for(const Job& job, const FrameLimits& limits, co
                                    Progress& progress) {
   ChosenSettings out;
   out.pilot = run_pilot(frame, progress);
-  if (limits.seconds > 0)
-    out.request.seconds =
-        std::max(limits.seconds - (1 + write_over_read) * read_seconds - out.pilot.spent, least_seconds);
+  out.request.seconds = limits.after((1 + write_over_read) * read_seconds + out.pilot.spent).seconds;
   out.request.relative_mse = limits.relative_mse;
   out.choice = choose_settings(out.pilot, out.request, measured_figures());
   out.params = job.presets[out.choice.preset];

@@ -125,6 +125,11 @@ const char* name_of(SampleType type) {
   return "float";
 }
 
+std::string title_of(const FileInfo& file, int part) {
+  const std::string& name = file.parts[static_cast<std::size_t>(part)].name;
+  return name.empty() ? fmt::format("part {}", part) : fmt::format("part {} \"{}\"", part, name);
+}
+
 void set_codec_threads(int threads) { Imf::setGlobalThreadCount(threads); }
 
 FileInfo describe_file(const std::string& path, const ReadLimits& limits) {

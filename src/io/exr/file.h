@@ -12,6 +12,9 @@ struct Band;
 /// Threads that decode and encode chunks in this process; 0: in the calling thread.
 void set_codec_threads(int threads);
 
+/// "part 2 "right"", with its name if it has one.
+std::string title_of(const FileInfo& file, int part);
+
 /// Decodes whole channels of one part: channels[c] becomes plane c, pixel (0, 0) is the data window's upper left
 /// corner. Half and float values are kept as they are, NaN and Inf too; uint is converted. Reads every scanline or
 /// tile. Throws Error{BadInput} naming the part and the first scanline or tile that cannot be read, Error{OutOfMemory}

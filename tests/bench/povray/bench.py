@@ -22,6 +22,7 @@ from pipelines.povray.crops import Crop
 from pipelines.povray.scene import Scene
 from pipelines.povray.subpixels import estimate
 from tests.bench.povray import gallery
+from tests.bench.relmse import relative_squares
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 DRIVERS = ROOT / "pipelines" / "povray"
@@ -105,7 +106,7 @@ def relative_mse(work, name, path):
     errors = []
     for c in "RGB":
         image, truth = found[f"Combined.{c}"].astype(float), reference_channels[f"Combined.{c}"].astype(float)
-        errors.append(((image - truth) ** 2 - reference_channels[f"Combined Variance.{c}"]) / (truth**2 + 0.01))
+        errors.append(relative_squares(image, truth, reference_channels[f"Combined Variance.{c}"]))
     return float(np.mean(errors))
 
 

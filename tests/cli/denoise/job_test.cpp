@@ -235,5 +235,12 @@ TEST(Job, ATargetChoosesSettingsOnlyWithoutASampleMap) {
   EXPECT_EQ(mapped.sample_map->params.target, 0.01);
 }
 
+TEST(Job, WhatIsLeftOfATimeLimitStillSelectsSettings) {
+  EXPECT_DOUBLE_EQ((FrameLimits{10, 0.1}.after(4).seconds), 6);
+  EXPECT_DOUBLE_EQ((FrameLimits{10, 0.1}.after(40).seconds), 1e-3);
+  EXPECT_EQ((FrameLimits{0, 0.1}.after(40).seconds), 0);  // 0: no limit
+  EXPECT_EQ((FrameLimits{10, 0.1}.after(40).relative_mse), 0.1);
+}
+
 }  // namespace
 }  // namespace polyrecon

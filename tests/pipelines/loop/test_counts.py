@@ -1,8 +1,14 @@
+import pathlib
+import tempfile
 import unittest
 
 import numpy as np
+import OpenImageIO as oiio
 
-from pipelines.loop.counts import MAX_COUNT, Taken, cost_of_samples, gaussian_blur, quantise
+from pipelines.common import exr
+from pipelines.common.polyrecon_cli import Polyrecon
+from pipelines.loop.budget import CONVERGENCE_RATE
+from pipelines.loop.counts import MAX_COUNT, Taken, cost_of_samples, gaussian_blur, quantise, weight_of_samples
 
 ONES = np.ones((32, 48))
 
@@ -41,6 +47,48 @@ class Counts(unittest.TestCase):
         holed[3, 3] = np.nan
         self.assertTrue(np.isin(quantise(holed, ONES), (2, 4, 8)).all())
         self.assertLessEqual(quantise(1e9 * ONES, ONES).max(), MAX_COUNT)
+
+
+def sample_map(variance, noise, samples, budget):
+    """(extra samples of each pixel, error after them over the error before) of `polyrecon samplemap`."""
+    with tempfile.TemporaryDirectory() as folder:
+        paths = [str(pathlib.Path(folder, name)) for name in ("error.exr", "samples.exr")]
+        error = {"relmse.Y": variance, "relvariance.Y": variance, "relnoise.Y": noise, "samples.Y": samples}
+        exr.write(paths[0], {**{f"mse.{c}": variance for c in "RGB"}, **error})
+        Polyrecon().run("samplemap", "-e", paths[0], "-o", paths[1], "--budget", budget, "--max-samples", "4096")
+        spec = oiio.ImageBuf(paths[1]).spec()
+        before, after = (spec.getattribute(name) for name in ("errorBefore", "errorAfter"))
+        return exr.read(paths[1])["samples.Y"], after / before
+
+
+class ModelOfTheSampleMap(unittest.TestCase):
+    """The loop's decisions predict with the model of `polyrecon samplemap`."""
+
+    # dn = sqrt(V n / lambda) - n where no pixel's samples reach a limit: V is known but for a factor.
+
+    def test_the_error_falls_at_the_same_rate(self):
+        extra, left = sample_map(0.1 * ONES, 0.4 * ONES, 8 * ONES, "24")
+        self.assertGreater(extra.min(), 0)
+        weight = (extra.astype(float) + 8) ** 2 / 8
+        expected = (weight * (8 / (8 + extra)) ** CONVERGENCE_RATE).sum() / weight.sum()
+        self.assertAlmostEqual(left, expected, places=5)
+        self.assertNotAlmostEqual(left, (weight * (8 / (8 + extra))).sum() / weight.sum(), places=2)
+
+    def test_the_noise_of_a_pixel_has_the_same_weight(self):
+        y, x = np.mgrid[0:96, 0:128]
+        variance = 0.1 * (1.5 + np.sin(x / 25) * np.cos(y / 20))
+        noise = 0.4 * (1.5 + np.sin(x / 30 + 1))
+        samples = 2.0 + (x > 64)
+        extra, _ = sample_map(variance, noise, samples, "64")
+        inner = (
+            slice(12, -12),
+            slice(12, -12),
+        )  # At the border the program's window ends, the loop's repeats the edge.
+        self.assertGreater(extra[inner].min(), 0)
+        weight = ((extra + samples) ** 2 / samples)[inner]
+        ratio = weight_of_samples(variance, noise)[inner] / weight
+        np.testing.assert_allclose(ratio / ratio.mean(), 1, atol=0.02)  # The program's window ends at two deviations.
+        self.assertGreater(weight.max() / weight.min(), 3)
 
 
 class Sums(unittest.TestCase):

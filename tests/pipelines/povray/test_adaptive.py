@@ -11,6 +11,7 @@ import numpy as np
 from pipelines.common import exr
 from pipelines.povray.scene import Scene
 from pipelines.povray.subpixels import estimate
+from tests.bench.relmse import relative_squares
 
 from .scenes import BALL, CAMERA, HEAD, NOISY_LAMP, SIZE, InFolder
 
@@ -57,10 +58,7 @@ class Adaptive(InFolder):
         self.assertGreater(counts[noisy].mean(), 1.3 * counts[~noisy].mean())
         # The noisy picture is unbiased, and the clean one is nearer to the reference.
         errors = [
-            np.mean(
-                (np.stack([found[f"Combined.{c}"] for c in "RGB"], -1) - reference.mean) ** 2
-                / (reference.mean**2 + 0.01)
-            )
+            relative_squares(np.stack([found[f"Combined.{c}"] for c in "RGB"], -1), reference.mean).mean()
             for found in (merged, exr.read("ball.exr"))
         ]
         self.assertLess(errors[1], errors[0])

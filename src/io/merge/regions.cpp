@@ -1,4 +1,4 @@
-#include "io/merge_regions.h"
+#include "io/merge/regions.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "io/half_split.h"
+#include "io/merge/half_split.h"
 
 #include <algorithm>
 #include <array>

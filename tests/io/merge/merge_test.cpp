@@ -37,25 +37,16 @@ using testing::stored_bytes;
 using testing::stored_floats;
 using testing::TemporaryFolder;
 using testing::TestPart;
+using testing::with_text;
+using testing::write_all;
 using testing::write_exr;
-
-std::function<void(Imf::Header&)> with_samples(const std::string& samples) {
-  return [=](Imf::Header& header) { header.insert("cycles.V.samples", Imf::StringAttribute(samples)); };
-}
 
 /// One render whose beauty is the same everywhere.
 TestPart render(double value, const std::string& samples = {}) {
   TestPart part;
   part.channels = join({flat_layer("V.Combined", "RGBA", value), flat_layer("V.Denoising Depth", "Z", 10 * value)});
-  if (!samples.empty()) part.edit = with_samples(samples);
+  if (!samples.empty()) part.edit = with_text("cycles.V.samples", samples);
   return part;
-}
-
-std::vector<std::string> write_all(const TemporaryFolder& folder, const std::vector<TestPart>& renders) {
-  std::vector<std::string> paths;
-  for (const TestPart& part : renders)
-    paths.push_back(write_exr(folder / ("r" + std::to_string(paths.size()) + ".exr"), {part}));
-  return paths;
 }
 
 std::string samples_attribute(const std::string& path) {

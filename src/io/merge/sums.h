@@ -45,6 +45,8 @@ struct ChannelSums {
   std::vector<Accumulator> all;
   std::vector<MeanAccumulator> half_a, half_b;
 
+  static constexpr std::size_t bytes_per_pixel = sizeof(Accumulator) + 2 * sizeof(MeanAccumulator);
+
   explicit ChannelSums(std::size_t pixels) : all(pixels), half_a(pixels), half_b(pixels) {}
 };
 
