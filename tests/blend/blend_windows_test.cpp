@@ -261,7 +261,7 @@ TEST(FitAndBlend, IsEquation3OfExplicitWindowsAndFits) { expect_equation_3(make_
 TEST(FitAndBlend, WindowsCountLessForPixelsThatTheyContradict) {
   Pictures p = make_pictures(15, 11, 6);
   Random random(7);
-  p.bound = image_of(15, 11, 1, [&](int, int, int) { return std::pow(10, random.uniform(-3, 0)); });
+  p.bound = image_of(15, 11, 1, [&](int, int, int) { return std::pow(10, random.uniform(-1.5, 0)); });
   expect_equation_3(p, small_windows());
 }
 
