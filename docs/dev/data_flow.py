@@ -18,7 +18,12 @@ PHASES = [
     ),
     (
         "prepare",
-        [("prepare", "src/features"), ("remove_outliers", "src/outliers"), ("floor_variance", "src/noise")],
+        [
+            ("prepare", "src/features"),
+            ("noise_bound", "src/blend"),
+            ("remove_outliers", "src/outliers"),
+            ("floor_variance", "src/noise"),
+        ],
         "HalfPair",
     ),
     ("join", [("join_neighbours", "src/temporal")], "HalfPair"),
@@ -27,11 +32,7 @@ PHASES = [
         [("fit_and_blend", "src/regression, src/blend"), ("select", "src/blend"), ("add_coarse", "src/blend")],
         "Candidate",
     ),
-    (
-        "finish",
-        [("empty_void", "src/core"), ("bind_to_noise", "src/blend"), ("make_error_map", "src/maps")],
-        "Candidate, ErrorMap",
-    ),
+    ("finish", [("empty_void", "src/core"), ("make_error_map", "src/maps")], "Candidate, ErrorMap"),
     (
         "finish",
         [

@@ -74,7 +74,7 @@ struct Parts {
   bool cross_filter = true;      ///< A half is fitted with weights and features of the other half.
   bool shrinkage = true;         ///< Each column enters a fit by the factor of least estimated error, not whole.
   bool variance_floor = true;    ///< The variance of a pixel is at least what its neighbourhood suggests.
-  bool noise_bound = true;       ///< A result differs from the input by at most 5 standard deviations of its noise.
+  bool noise_bound = true;       ///< Windows count less for pixels whose noise they contradict.
   bool raise_undershoot = true;  ///< A result is not below every input within 2 pixels.
   bool restore_totals = true;    ///< The sum of each channel of the result is that of the input.
 };

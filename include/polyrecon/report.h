@@ -42,8 +42,6 @@ struct Report {
   std::size_t rank_deficient_windows = 0;  ///< Fits in which a column depends on others and enters by half at most.
   std::size_t windows_not_finite = 0;      ///< Fits that were not finite and were left out.
   std::size_t pixels_kept_noisy = 0;       ///< Pixels that no finite fit covers.
-  std::size_t pixels_clamped_to_noise =
-      0;  ///< Pixels whose result was limited to 5 standard deviations of the input's noise.
   std::size_t pixels_raised_to_input = 0;  ///< Pixels raised to the lowest input within 2 pixels.
   std::size_t repaired_pixels = 0;         ///< Non-finite input pixels replaced before the fit, all passes.
   std::size_t negative_pixels = 0;         ///< Beauty pixels with a negative channel, which are kept.

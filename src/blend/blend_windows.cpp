@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/fast_math.h"
 #include "core/parallel.h"
 #include "core/picture_mask.h"
 #include "core/real.h"
@@ -76,7 +77,8 @@ struct Scratch {
   Window window;
   NestedFactor factor;
   std::vector<Real> weight;
-  std::vector<Real> fit;  ///< yhat, window.padded rows of fit_pitch values.
+  std::vector<Real> fit;           ///< yhat, window.padded rows of fit_pitch values.
+  std::vector<Real> bound_weight;  ///< Filled by within_bound.
   std::size_t fit_pitch = 0;
   std::vector<int> center_x, center_y;
   Rect centers;                 ///< Bounding box of the centres.
@@ -179,6 +181,23 @@ POLYRECON_SIMD bool energies_of_fit(const Real* fit, std::size_t pitch, std::siz
   return finite;
 }
 
+/// Multiplies the weight of each pixel of a window by exp(-max(0, d^2 / b - 1)); see BlendedFit.
+POLYRECON_SIMD void within_bound(const Window& window, const Image& other, const Image& bound, const Real* fit,
+                                 std::size_t pitch, const Real* weight, Real* out) {
+  constexpr Real tiny = std::numeric_limits<Real>::min();  // so that 0 / 0 is 0
+  constexpr Real most = 80;                                // exp(-most) is still a normal float
+  const Real *red = other.plane(0), *green = other.plane(1), *blue = other.plane(2), *bounds = bound.plane(0);
+  const int* const offset = window.offset.data();
+  for (int j = 0; j < window.count; ++j, fit += pitch) {
+    const auto i = static_cast<std::size_t>(offset[j]);
+    const Real r = fit[0] - red[i], g = fit[1] - green[i], b = fit[2] - blue[i];
+    const Real excess = (r * r + g * g + b * b) / (bounds[i] + tiny) - 1;
+    const auto factor =
+        static_cast<Real>(exp_minus(static_cast<float>(excess > 0 ? excess < most ? excess : most : 0)));
+    out[j] = bounds[i] > 0 ? weight[j] * factor : 0;
+  }
+}
+
 POLYRECON_SIMD void add_pixels(const Window& window, const Real* weight, const Real* fit, std::size_t pitch,
                                std::size_t responses, const double* constant, BlendSums& sums) {
   for (std::size_t j = 0; j < static_cast<std::size_t>(window.count); ++j) {
@@ -191,16 +210,21 @@ POLYRECON_SIMD void add_pixels(const Window& window, const Real* weight, const R
 }
 
 /// Adds a window to the sums. energy: weighted mean of yhat^2.
-void blend(const Scratch& s, const OrderChoice& choice, const double* energy, double epsilon, std::size_t responses,
+void blend(const FitSource& source, const OrderChoice& choice, const double* energy, std::size_t responses, Scratch& s,
            BlendSums& sums) {
   double constant[constants];
   for (std::size_t c = 0; c < 3; ++c) {
-    constant[c] = std::sqrt((choice.error[c] - choice.variance[c]) / (energy[c] + epsilon));
+    constant[c] = std::sqrt((choice.error[c] - choice.variance[c]) / (energy[c] + source.epsilon));
     constant[3 + c] = choice.variance[c];
   }
   constant[6] = choice.order;
   constant[7] = 1;
-  add_pixels(s.window, s.weight.data(), s.fit.data(), s.fit_pitch, responses, constant, sums);
+  const Real* weight = s.weight.data();
+  if (source.bound && !source.bound->empty()) {
+    within_bound(s.window, *source.other, *source.bound, s.fit.data(), s.fit_pitch, weight, s.bound_weight.data());
+    weight = s.bound_weight.data();
+  }
+  add_pixels(s.window, weight, s.fit.data(), s.fit_pitch, responses, constant, sums);
 }
 
 /// The state of one call of fit_and_blend.
@@ -236,13 +260,14 @@ void fit_window(Blending& b, Scratch& s, Real bandwidth, BlendSums& sums) {
   }
   ++b.counters.per_model[static_cast<std::size_t>(choice.model)];
   for (double& e : energy) e /= weight_sum;
-  blend(s, choice, energy, b.source.epsilon, b.responses(), sums);
+  blend(b.source, choice, energy, b.responses(), s, sums);
 }
 
 void work_block(Blending& b, const Rect& block, Scratch& s) {
   const FitParams& p = b.params;
   s.window.reserve(p.radius, b.layout.columns(), b.source.response->channels());
   s.weight.resize(static_cast<std::size_t>(s.window.stride));
+  s.bound_weight.resize(s.weight.size());
   s.fit_pitch = (b.responses() + responses_at_once - 1) / responses_at_once * responses_at_once;
   s.fit.resize(static_cast<std::size_t>(s.window.stride) * s.fit_pitch);
   s.distances.load(*b.source.guide, *b.source.guide_variance, block, p.radius, p.patch, &b.picture);

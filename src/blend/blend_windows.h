@@ -37,12 +37,20 @@ struct FitSource {
   const Image* guess = nullptr;           ///< The previous stage's guess of mu, 3 channels; null in stage 1.
   double epsilon = 0;                     ///< As in HalfPair; see BlendedFit.
   const Image* picture = nullptr;         ///< HalfPair::sampled: other pixels are in no window. Null: all may be.
+  const Image* other = nullptr;           ///< Colours of the half that is not fitted; needed with a bound.
+  const Image* bound = nullptr;           ///< HalfPair::bound. Null or empty: windows count by their weights alone.
 };
 
 /// The overlapping windows of one bandwidth, blended by equation (3). The bias is the weighted mean of the biases of
 /// the windows: by Minkowski's inequality this is the tightest bound that does not depend on their signs. The bias of a
 /// window is relative to its mean of fit^2 + epsilon, so that an error in a bright part of a window does not count
 /// fully in the dark part next to it.
+///
+/// A window may fit most of its pixels and contradict a few: one that covers a glint smears it over its neighbours. So
+/// where the squared distance d^2 of a fit from the other half's pixel, summed over the colours, exceeds the noise
+/// bound b, the window's weight at that pixel is multiplied by exp(1 - d^2 / b). A pixel without noise takes no fit.
+/// All colours and layers share the factor, so layers that add up to the beauty still do, and no pixel is clipped,
+/// which would draw an edge.
 struct BlendedFit {
   Image value;         ///< Channels as in FitSource::response.
   Image squared_bias;  ///< Of value, from the windows' bias (5), 3 channels; radiance squared.

@@ -7,12 +7,13 @@ HalfPair crop(const HalfPair& pair, const Rect& r) {
           crop(pair.variance, r),
           {crop(pair.features[0], r), crop(pair.features[1], r)},
           pair.epsilon,
-          crop(pair.sampled, r)};
+          crop(pair.sampled, r),
+          crop(pair.bound, r)};
 }
 
 std::size_t half_pair_channels(std::size_t color_channels, std::size_t feature_channels) {
-  constexpr std::size_t variance = 3, picture = 1;
-  return 2 * color_channels + variance + picture + 2 * feature_channels;
+  constexpr std::size_t variance = 3, picture = 1, bound = 1;
+  return 2 * color_channels + variance + picture + bound + 2 * feature_channels;
 }
 
 }  // namespace polyrecon

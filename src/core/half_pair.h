@@ -18,6 +18,7 @@ struct HalfPair {
   double epsilon = 0;             ///< Added to squared radiance when errors are compared relative to it; > 0.
   Image sampled = {};  ///< Mask of the pixels that are samples of the picture (core/picture.h). Colours and variance of
                        ///< others continue the picture next to them; no window and no average takes them.
+  Image bound = {};    ///< See noise_bound (blend/noise_bound.h), 1 channel; empty where pixels are not bound.
 
   int width() const { return variance.width(); }
   int height() const { return variance.height(); }

@@ -246,11 +246,6 @@ std::vector<double> channel_sums(const Image& image) {
   return sums;
 }
 
-void restore_everywhere(const std::vector<double>& energy, const Image& variance, double noise_free, Image& image) {
-  const Image kappa = kappa_of(variance, noise_free, image);
-  for (int color = 0; color < 3; ++color) give_to_all(energy, color, kappa, image);
-}
-
 std::array<double, 3> restore_totals(const std::vector<double>& totals, const Image& variance, double noise_free,
                                      double max_gain, Image& image) {
   const Image kappa = kappa_of(variance, noise_free, image);

@@ -17,21 +17,19 @@ namespace polyrecon {
 /// kappa = min(1, sigma / (max_gain yhat)), with sigma the standard deviation of the input's noise, is smaller for
 /// pixels in which max_gain would exceed the noise, such as a sky of one colour. Omega_o is a square around o. It grows
 /// until the root mean square of the gain, weighted by kappa, is at most max_gain: the energy stays as close to o as it
-/// can without being visible. Where Omega_o is the whole image, gains are bounded as in restore_everywhere. Where no
-/// pixel of Omega_o is positive and noisy, the energy returns to o itself.
+/// can without being visible. Where no pixel of Omega_o is positive and noisy, the energy returns to o itself.
+///
+/// Where Omega_o is the whole image, no pixel changes by more than a half: the brightest ones, which would, change by a
+/// half, and the rest is shared out by squares among the others, which is the least relative squared error under this
+/// bound. Where the bound cannot be kept, all pixels gain the same factor. A colour of which no pixel takes part stays
+/// unchanged.
 ///
 /// AOVs receive their e_o in the shape of the beauty, so that layers that add up to the beauty still do. Alpha stays
 /// unchanged. variance: noise variance of one half of the input, 3 channels (HalfPair::variance). image: ColorLayout.
 void restore_energy(const std::vector<Outlier>& outliers, const Image& variance, double max_gain, Image& image);
 
-/// The same with Omega the whole image, for energy without a place, such as that of blend/noise_bound.h. energy: one
-/// value per channel of the beauty and the AOVs. noise_free: relative noise below which kappa is less than 1. No pixel
-/// changes by more than a half: the brightest ones, which would, change by a half, and the rest is shared out by
-/// squares among the others, which is the least relative squared error under this bound. Where the bound cannot be
-/// kept, all pixels gain the same factor. Does nothing for a colour of which no pixel takes part.
-void restore_everywhere(const std::vector<double>& energy, const Image& variance, double noise_free, Image& image);
-
-/// The same for the energy that the fits gained or lost: the sums of the first totals.size() channels become `totals`.
+/// The same with Omega the whole image for the energy that the fits gained or lost: the sums of the first totals.size()
+/// channels become `totals`. noise_free: relative noise below which kappa is less than 1.
 /// A colour whose sum would change by more than max_gain is left unchanged, since such a difference is neither rounding
 /// nor the effect of the weights but content (an input of both signs, a hole that was repaired). Returns the relative
 /// gain of each of the first three channels.

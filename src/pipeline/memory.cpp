@@ -43,12 +43,11 @@ std::size_t pair_channels(const FrameShape& shape) {
 
 bool prior_has_halves(const FrameShape& shape) { return shape.prior_channels > 3; }
 
-/// Channels held to the end of a reconstruction: images of the frame, the noise variance of the beauty and the distance
-/// that the noise bound allows.
+/// Channels held to the end of a reconstruction: images of the frame and the noise variance of the beauty.
 std::size_t kept_channels(const FrameShape& shape) {
   constexpr std::size_t alpha = 1, sample_count = 1;
   const std::size_t prior = count(shape.prior_channels) + (prior_has_halves(shape) ? judge_halves_channels : 0);
-  return count(shape.color_channels) + alpha + sample_count + prior + noise_variance_channels + noise_bound_channels +
+  return count(shape.color_channels) + alpha + sample_count + prior + noise_variance_channels +
          count(shape.other_channels);
 }
 

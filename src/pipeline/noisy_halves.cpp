@@ -41,7 +41,7 @@ NoisyHalves make_noisy_halves(Frame& frame, HalvesFor purpose, std::uint64_t str
   HalfPair& pair = out.prepared.pair;
   // The bound is that of the measured variance, before outliers are removed: where an outlier is removed from one half,
   // the other half may still be wrong by this much. An estimated variance is not exact enough for single pixels.
-  if (params.parts.noise_bound && noise.measured) out.bound = noise_bound(pair.variance);
+  if (params.parts.noise_bound && noise.measured) pair.bound = noise_bound(pair.variance);
   out.outliers = phases.run("fireflies", rows_of(frame) * 2, [&](Progress& progress) {
     const PairNoise known{out.prepared.independent_halves, noise.measured};
     return params.steps.fireflies ? remove_outliers(pair, known, params.outliers, progress) : std::vector<Outlier>();

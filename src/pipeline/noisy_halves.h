@@ -27,7 +27,6 @@ struct NoisyHalves {
   Geometry geometry;                           ///< Empty for HalvesFor::Fit.
   std::array<Image, surfaces> surfaces_noise;  ///< See surface_noise; for HalvesFor::FitWithNeighbours alone.
   Prepared prepared;
-  Image bound;  ///< See noise_bound; empty where results are not bound.
   std::vector<Outlier> outliers;
 };
 

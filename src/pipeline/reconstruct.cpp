@@ -6,7 +6,6 @@
 #include <cmath>
 #include <utility>
 
-#include "blend/noise_bound.h"
 #include "blend/undershoot.h"
 #include "core/color_layout.h"
 #include "core/halves.h"
@@ -80,7 +79,9 @@ Image average(const HalfPair& pair, const Candidate& solved) {
         const Real a = pair.color[0].at(x, y, c), b = pair.color[1].at(x, y, c);
         bool noisy = a != b;
         for (int k = 0; k < 3; ++k) noisy |= pair.variance.at(x, y, k) > 0;
-        out.at(x, y, c) = noisy ? Real(0.5) * (solved.half[0].at(x, y, c) + solved.half[1].at(x, y, c)) : a;
+        noisy &= pair.bound.empty() || pair.bound.at(x, y, 0) > 0;
+        out.at(x, y, c) =
+            noisy ? Real(0.5) * (solved.half[0].at(x, y, c) + solved.half[1].at(x, y, c)) : Real(0.5) * (a + b);
       }
   });
   return out;
@@ -94,15 +95,14 @@ std::vector<double> color_totals(const Frame& frame) {
   return totals;
 }
 
-/// Averages the halves of the result and returns to it the energy that outliers, the noise bound and the fits took.
-Image restore(const Frame& frame, const NoisyHalves& halves, const Candidate& solved, const BoundEnergy& bound,
-              const Params& params, Report& report) {
+/// Averages the halves of the result and returns to it the energy that outliers and the fits took.
+Image restore(const Frame& frame, const NoisyHalves& halves, const Candidate& solved, const Params& params,
+              Report& report) {
   const HalfPair& pair = halves.prepared.pair;
   Image out = average(pair, solved);
   if (params.parts.raise_undershoot)
     report.pixels_raised_to_input = raise_undershoot(mean_of_halves(pair.color, out.channels()), out);
   restore_energy(halves.outliers, pair.variance, max_restored_gain, out);
-  if (bound.pixels > 0) restore_everywhere(bound.energy, pair.variance, max_restored_gain, out);
   if (params.parts.restore_totals)
     report.restored_gain = restore_totals(color_totals(frame), pair.variance, max_restored_gain, max_total_gain, out);
   return out;
@@ -225,17 +225,13 @@ Result reconstruct(Frame& frame, const std::vector<TimedNeighbour>& neighbours, 
   const Image& picture = halves.survey.preparation.picture;
   empty_void(picture, pair, solved);
 
-  // The noise bound, the estimate of the error that is left, and the prior where its error is smaller.
-  const BoundEnergy bound = phases.run("noise bound", 1, [&](Progress&) {
-    return halves.bound.empty() ? BoundEnergy() : bind_to_noise(pair, halves.bound, max_total_gain, solved);
-  });
-  report.pixels_clamped_to_noise = bound.pixels;
+  // The estimate of the error that is left, and the prior where its error is smaller.
   result.error = phases.run(
       "error map", 1, [&](Progress&) { return make_error_map(pair, halves.survey.noise.variance, solved, picture); });
   result.order = solved.order;
   Image ours;  // all layers without the prior, which the colour layers add up to
   if (!prior.pass.mean.empty()) {
-    if (!frame.aovs.empty()) ours = restore(frame, halves, solved, bound, params, report);
+    if (!frame.aovs.empty()) ours = restore(frame, halves, solved, params, report);
     solved = phases.run("prior", 1, [&](Progress&) {
       const Image reconstruction = average(pair, solved);
       return use_prior(std::move(prior), pair, reconstruction, params.selection, max_bytes, std::move(solved),
@@ -244,8 +240,7 @@ Result reconstruct(Frame& frame, const std::vector<TimedNeighbour>& neighbours, 
   }
 
   // The image, with the energy of the input (equations 10 and 11).
-  Image image =
-      phases.run("energy", 1, [&](Progress&) { return restore(frame, halves, solved, bound, params, report); });
+  Image image = phases.run("energy", 1, [&](Progress&) { return restore(frame, halves, solved, params, report); });
   if (!ours.empty()) image = follow_beauty(std::move(ours), image);
   require_energy(frame.beauty, image);
   put_layers(image, frame.alpha, result);

@@ -27,7 +27,7 @@ bool noise_matters(const HalfPair& pair, std::size_t i, Real enough) {
 }
 
 /// Marks the pixels of the picture that have noise and so are fitted. A pixel has none if its halves are equal and its
-/// variance is 0.
+/// variance is 0, or if its noise bound is 0, which no fit keeps within.
 std::vector<unsigned char> noisy_pixels(const HalfPair& pair, const Params& params) {
   std::vector<unsigned char> noisy(pair.variance.pixels(), params.steps.decide ? 0 : 1);
   for (int c = 0; c < pair.color[0].channels(); ++c) {
@@ -35,6 +35,8 @@ std::vector<unsigned char> noisy_pixels(const HalfPair& pair, const Params& para
     for (std::size_t i = 0; i < noisy.size(); ++i)
       if (a[i] != b[i] || (v && v[i] > 0)) noisy[i] = 1;
   }
+  if (!pair.bound.empty() && params.steps.decide)
+    for (std::size_t i = 0; i < noisy.size(); ++i) noisy[i] = noisy[i] && pair.bound.plane(0)[i] > 0;
   if (!pair.sampled.empty())
     for (std::size_t i = 0; i < noisy.size(); ++i) noisy[i] = noisy[i] && in_picture(pair.sampled, i);
   if (params.enough > 0)
@@ -60,7 +62,8 @@ void add_candidates(const HalfPair& pair, const Guide& guide, const Candidate* b
     const std::size_t other = cross_filter ? 1 - h : h;
     const FitSource source{&pair.color[h], &pair.variance, &pair.features[other],
                            guide.color[h], guide.variance, before ? &before->half[other] : nullptr,
-                           pair.epsilon,   &pair.sampled};
+                           pair.epsilon,   &pair.sampled,  &pair.color[other],
+                           &pair.bound};
     fits[h] = fit_and_blend(source, noisy, fit, counters, progress);
   }
   const auto mean = [](Image a, const Image& b) {

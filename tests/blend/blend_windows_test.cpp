@@ -21,12 +21,14 @@ using test::Random;
 
 constexpr double epsilon = 0.2;
 
-/// Images of one fit: three noisy colours, one AOV, two features.
+/// Images of one fit: three noisy colours, one AOV, two features. The guide is the other half, too. bound: empty, or as
+/// in HalfPair.
 struct Pictures {
-  Image response, variance, features, guide, guess;
+  Image response, variance, features, guide, guess, bound;
 
   FitSource source(bool first_stage) const {
-    return {&response, &variance, &features, &guide, &variance, first_stage ? nullptr : &guess, epsilon};
+    return {&response, &variance, &features, &guide, &variance, first_stage ? nullptr : &guess,
+            epsilon,   nullptr,   &guide,    &bound};
   }
 };
 
@@ -194,20 +196,28 @@ class Reference {
         best_order = std::max(model - 1, 0);
       }
     }
-    VectorXd brightness(3);  // squared, of the fit
+    VectorXd brightness(3), squared_distance = VectorXd::Zero(n);  // squared, of the fit; of the fit to the other half
+    MatrixXd yhat(n, 6);
     for (int c = 0; c < 6; ++c) {
-      const VectorXd yhat = best_h * value(p_.response, c);
-      if (c < 3) brightness(c) = w.dot(yhat.cwiseAbs2()) / w.sum() + epsilon;
-      for (Eigen::Index j = 0; j < n; ++j) sum_at(px, py, j)(c) += w(j) * yhat(j);
+      yhat.col(c) = best_h * value(p_.response, c);
+      if (c >= 3) continue;
+      brightness(c) = w.dot(yhat.col(c).cwiseAbs2()) / w.sum() + epsilon;
+      squared_distance += (yhat.col(c) - value(p_.guide, c)).cwiseAbs2();
+    }
+    VectorXd blended = w;  // weights
+    if (!p_.bound.empty()) {
+      const VectorXd bound = value(p_.bound, 0);
+      blended = w.array() * (1 - (squared_distance.array() / bound.array()).max(1)).exp();
     }
     for (Eigen::Index j = 0; j < n; ++j) {
       VectorXd& s = sum_at(px, py, j);
+      s.head(6) += blended(j) * yhat.row(j).transpose();
       for (int c = 0; c < 3; ++c) {
-        s(6 + c) += w(j) * std::sqrt(std::max(best_error(c) - best_variance(c), 0.0) / w.sum() / brightness(c));
-        s(9 + c) += w(j) * best_variance(c) / w.sum();
+        s(6 + c) += blended(j) * std::sqrt(std::max(best_error(c) - best_variance(c), 0.0) / w.sum() / brightness(c));
+        s(9 + c) += blended(j) * best_variance(c) / w.sum();
       }
-      s(12) += w(j) * best_order;
-      s(13) += w(j);
+      s(12) += blended(j) * best_order;
+      s(13) += blended(j);
     }
   }
 
@@ -223,9 +233,7 @@ class Reference {
   std::vector<VectorXd> sums_;
 };
 
-TEST(FitAndBlend, IsEquation3OfExplicitWindowsAndFits) {
-  const Pictures p = make_pictures(15, 11, 1);
-  const FitParams params = small_windows();
+void expect_equation_3(const Pictures& p, const FitParams& params) {
   for (const bool first_stage : {true, false}) {
     const auto fits = fit(p, params, first_stage);
     ASSERT_EQ(fits.size(), 2u);
@@ -245,6 +253,27 @@ TEST(FitAndBlend, IsEquation3OfExplicitWindowsAndFits) {
         }
     }
   }
+}
+
+TEST(FitAndBlend, IsEquation3OfExplicitWindowsAndFits) { expect_equation_3(make_pictures(15, 11, 1), small_windows()); }
+
+/// exp(1 - d^2 / b) beyond the bound, from bounds that hardly matter to bounds that only the nearest fits keep within.
+TEST(FitAndBlend, WindowsCountLessForPixelsThatTheyContradict) {
+  Pictures p = make_pictures(15, 11, 6);
+  Random random(7);
+  p.bound = image_of(15, 11, 1, [&](int, int, int) { return std::pow(10, random.uniform(-1.5, 0)); });
+  expect_equation_3(p, small_windows());
+}
+
+/// A pixel without noise whose value no window has keeps it; its neighbours are not disturbed.
+TEST(FitAndBlend, APixelThatAllWindowsContradictKeepsItsValue) {
+  Pictures p = make_pictures(15, 11, 8, 0.01);
+  p.bound = Image(15, 11, 1, Real(1));
+  const auto before = fit(p, small_windows());
+  p.bound.at(7, 5, 0) = 0;
+  const auto after = fit(p, small_windows());
+  for (int c = 0; c < 3; ++c) EXPECT_EQ(after[0].value.at(7, 5, c), p.response.at(7, 5, c));
+  EXPECT_EQ(after[0].value.at(8, 5, 0), before[0].value.at(8, 5, 0));
 }
 
 TEST(FitAndBlend, EndlessCoverageMakesEveryPixelACentre) {
@@ -329,7 +358,8 @@ TEST(FitAndBlend, HasTheSameBitsForAnyNumberOfThreads) {
 }
 
 TEST(FitAndBlend, ACropAlignedToTwoBlocksHasTheSameBitsInside) {
-  const Pictures p = make_pictures(210, 150, 8);
+  Pictures p = make_pictures(210, 150, 8);
+  p.bound = image_of(210, 150, 1, [](int x, int y, int) { return 0.01 * (1 + (x + y) % 5); });
   for (const int stride : {1, 2, 3, 6, 8}) {
     FitParams params = small_windows();
     params.radius = std::max(3, stride / 2);
@@ -337,8 +367,8 @@ TEST(FitAndBlend, ACropAlignedToTwoBlocksHasTheSameBitsInside) {
     params.coverage = 3;
     const auto whole = fit(p, params);
     for (const Rect& r : {Rect{128, 0, 210, 150}, Rect{0, 0, 150, 100}, Rect{128, 0, 200, 64}}) {
-      const Pictures part{crop(p.response, r), crop(p.variance, r), crop(p.features, r), crop(p.guide, r),
-                          crop(p.guess, r)};
+      const Pictures part{crop(p.response, r), crop(p.variance, r), crop(p.features, r),
+                          crop(p.guide, r),    crop(p.guess, r),    crop(p.bound, r)};
       const auto cropped = fit(part, params);
       const int halo = fit_halo(params);
       const Rect inside{r.x0 == 0 ? 0 : r.x0 + halo, r.y0 == 0 ? 0 : r.y0 + halo, r.x1 == 210 ? 210 : r.x1 - halo,

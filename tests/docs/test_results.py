@@ -49,7 +49,7 @@ class Results(unittest.TestCase):
                 names.append((page.name, begin))
         written = [("accuracy.md", name) for name in ("budget", "parts", "numbers", "steps")]
         written += [("adaptive.md", "bench"), ("reliability.md", "reliability"), ("inputs.md", "inputs")]
-        written += [("pictures.md", "figures")]
+        written += [("pictures.md", "figures"), ("pictures.md", "crops")]
         self.assertEqual(sorted(written), sorted(names))
 
     def test_every_kind_of_file_has_a_row(self):

@@ -247,18 +247,6 @@ TEST(RestoreEnergy, WithoutAnyNoiseItGoesBackToItsPlace) {
     EXPECT_NEAR(static_cast<double>(image.at(7, 8, c)), static_cast<double>(before.at(7, 8, c)) + c + 1, 1e-5);
 }
 
-TEST(RestoreEverywhere, BringsAnyEnergyToTheSumsOfAllChannels) {
-  for (const double part : {-0.3, 0.01, 0.3}) {
-    Image image = smooth_image(6);
-    std::vector<double> energy = channel_sums(image);
-    for (double& e : energy) e *= part;
-    const std::vector<double> before = channel_sums(image);
-    restore_everywhere(energy, loud(image), max_gain, image);
-    const std::vector<double> after = channel_sums(image);
-    for (std::size_t c = 0; c < 6; ++c) EXPECT_NEAR(after[c] / (before[c] * (1 + part)), 1, 1e-6) << c;
-  }
-}
-
 TEST(RestoreTotals, PixelsWithoutNoiseKeepTheirValue) {
   Image image = smooth_image(3);
   const Image before = image;

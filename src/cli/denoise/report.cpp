@@ -85,11 +85,10 @@ std::string report_text(const RunReport& run) {
     text += line("neighbours in time",
                  fmt::format("{} frames, mean weight {:.2f} (the frame itself: 1)", r.neighbours, r.neighbour_weight));
   text += line("windows", windows_text(r));
-  text += line("corrections",
-               fmt::format("{} windows rank-deficient, {} not finite; {} pixels kept noisy, {} clamped to the noise, "
-                           "{} raised to the input",
-                           r.rank_deficient_windows, r.windows_not_finite, r.pixels_kept_noisy,
-                           r.pixels_clamped_to_noise, r.pixels_raised_to_input));
+  text += line("corrections", fmt::format("{} windows rank-deficient, {} not finite; {} pixels kept noisy, "
+                                          "{} raised to the input",
+                                          r.rank_deficient_windows, r.windows_not_finite, r.pixels_kept_noisy,
+                                          r.pixels_raised_to_input));
   text += line("input pixels", fmt::format("{} repaired, {} negative", r.repaired_pixels, r.negative_pixels));
   text += line("fireflies", fmt::format("{}, redistributed energy {}", r.outliers, rgb_text(r.outlier_energy)));
   text += line("energy (mean RGB)", fmt::format("{} -> {} ({:+.3f} %)", rgb_text(r.energy_before),
@@ -134,7 +133,6 @@ Json report_json(const RunReport& run, const FrameSource& source) {
           {"corrections",
            {{"windows_not_finite", r.windows_not_finite},
             {"pixels_kept_noisy", r.pixels_kept_noisy},
-            {"pixels_clamped_to_noise", r.pixels_clamped_to_noise},
             {"pixels_raised_to_input", r.pixels_raised_to_input}}},
           {"repaired_pixels", r.repaired_pixels},
           {"negative_pixels", r.negative_pixels},
