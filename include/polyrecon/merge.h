@@ -48,9 +48,9 @@ struct MergeResult {
 /// Data windows may differ. Renders whose windows have at least half of the smaller one in common show the same region
 /// of the frame: beyond its window a render has samples of 0, but none where the others show that the picture goes on.
 /// Other renders are regions of the frame: each has samples in its own region only, and the result covers all of them,
-/// 0 in between. For a render that is black outside a region, the box of its other pixels takes the place of its window.
-/// If some region, or more than 5 % of the picture, has one render only, no variance or halves are made; those of the
-/// files are kept where all have them.
+/// 0 in between. For a render that is black outside a region, the box of its other pixels takes the place of its
+/// window. If some region, or more than 5 % of the picture, has one render only, no variance or halves are made; those
+/// of the files are kept where all have them.
 ///
 /// The result has one part of scanlines, merged layers as float. It is read back before it takes its name. Memory is
 /// bounded by one band of lines. Throws Error{Usage} for fewer than two files or a file given twice, Error{Missing} for

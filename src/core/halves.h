@@ -26,10 +26,10 @@ double half_noise(const Image& mean, const Image& half_a, const Image& half_b);
 /// Whether the halves cannot be those of `mean`. The mean of halves of any sample counts lies between A and B, so in
 /// every block of pixels, and in the whole image,
 ///     |sum (mean - (A + B) / 2)| <= sum |A - B| / 2.
-/// They contradict the mean where the share of a half is below 2 %, or where this is exceeded by more than contradicting_energy of sum |mean|, or, in the whole
-/// image, where the sum is beyond five standard deviations of the noise that A - B shows. Where one of them is not
-/// usable and the mean is, both count as 0, since this is what the repair makes of whole regions. The images have the
-/// same shape.
+/// They contradict the mean where the share of a half is below 2 %, or where this is exceeded by more than
+/// contradicting_energy of sum |mean|, or, in the whole image, where the sum is beyond five standard deviations of the
+/// noise that A - B shows. Where one of them is not usable and the mean is, both count as 0, since this is what the
+/// repair makes of whole regions. The images have the same shape.
 bool contradict(const Image& mean, const Image& half_a, const Image& half_b);
 
 /// Share of the energy that rounding, lossy compression and the clamping of fireflies may move between a mean and its

@@ -211,7 +211,8 @@ void look_at_sample(const std::string& render, const std::string& reference_path
   Frame frame = read_frame(render).frame;
   const Frame reference = read_frame(reference_path).frame;
   const NoiseVariance noise = noise_variance(frame, silent_progress());
-  const HalfPair pair = prepare(frame, choose_features(frame), noise.variance, params.prefilter, false, silent_progress()).pair;
+  const HalfPair pair =
+      prepare(frame, choose_features(frame), noise.variance, params.prefilter, false, silent_progress()).pair;
   const std::string name = render.substr(render.rfind('/') + 1, render.rfind('.') - render.rfind('/') - 1);
   std::vector<LimitSums> sums = all_limits();
   NestedFactor factor;

@@ -80,7 +80,8 @@ TEST_F(SettingsChosen, InspectSaysThatNoPixelIsFinite) {
             [](int, int, int) { return std::numeric_limits<double>::quiet_NaN(); });
   const Outcome inspected = run({"inspect", "in.exr"});
   EXPECT_EQ(inspected.code, 0) << inspected.err;
-  EXPECT_NE(inspected.out.find("note: layer 'RGBA': no pixel is finite and at most 1e15; render the frame again"), std::string::npos)
+  EXPECT_NE(inspected.out.find("note: layer 'RGBA': no pixel is finite and at most 1e15; render the frame again"),
+            std::string::npos)
       << inspected.out;
   EXPECT_EQ(run({"denoise", "-i", "in.exr", "-o", "out.exr"}).code, 6);
 }

@@ -22,7 +22,8 @@ constexpr Real nan = std::numeric_limits<Real>::quiet_NaN();
 
 Prepared prepared(const Frame& frame, bool with_alpha = true) {
   Frame taken = frame;
-  return prepare(taken, choose_features(frame), frame.beauty.variance, PrefilterParams{}, with_alpha, silent_progress());
+  return prepare(taken, choose_features(frame), frame.beauty.variance, PrefilterParams{}, with_alpha,
+                 silent_progress());
 }
 
 /// The reason for which the only feature of the scene was dropped; empty if it was not.

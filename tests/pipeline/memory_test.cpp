@@ -114,7 +114,7 @@ Frame nearly_noise_free_frame(int width, int height) {
 TEST_F(StatedMemory, OfAReconstructionIsWhatItAllocates) {
   const Params params = small_windows();
   peak_of_reconstruction(nearly_noise_free_frame(80, 60), params);  // leaves the threads their windows and sums
-  for (const int prior : {0, 1, 2}) {  // none, without halves, with halves
+  for (const int prior : {0, 1, 2}) {                               // none, without halves, with halves
     SCOPED_TRACE(prior);
     Frame frame = nearly_noise_free_frame(448, 384);
     if (prior > 0) frame.prior = {"Denoised", frame.beauty.mean, {}, {}, {}};

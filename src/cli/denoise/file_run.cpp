@@ -103,7 +103,10 @@ std::optional<PictureChoice> FileRun::next() {
 void FileRun::denoise(LoadedFrame loaded, std::size_t max_memory, Progress& progress) {
   const Stopwatch watch;
   print(job_.run.quiet, input_text(loaded));
-  DonePicture done{std::move(loaded.in), {}, {}, loaded.identity, loaded.neighbours_identity()};
+  DonePicture done;
+  done.identity = loaded.identity;
+  done.neighbours_identity = loaded.neighbours_identity();
+  done.in = std::move(loaded.in);
   RunReport& report = done.report;
   if (job_.limits)
     report.chosen = choose_settings_for(job_, limits_left(), done.in.frame, loaded.read_seconds, progress);
