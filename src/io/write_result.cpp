@@ -139,7 +139,7 @@ bool is_lossy(const Imf::Header& header) {
 
 void add_provenance(Imf::Header& header, const Provenance& provenance) {
   header.insert("polyrecon/version", Imf::StringAttribute(POLYRECON_VERSION));
-  if (!provenance.settings.empty()) header.insert("polyrecon/settings", Imf::StringAttribute(provenance.settings));
+  if (!provenance.settings.empty()) header.insert(settings_attribute, Imf::StringAttribute(provenance.settings));
   if (!provenance.input.empty()) header.insert("polyrecon/input", Imf::StringAttribute(provenance.input));
   if (provenance.estimated_relative_mse >= 0)
     header.insert("polyrecon/estimatedRelMSE",
@@ -350,7 +350,7 @@ std::vector<std::string> write_as_exr(const FrameSource& source, const std::vect
     }
   }
   MapAttributes attributes;
-  attributes.strings = {{"polyrecon/settings", options.provenance.settings},
+  attributes.strings = {{settings_attribute, options.provenance.settings},
                         {"polyrecon/input", options.provenance.input}};
   if (options.provenance.estimated_relative_mse >= 0)
     attributes.numbers = {{"polyrecon/estimatedRelMSE", options.provenance.estimated_relative_mse}};
