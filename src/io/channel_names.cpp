@@ -9,6 +9,7 @@
 
 #include "io/channel_groups.h"
 #include "io/renderers/known_names.h"
+#include "io/renderers/polyrecon.h"
 
 namespace polyrecon {
 namespace {
@@ -16,8 +17,6 @@ namespace {
 bool ends_with(std::string_view text, std::string_view end) {
   return text.size() >= end.size() && text.substr(text.size() - end.size()) == end;
 }
-
-bool starts_with(std::string_view text, std::string_view begin) { return text.substr(0, begin.size()) == begin; }
 
 std::string_view channel_suffix(std::string_view name) {
   const auto dot = name.rfind('.');
@@ -42,7 +41,9 @@ bool is_bare_film(const Layer& layer) {
 
 /// The class of a layer by its name, else by the letter of its only channel.
 std::optional<PassClass> classify(const Layer& layer) {
-  if (auto known = classify_pass(layer.pass)) return known;
+  if (auto known = classify_pass(layer.pass);
+      known && (known->channels == 0 || known->channels == layer.channels.size()))
+    return known;
   if (layer.channels.size() != 1 || layer.channels.front() == layer.name) return std::nullopt;
   return classify_letter(std::string(channel_suffix(layer.channels.front())));
 }
@@ -94,14 +95,21 @@ void make_companion(Layer& layer, const Layer& mean, Companion companion, std::s
   layer.why = fmt::format("{} of {} ({})", name_of(companion), mean.name, who);
 }
 
-/// Whether the layer has the affix; base then becomes the name without it.
-bool strip(const CompanionAffix& affix, const Layer& layer, std::string& base) {
-  const std::string& text = affix.text;
-  const bool before = affix.place == CompanionAffix::Place::BeforeWholeName;
-  const std::string& full = before ? layer.name : layer.pass;
-  if (full.size() <= text.size() || !(before ? starts_with(full, text) : ends_with(full, text))) return false;
-  base = before ? full.substr(text.size()) : full.substr(0, full.size() - text.size());
-  return true;
+/// The layer's names without the affix: passes, or whole names if it stands before a word. Empty where it has none.
+std::vector<std::string> names_without(const CompanionAffix& affix, const Layer& layer) {
+  const std::string &text = affix.text, &name = layer.name, &pass = layer.pass;
+  if (affix.place == CompanionAffix::Place::BehindPass) {
+    if (pass.size() <= text.size() || !ends_with(pass, text)) return {};
+    return {pass.substr(0, pass.size() - text.size())};
+  }
+  std::vector<std::string> names;
+  std::size_t word = 0;
+  do {
+    if (name.compare(word, text.size(), text) == 0 && name.size() > word + text.size())
+      names.push_back(name.substr(0, word) + name.substr(word + text.size()));
+    word = name.find('.', word) + 1;  // 0 behind the last word
+  } while (word > 0);
+  return names;
 }
 
 /// Whether the companion of the other half exists. Without it the layer is no half: "Key A" alone is a light group.
@@ -115,16 +123,15 @@ bool other_half_exists(const std::vector<Layer>& layers, const Layer& layer, con
 
 /// Makes the layer a companion by the first affix of the renderer that leads to a mean.
 bool find_mean_by_affix(const std::vector<Layer>& layers, const Renderer& renderer, Layer& layer) {
-  for (const CompanionAffix& affix : renderer.affixes) {
-    std::string base;
-    if (!strip(affix, layer, base)) continue;
-    const Layer* mean = affix.place == CompanionAffix::Place::BeforeWholeName ? find_whole_name(layers, layer, base)
-                                                                              : find_pass(layers, layer, base);
-    if (!mean || mean == &layer || !same_channels(*mean, layer)) continue;
-    if (is_half(affix.companion) && !other_half_exists(layers, layer, base, renderer, affix.companion)) continue;
-    make_companion(layer, *mean, affix.companion, renderer.name);
-    return true;
-  }
+  for (const CompanionAffix& affix : renderer.affixes)
+    for (const std::string& base : names_without(affix, layer)) {
+      const Layer* mean = affix.place == CompanionAffix::Place::BeforeWord ? find_whole_name(layers, layer, base)
+                                                                           : find_pass(layers, layer, base);
+      if (!mean || mean == &layer || !same_channels(*mean, layer)) continue;
+      if (is_half(affix.companion) && !other_half_exists(layers, layer, base, renderer, affix.companion)) continue;
+      make_companion(layer, *mean, affix.companion, renderer.name);
+      return true;
+    }
   return false;
 }
 
@@ -203,25 +210,29 @@ bool is_xyz(const Layer& layer) {
                     [](const std::string& channel, const char* letter) { return channel_suffix(channel) == letter; });
 }
 
-/// What a second moment of `nested` holds of the beauty: nested has alpha like a picture, or it is the nested
-/// integrator itself, whose picture is kept in CIE XYZ. Nothing for other layers.
-std::optional<Companion> moment_of_beauty(const Layer& nested, const Layer& moment) {
-  if (nested.role == Role::Color && !nested.alpha.empty() && !moment.alpha.empty()) return Companion::SecondMoment;
-  if (nested.role == Role::Other && nested.view_layer.empty() && is_xyz(nested)) return Companion::SecondMomentOfXyz;
-  return std::nullopt;
+/// What a second moment of `nested` holds of the beauty: nested has alpha like a picture in RGB, or it is the nested
+/// integrator itself, whose picture is kept in CIE XYZ whatever the film. Nothing for other layers.
+std::optional<Companion> moment_of_beauty(const Layer& beauty, const Layer& nested, const Layer& moment) {
+  const bool of_rgb = nested.role == Role::Color && !nested.alpha.empty() && !moment.alpha.empty();
+  if (of_rgb && !is_bare_film(beauty)) return Companion::SecondMoment;
+  const bool is_output = moment.pass == nested.pass;  // of the nested integrator: "m2_img.pos" of "img.pos"
+  if (nested.role != Role::Other || is_output || !is_xyz(nested)) return std::nullopt;
+  return is_bare_film(beauty) ? Companion::SecondMoment : Companion::SecondMomentOfXyz;
 }
 
-/// The beauty's second moment where it accompanies a nested layer. One of its RGB is preferred.
+/// The beauty's second moment where it accompanies a nested layer. One of its RGB is preferred; one of a grey beauty is
+/// that of Y.
 void find_nested_moment(const Renderer& renderer, std::vector<Layer>& layers) {
   if (!renderer.beauty_moment_is_nested) return;
   const auto beauty = std::find_if(layers.begin(), layers.end(),
-                                   [](const Layer& l) { return is_beauty_mean(l) && l.pass == bare_pass; });
+                                   [](const Layer& l) { return is_beauty_mean(l) && is_bare_name(l.pass); });
   if (beauty == layers.end()) return;
   for (const Companion wanted : {Companion::SecondMoment, Companion::SecondMomentOfXyz})
     for (Layer& moment : layers) {
       if (moment.companion != Companion::SecondMoment) continue;
       const Layer* nested = find_whole_name(layers, moment, moment.of);
-      if (!nested || moment_of_beauty(*nested, moment) != wanted) continue;
+      if (!nested || moment_of_beauty(*beauty, *nested, moment) != wanted) continue;
+      if (beauty->pass == bare_luminance) moment.channels = {moment.channels[1]};
       make_companion(moment, *beauty, wanted, fmt::format("{}'s nested integrator {}", renderer.name, nested->name));
       return;
     }
@@ -317,6 +328,13 @@ const Layer* picture_layer(const std::vector<Layer>& layers) {
     if (!best || (same_place(layer, *best) && key(layer) < key(*best))) best = &layer;
   }
   return best;
+}
+
+bool is_picture_in_xyz(const Layer& layer) { return is_bare_film(layer) && layer.pass == bare_tristimulus; }
+
+bool is_result(const FileInfo& file) {
+  return std::any_of(file.parts.begin(), file.parts.end(),
+                     [](const PartInfo& part) { return find_attribute(part, settings_attribute) != nullptr; });
 }
 
 std::optional<double> samples_in_metadata(const FileInfo& file, const std::string& view_layer) {

@@ -30,6 +30,12 @@ bool adopt_only_color(std::vector<Layer>& layers);
 /// is one and the noisy one otherwise; nullptr where the file has neither.
 const Layer* picture_layer(const std::vector<Layer>& layers);
 
+/// Whether the layer is a picture whose channels are CIE XYZ.
+bool is_picture_in_xyz(const Layer& layer);
+
+/// Whether denoise wrote the file.
+bool is_result(const FileInfo& file);
+
 /// Samples per pixel of a view layer by the metadata, nothing where they do not hold it.
 std::optional<double> samples_in_metadata(const FileInfo& file, const std::string& view_layer);
 

@@ -99,9 +99,6 @@ bool lacks(const FrameSource& source, const std::string& pass) {
                       [](const Layer& l) { return l.role == Role::Beauty && l.companion != Companion::Mean; });
 }
 
-/// Whether this program has written the file as a result.
-bool is_result(const FileInfo& file) { return find_attribute(file.parts.front(), "polyrecon/settings") != nullptr; }
-
 /// The name of a sibling's layer. The beauty of a file of several layers keeps the name that it has there, so that its
 /// companions are called after it.
 std::string layer_name(const std::string& sibling, const std::string& in_file_name, const Layer& beauty) {
@@ -304,6 +301,16 @@ const Layer* misshapen_beauty(const FrameSource& source) {
   return nullptr;
 }
 
+/// The layer that would be the beauty had the user not named it for another role; nullptr without one.
+const Layer* beauty_named_for_another_role(const FrameSource& source) {
+  for (const Layer& layer : source.layers) {
+    const auto known = classify_pass(layer.pass);
+    const bool is_beauty = (known && known->role == Role::Beauty) || is_bare_name(layer.pass);
+    if (is_beauty && layer.file == 0 && layer.rank == rank_by_hand) return &layer;
+  }
+  return nullptr;
+}
+
 [[noreturn]] void no_beauty(const FrameSource& source) {
   if (const int beauty = find_mean(source, Role::Beauty, false); beauty >= 0) {
     const Layer& layer = source.layers[static_cast<std::size_t>(beauty)];
@@ -315,6 +322,10 @@ const Layer* misshapen_beauty(const FrameSource& source) {
     throw Error(ExitCode::BadInput, fmt::format("{}: {} is {}", source.path,
                                                 parts.size() == 1 ? "the image" : title_of(source.files.front(), 0),
                                                 parts.front().obstacle()));
+  if (const Layer* layer = beauty_named_for_another_role(source))
+    throw Error(ExitCode::Missing,
+                fmt::format("{}: layer {} is the beauty and cannot be the {} too; name another layer", source.path,
+                            layer->name, name_of(layer->role)));
   if (const Layer* layer = misshapen_beauty(source))
     throw Error(
         ExitCode::Missing,

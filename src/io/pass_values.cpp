@@ -55,15 +55,24 @@ void from_moment(Image& values, const Image& mean, const SampleCounts& counts) {
     }
 }
 
+/// Replaces each pixel by xyz_to_rgb times to(value), with back() of the result.
+template <class To, class Back>
+void convert_xyz(Image& image, const To& to, const Back& back) {
+  for (std::size_t i = 0; i < image.pixels(); ++i) {
+    const Triple rgb = product(xyz_to_rgb, {to(image.plane(0)[i]), to(image.plane(1)[i]), to(image.plane(2)[i])});
+    for (std::size_t c = 0; c < 3; ++c) image.plane(static_cast<int>(c))[i] = static_cast<Real>(back(rgb[c]));
+  }
+}
+
 void from_moment_of_xyz(Image& values, const Image& mean, const SampleCounts& counts) {
   for (std::size_t i = 0; i < values.pixels(); ++i) {
     const Triple xyz = product(rgb_to_xyz, {mean.plane(0)[i], mean.plane(1)[i], mean.plane(2)[i]});
-    Triple deviation{};
-    for (std::size_t c = 0; c < 3; ++c)
-      deviation[c] = std::sqrt(variance_from_moment(values.plane(static_cast<int>(c))[i], xyz[c], counts.at(i)));
-    const Triple rgb = product(xyz_to_rgb, deviation);
-    for (std::size_t c = 0; c < 3; ++c) values.plane(static_cast<int>(c))[i] = static_cast<Real>(rgb[c] * rgb[c]);
+    for (std::size_t c = 0; c < 3; ++c) {
+      Real& v = values.plane(static_cast<int>(c))[i];
+      v = static_cast<Real>(variance_from_moment(v, xyz[c], counts.at(i)));
+    }
   }
+  xyz_to_rgb_variances(values);
 }
 
 /// Sums of relative variances over pairs of pixels.
@@ -86,6 +95,16 @@ PairSums pairs_of_row(const Image& mean, const Image& variance, int c, int y) {
 }
 
 }  // namespace
+
+void xyz_to_rgb_values(Image& xyz) {
+  convert_xyz(
+      xyz, [](double v) { return v; }, [](double v) { return v; });
+}
+
+void xyz_to_rgb_variances(Image& xyz) {
+  convert_xyz(
+      xyz, [](double v) { return std::sqrt(v); }, [](double v) { return v * v; });
+}
 
 Image with_channels(Image image, int channels, bool is_variance) {
   if (image.empty() || image.channels() == channels) return image;

@@ -14,6 +14,11 @@ namespace polyrecon {
 /// standard deviation.
 Image with_channels(Image image, int channels, bool is_variance = false);
 
+/// Turns CIE XYZ into linear RGB with the primaries of sRGB, and variances likewise: the noise of the channels is taken
+/// to be fully correlated, as it is where the light's colour does not change.
+void xyz_to_rgb_values(Image& xyz);
+void xyz_to_rgb_variances(Image& xyz);
+
 /// The samples of each pixel: an image of one channel, one number for all pixels, or unknown.
 struct SampleCounts {
   const Image* per_pixel = nullptr;

@@ -107,7 +107,9 @@ std::string added_pass(const std::string& word) {
 std::string pass_of(const std::string& other, const NameParts& parts) {
   if (!parts.pass.empty()) {
     const std::string word = between(parts.before, other, parts.after);
-    if (is_pass(parts.before, word) || has_known_ending(parts.before, word) || is_beauty_companion(word)) return word;
+    if (is_pass(parts.before, word) || has_known_ending(parts.before, word) || is_beauty_companion(word) ||
+        is_other_pass_file(word))
+      return word;
   }
   return added_pass(between(parts.before + parts.pass, other, parts.after));
 }

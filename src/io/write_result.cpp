@@ -144,7 +144,7 @@ bool is_lossy(const Imf::Header& header) {
 void add_provenance(Imf::Header& header, const Provenance& provenance) {
   set_attribute(header, "polyrecon/version", Imf::StringAttribute(POLYRECON_VERSION));
   if (!provenance.settings.empty())
-    set_attribute(header, "polyrecon/settings", Imf::StringAttribute(provenance.settings));
+    set_attribute(header, settings_attribute, Imf::StringAttribute(provenance.settings));
   if (!provenance.input.empty()) set_attribute(header, "polyrecon/input", Imf::StringAttribute(provenance.input));
   if (provenance.estimated_relative_mse >= 0)
     set_attribute(header, "polyrecon/estimatedRelMSE",
@@ -356,7 +356,7 @@ std::vector<std::string> write_as_exr(const FrameSource& source, const std::vect
     }
   }
   MapAttributes attributes;
-  attributes.strings = {{"polyrecon/settings", options.provenance.settings},
+  attributes.strings = {{settings_attribute, options.provenance.settings},
                         {"polyrecon/input", options.provenance.input}};
   if (options.provenance.estimated_relative_mse >= 0)
     attributes.numbers = {{"polyrecon/estimatedRelMSE", options.provenance.estimated_relative_mse}};

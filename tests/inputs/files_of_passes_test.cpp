@@ -11,6 +11,7 @@
 namespace polyrecon {
 namespace {
 
+using ::testing::Contains;
 using ::testing::Each;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
@@ -33,6 +34,8 @@ std::string film(const std::string& prefix, double picture, double samples) {
   pass(prefix + "DEPTH.exr", std::numeric_limits<double>::infinity());
   pass(prefix + "SAMPLECOUNT.exr", samples);
   pass(prefix + "ALPHA.exr", 0.5);
+  pass(prefix + "DIRECT_DIFFUSE.exr", picture / 4);
+  pass(prefix + "POSITION.exr", picture);
   pass(prefix + "RGB.exr", 99);  // the picture in another form
   return pass(prefix + "RGB_IMAGEPIPELINE.exr", picture);
 }
@@ -55,7 +58,10 @@ TEST(FilesOfPasses, AreMergedByTheirSampleCounts) {
   EXPECT_THAT(stored_floats(out, 0, "ALBEDO.G"), Each(0.3F));
   EXPECT_THAT(stored_floats(out, 0, "Sample Count.X"), Each(30.0F));
   EXPECT_THAT(stored_floats(out, 0, "ALPHA.R"), Each(0.5F));
+  EXPECT_THAT(stored_floats(out, 0, "DIRECT_DIFFUSE.B"), Each(0.75F));
+  EXPECT_THAT(stored_floats(out, 0, "POSITION.R"), Each(1.0F));  // that of the first render: a mean is nowhere
   EXPECT_THROW(stored_floats(out, 0, "RGB.R"), std::runtime_error);
+  EXPECT_THAT(merged.notes, Contains(HasSubstr("RGB is left out: it holds the picture in another form")));
   const Frame frame = read_frame(out).frame;
   EXPECT_EQ(frame.beauty.mean.at(0, 0, 0), 3);
   EXPECT_FALSE(frame.beauty.variance.empty());
@@ -71,7 +77,8 @@ TEST(FilesOfPasses, APassThatARenderLacksIsLeftOutWithANote) {
     const MergeResult merged = merge(paths, out);
     EXPECT_THAT(stored_floats(out, 0, "RGB_IMAGEPIPELINE.R"), Each(3.0F));
     EXPECT_THROW(stored_floats(out, 0, "ALBEDO.R"), std::runtime_error);
-    EXPECT_THAT(merged.notes, ElementsAre(HasSubstr("ALBEDO is left out: not every render has a file with it")));
+    EXPECT_THAT(merged.notes, ElementsAre(HasSubstr("RGB is left out: it holds the picture in another form"),
+                                          HasSubstr("ALBEDO is left out: not every render has a file with it")));
   }
 }
 
@@ -80,7 +87,7 @@ TEST(FilesOfPasses, ARenderAloneIsMergedAsItIs) {
   const std::string a = film(folder / "a_", 1, 10), out = folder / "out.exr";
   const MergeResult merged = merge({a, pass(folder / "other.exr", 3)}, out);
   EXPECT_THAT(stored_floats(out, 0, "R"), Each(2.0F));
-  EXPECT_EQ(merged.notes.size(), 5U);  // four passes; sample counts are unknown
+  EXPECT_EQ(merged.notes.size(), 8U);  // the picture in another form, six passes; sample counts are unknown
 }
 
 }  // namespace

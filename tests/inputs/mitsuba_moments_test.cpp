@@ -72,6 +72,47 @@ TEST(MitsubaMoments, APositionIsNoPicture) {
   EXPECT_TRUE(read_frame(write_exr(folder / "a.exr", {part}), options).frame.beauty.variance.empty());
 }
 
+TEST(MitsubaMoments, AreFoundInAnIntegratorAov) {
+  const TemporaryFolder folder;
+  const NoisyColor color;
+  TestPart part;
+  part.channels =
+      join({values("", "RGB", {color.r, color.g, color.b}), values("img", "RGBA", {color.r, color.g, color.b, 1}),
+            flat_layer("nn", "XYZ", 0.5), values("img.m", "XYZ", {color.x, color.y, color.z}),
+            values("img.m2_m", "XYZ", {1.4 * color.x * color.x, 1.4 * color.y * color.y, 1.4 * color.z * color.z})});
+  ReadOptions options;
+  const std::string path = write_exr(folder / "a.exr", {part});
+  EXPECT_THAT(read_frame(path).notes, ::testing::Contains(::testing::HasSubstr("img.m2_m is not used")));
+  options.samples = 5;
+  const Pass beauty = read_frame(path, options).frame.beauty;
+  ASSERT_FALSE(beauty.variance.empty());
+  EXPECT_NEAR(beauty.variance.at(3, 2, 0) / (color.r * color.r * 0.1), 1, 1e-4);
+  EXPECT_NEAR(beauty.variance.at(3, 2, 2) / (color.b * color.b * 0.1), 1, 1e-4);
+}
+
+TEST(MitsubaMoments, OfAFilmInXyzOrOfLuminanceAreTakenAsTheyAre) {
+  const TemporaryFolder folder;
+  const NoisyColor color;
+  const auto nested =
+      join({values("m", "XYZ", {color.x, color.y, color.z}),
+            values("m2_m", "XYZ", {1.4 * color.x * color.x, 1.8 * color.y * color.y, 2.2 * color.z * color.z}),
+            values("m.img", "RGBA", {color.r, color.g, color.b, 1}), values("m2_m.img", "RGBA", {9, 9, 9, 1})});
+  ReadOptions options;
+  options.samples = 5;
+  TestPart xyz;
+  xyz.channels = join({values("", "XYZ", {color.x, color.y, color.z}), nested});
+  const Pass of_xyz = read_frame(write_exr(folder / "xyz.exr", {xyz}), options).frame.beauty;
+  ASSERT_FALSE(of_xyz.variance.empty());
+  EXPECT_NEAR(of_xyz.variance.at(3, 2, 0) / (color.x * color.x * 0.1), 1, 1e-5);
+  EXPECT_NEAR(of_xyz.variance.at(3, 2, 1) / (color.y * color.y * 0.2), 1, 1e-5);
+  EXPECT_NEAR(of_xyz.variance.at(3, 2, 2) / (color.z * color.z * 0.3), 1, 1e-5);
+  TestPart grey;
+  grey.channels = join({values("", "Y", {color.y}), nested});
+  const Pass of_grey = read_frame(write_exr(folder / "grey.exr", {grey}), options).frame.beauty;
+  ASSERT_FALSE(of_grey.variance.empty());
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(of_grey.variance.at(3, 2, c) / (color.y * color.y * 0.2), 1, 1e-5);
+}
+
 TEST(MitsubaMoments, ALayerOfTheChannelTIsTheDepth) {
   const TemporaryFolder folder;
   TestPart part;

@@ -223,6 +223,13 @@ TEST(ChannelNames, MitsubaAov) {
   expect_role(layers, "sh_normal", Role::Normal);
 }
 
+TEST(ChannelNames, MitsubaAovsMayHaveNamesOfOneLetter) {
+  const auto layers = find_layers(file_with({part_with(channels({"RGB", "a.RGB", "img.RGBA", "n.XYZ", "z.T"}))}));
+  expect_role(layers, "a", Role::Color);  // RenderMan's alpha "a" has one channel
+  expect_role(layers, "n", Role::Normal);
+  expect_role(layers, "z", Role::Depth);
+}
+
 TEST(ChannelNames, Appleseed) {
   const auto layers = find_layers(
       file_with({part_with(channels({"RGBA"}), "beauty"), part_with(channels({"RGB"}), "albedo"),

@@ -65,7 +65,7 @@ Cells companions_of(const Renderer& renderer) {
   for (const BeautyCompanion& known : renderer.beauty_companions)
     names.push_back(fmt::format("{} ({}, of the beauty)", code(known.name), name_of(known.companion)));
   for (const CompanionAffix& affix : renderer.affixes) {
-    const bool before = affix.place == CompanionAffix::Place::BeforeWholeName;
+    const bool before = affix.place == CompanionAffix::Place::BeforeWord;
     names.push_back(fmt::format("{} ({})", code(before ? affix.text + "<layer>" : "<layer>" + affix.text),
                                 name_of(affix.companion)));
   }

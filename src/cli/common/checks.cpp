@@ -51,13 +51,17 @@ void require_different_files(const std::vector<std::string>& inputs, const std::
   }
 }
 
-void require_exr_name(const NamedPath& output) {
+bool names_another_format(const std::string& path) {
   static const std::set<std::string> others{".png", ".jpg", ".jpeg", ".tif", ".tiff",
                                             ".hdr", ".pfm", ".dpx",  ".tga", ".bmp"};
-  std::string ending = std::filesystem::path(output.path).extension().string();
+  std::string ending = std::filesystem::path(path).extension().string();
   std::transform(ending.begin(), ending.end(), ending.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  if (others.count(ending) > 0)
+  return others.count(ending) > 0;
+}
+
+void require_exr_name(const NamedPath& output) {
+  if (names_another_format(output.path))
     throw Error(ExitCode::Usage,
                 fmt::format("{} {}: an EXR file is written; give it the ending .exr (polyrecon preview makes PNG)",
                             output.option, output.path));

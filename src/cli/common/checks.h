@@ -17,6 +17,9 @@ void require_readable(const std::string& path);
 /// Throws Error{Usage} where two outputs, or an output and an input, are the same file, also through links.
 void require_different_files(const std::vector<std::string>& inputs, const std::vector<NamedPath>& outputs);
 
+/// Whether the path has the ending of a picture in another format than EXR.
+bool names_another_format(const std::string& path);
+
 /// Throws Error{Usage} where the path has the ending of another picture format: "clean.png" would be an EXR file.
 void require_exr_name(const NamedPath& output);
 

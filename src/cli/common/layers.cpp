@@ -80,7 +80,11 @@ Image read_layer(const LayeredFile& file, const Layer& layer) {
   return read_channels(file.info, layer.part, layer.channels);
 }
 
-Image read_radiance(const LayeredFile& file, const Layer& layer) { return with_channels(read_layer(file, layer), 3); }
+Image read_radiance(const LayeredFile& file, const Layer& layer) {
+  Image image = with_channels(read_layer(file, layer), 3);
+  if (is_picture_in_xyz(layer)) xyz_to_rgb_values(image);
+  return image;
+}
 
 KnownVariance read_variance(const LayeredFile& file, const Layer& layer, const Image& mean) {
   const Layer* found = variance_layer(file, layer);
@@ -100,7 +104,10 @@ KnownVariance read_variance(const LayeredFile& file, const Layer& layer, const I
                    fmt::format("it is the {} and the file does not say how many samples a pixel has; the noise of "
                                "{} counts as error",
                                name_of(found->companion), layer.name))};
-  to_variance_of_mean(values, found->companion, mean, counts);
+  const bool in_xyz = is_picture_in_xyz(layer) && values.channels() == 3;
+  const bool is_moment = found->companion == Companion::SecondMoment;
+  to_variance_of_mean(values, in_xyz && is_moment ? Companion::SecondMomentOfXyz : found->companion, mean, counts);
+  if (in_xyz && !is_moment) xyz_to_rgb_variances(values);
   return {std::move(values), {}};
 }
 

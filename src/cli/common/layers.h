@@ -33,7 +33,7 @@ const Layer& require_color_layer(const LayeredFile& file);
 /// All channels of a layer.
 Image read_layer(const LayeredFile& file, const Layer& layer);
 
-/// A layer that is_color, in three channels: grey is repeated.
+/// A layer that is_color, as RGB: grey is repeated, a picture in CIE XYZ is converted.
 Image read_radiance(const LayeredFile& file, const Layer& layer);
 
 /// The variance of a layer's mean as far as its file tells it.
@@ -42,7 +42,7 @@ struct KnownVariance {
   std::string note;  ///< Why a layer with it is not used; empty otherwise.
 };
 
-/// The variance of the mean of a layer, whose values are `mean`, with as many channels.
+/// The variance of the mean of a layer, whose values are `mean`, as read_radiance reads them.
 KnownVariance read_variance(const LayeredFile& file, const Layer& layer, const Image& mean);
 
 /// The cost of a sample in each pixel, 1 channel: a render-time pass, or the only channel of the file.

@@ -7,6 +7,7 @@
 #include "io/decode_file.h"
 #include "io/exr/file.h"
 #include "io/file_identity.h"
+#include "io/renderers/polyrecon.h"
 #include "polyrecon/error.h"
 
 namespace polyrecon {
@@ -53,7 +54,7 @@ bool is_finished(const Job& job, const FrameFiles& files) {
   try {
     const FileInfo picture = describe_file(outputs.picture);
     if (!has_attribute(picture, "polyrecon/version", POLYRECON_VERSION) ||
-        !has_attribute(picture, "polyrecon/settings", settings_of(job, files)) ||
+        !has_attribute(picture, settings_attribute, settings_of(job, files)) ||
         !has_attribute(picture, "polyrecon/input", present_identity(job, files, source)))
       return false;
     for (const OutputPaths& paths : of_pictures)

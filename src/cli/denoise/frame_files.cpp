@@ -7,6 +7,7 @@
 #include <set>
 #include <system_error>
 
+#include "cli/common/checks.h"
 #include "cli/common/frame_names.h"
 #include "cli/denoise/options.h"
 #include "polyrecon/error.h"
@@ -26,7 +27,10 @@ std::string path_in_folder(const OutputOption& option, const std::string& folder
                 fmt::format("{} {}: with several inputs, name a folder that exists, or put #### into the file's name",
                             option.name, folder));
   fs::path file = fs::path(input).filename();
-  if (option.kind == OutputKind::Report) file.replace_extension(".json");
+  if (option.kind == OutputKind::Report)
+    file.replace_extension(".json");
+  else if (names_another_format(file.string()))
+    file.replace_extension(".exr");
   return (fs::path(folder) / file).string();
 }
 

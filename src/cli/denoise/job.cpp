@@ -58,10 +58,24 @@ MakeDenoiser denoiser_of(const DenoiseOptions& o) {
   return denoisers().at(name);
 }
 
+/// Refuses a role that two layers are named for.
+void require_one_layer_for_each(const std::vector<RoleMapping>& map, const std::vector<std::string>& words) {
+  for (std::size_t j = 0; j < map.size(); ++j)
+    for (std::size_t i = 0; i < j; ++i)
+      if (map[i].role == map[j].role && map[i].companion == map[j].companion && map[i].layer != map[j].layer)
+        throw Error(ExitCode::Usage,
+                    fmt::format("--map {} and --map {} name two layers for one role: remove one", words[i], words[j]));
+}
+
 ReadOptions read_options_of(const DenoiseOptions& o, const FrameList& list, const Params& params) {
   ReadOptions read = o.read;
+  std::vector<std::string> words;
   for (const std::string& role : o.roles)
-    if (denoiser_named(role).empty()) read.map.push_back(parse_mapping(role));
+    if (denoiser_named(role).empty()) {
+      read.map.push_back(parse_mapping(role));
+      words.push_back(role);
+    }
+  require_one_layer_for_each(read.map, words);
   read.motion = list.radius > 0;
   read.accept = [params, is_sequence = list.is_sequence, denoises = !denoiser_named(o).empty()](const std::string& path,
                                                                                                 FrameShape shape) {

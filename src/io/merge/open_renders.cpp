@@ -68,12 +68,16 @@ void check_absent(const std::vector<Render>& renders) {
   }
 }
 
-/// Files next to the named one may hold its picture in other forms.
-void leave_out_other_pictures(Render& render) {
+/// Files next to the named one may hold its picture in other forms. Returns the names of these layers.
+std::set<std::string> leave_out_other_pictures(Render& render) {
   const auto is_other = [](const Layer& layer) {
     return layer.file > 0 && layer.role == Role::Beauty && layer.companion == Companion::Mean;
   };
+  std::set<std::string> names;
+  for (const Layer& layer : render.layers)
+    if (is_other(layer)) names.insert(layer.name);
   render.layers.erase(std::remove_if(render.layers.begin(), render.layers.end(), is_other), render.layers.end());
+  return names;
 }
 
 /// Leaves out passes in files next to a render that other renders do not have. Returns their names.
@@ -122,13 +126,19 @@ std::vector<Render> open_renders(const std::vector<std::string>& paths, const Re
                                  std::vector<std::string>& notes) {
   if (paths.size() < 2) throw Error(ExitCode::Usage, "merge needs at least two renders of the same frame");
   std::vector<Render> renders;
+  std::set<std::string> other_pictures;
   std::vector<std::string> siblings;  // of all renders, whose layers are in the result's lists
   for (const std::string& path : paths) {
     Render render;
     FrameSource source = open_source(path, limits, siblings);
     render.files = std::move(source.files);
     render.layers = std::move(source.layers);
-    leave_out_other_pictures(render);
+    other_pictures.merge(leave_out_other_pictures(render));
+    if (is_result(render.files.front()))
+      notes.push_back(fmt::format(
+          "{} is a result of denoise: its error is not independent of its neighbours', which variance and halves do "
+          "not show; merge the renders and denoise the merged file",
+          path));
     if (render.files.front().format != "openexr")
       throw Error(ExitCode::BadInput, fmt::format("{}: merge needs OpenEXR files", path));
     std::error_code failure;
@@ -137,6 +147,9 @@ std::vector<Render> open_renders(const std::vector<std::string>& paths, const Re
         throw Error(ExitCode::Usage, fmt::format("{}: given twice; renders have to be independent", path));
     renders.push_back(std::move(render));
   }
+  for (const std::string& name : other_pictures)
+    notes.push_back(
+        fmt::format("{} is left out: it holds the picture in another form; merge those files for it", name));
   for (const std::string& name : leave_out_lone_passes(renders))
     notes.push_back(fmt::format("{} is left out: not every render has a file with it", name));
   for (const std::string& name : leave_out_lone_companions(renders))

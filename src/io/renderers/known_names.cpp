@@ -35,7 +35,8 @@ const KnownPasses& known_passes() {
     for (const Renderer& renderer : renderers())
       for (const PassName& pass : renderer.passes) {
         const std::string name = normalised(pass.name);
-        const auto [entry, is_new] = passes.try_emplace(name, PassClass{pass.role, pass.rank, renderer.name});
+        const auto [entry, is_new] =
+            passes.try_emplace(name, PassClass{pass.role, pass.rank, renderer.name, pass.channels});
         if (!is_new && last[name] != &renderer) entry->second.renderers += ", " + renderer.name;
         last[name] = &renderer;
       }
@@ -69,7 +70,7 @@ std::optional<PassClass> classify_pass(const std::string& pass) {
 std::optional<PassClass> classify_letter(const std::string& letter) {
   for (const Renderer& renderer : renderers())
     for (const PassName& known : renderer.letters)
-      if (known.name == letter) return PassClass{known.role, known.rank, renderer.name};
+      if (known.name == letter) return PassClass{known.role, known.rank, renderer.name, 1};
   return std::nullopt;
 }
 
@@ -159,6 +160,13 @@ std::array<Real, 4> motion_factors(const std::string& pass) {
       if (!first) first = &renderer;
     }
   return first->motion_factors;
+}
+
+bool is_other_pass_file(const std::string& word) {
+  return any_renderer_with([&](const Renderer& renderer) {
+    return std::any_of(renderer.other_pass_files.begin(), renderer.other_pass_files.end(),
+                       [&](const std::string& name) { return same_name(name, word); });
+  });
 }
 
 bool is_written_so(const std::string& pass) {

@@ -15,7 +15,8 @@ namespace polyrecon {
 struct PassClass {
   Role role = Role::Other;
   int rank = 0;
-  std::string renderers;  ///< The names of those that use this name.
+  std::string renderers;     ///< The names of those that use this name.
+  std::size_t channels = 0;  ///< As PassName::channels.
 };
 
 /// pass: a name without its view layer. Nothing where no renderer is known to use it.
@@ -67,6 +68,9 @@ std::vector<std::string> attributes_of_central_samples(const std::string& view_l
 /// Factors that turn the channels of a motion pass into Frame::motion. A pass that no renderer is known to use is taken
 /// for one of the first renderer that has motion.
 std::array<Real, 4> motion_factors(const std::string& pass);
+
+/// Whether a renderer writes a pass of this name, which has no role, to a file of its own.
+bool is_other_pass_file(const std::string& word);
 
 /// Whether a renderer writes the name in just this spelling.
 bool is_written_so(const std::string& pass);

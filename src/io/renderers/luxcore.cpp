@@ -18,6 +18,13 @@ Renderer luxcore() {
       {"DEPTH", Role::Depth, 2},
       {"SAMPLECOUNT", Role::SampleCount, 1},
   };
+  r.other_pass_files = {
+      "EMISSION", "IRRADIANCE",  "CAUSTIC", "DIRECT_SHADOW_MASK", "INDIRECT_SHADOW_MASK", "POSITION", "UV",
+      "RAYCOUNT", "CONVERGENCE", "NOISE",   "MATERIAL_ID",        "MATERIAL_ID_COLOR",    "OBJECT_ID"};
+  for (const char* light :
+       {"DIRECT_DIFFUSE", "DIRECT_GLOSSY", "INDIRECT_DIFFUSE", "INDIRECT_GLOSSY", "INDIRECT_SPECULAR"})
+    for (const char* lobe : {"", "_REFLECT", "_TRANSMIT"}) r.other_pass_files.push_back(std::string(light) + lobe);
+  r.data_prefixes = {"position", "materialid", "objectid", "convergence", "raycount"};
   r.sample_map = {"luxcore",
                   {"Y"},
                   SampleMapFormat::Values::Importance,

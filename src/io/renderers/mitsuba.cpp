@@ -13,7 +13,7 @@ Renderer mitsuba() {
       {"depth", Role::Depth, 2},
   };
   r.letters = {{"T", Role::Depth, 3}};
-  r.affixes = {{"m2_", Companion::SecondMoment, CompanionAffix::Place::BeforeWholeName}};
+  r.affixes = {{"m2_", Companion::SecondMoment, CompanionAffix::Place::BeforeWord}};
   r.beauty_moment_is_nested = true;  // the moment integrator keeps it with the nested one
   return r;
 }

@@ -10,5 +10,6 @@ constexpr const char* half_b_suffix = " B";
 constexpr const char* sample_count_pass = "Sample Count";
 constexpr const char* shared_samples_attribute = "polyrecon/sharedSamples";  ///< What `merge` noted of them.
 constexpr const char* samples_attribute = "polyrecon/{}/samples";            ///< "{}" stands for the view layer.
+constexpr const char* settings_attribute = "polyrecon/settings";             ///< Of a result of `denoise`.
 
 }  // namespace polyrecon

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <limits>
 #include <string>
 #include <vector>
@@ -18,14 +19,15 @@ constexpr int rank_of_made_prior = 9;
 struct PassName {
   std::string name;  ///< As the renderer writes it; names are compared without case, blanks, '_', '-' and brackets.
   Role role;
-  int rank;  ///< Among layers of one role in one view layer the one of the lowest rank is used.
+  int rank;                  ///< Among layers of one role in one view layer the one of the lowest rank is used.
+  std::size_t channels = 0;  ///< Of a layer with this name; 0: all that the role allows.
 };
 
 /// How the name of a layer that accompanies another one is made from the name of that one.
 struct CompanionAffix {
   enum class Place {
-    BehindPass,      ///< "albedo_var" accompanies "albedo".
-    BeforeWholeName  ///< "m2_aov.albedo" accompanies "aov.albedo".
+    BehindPass,  ///< "albedo_var" accompanies "albedo".
+    BeforeWord   ///< "m2_aov.albedo" accompanies "aov.albedo", and "aov.m2_path" accompanies "aov.path".
   };
   std::string text;
   Companion companion;
@@ -66,7 +68,7 @@ struct Renderer {
   std::vector<std::string> data_prefixes;  ///< Passes whose names begin so hold data even if they look like colours.
   std::vector<CompanionAffix> affixes;
   std::vector<BeautyCompanion> beauty_companions;
-  bool beauty_moment_is_nested = false;  ///< The beauty's second moment accompanies another layer with alpha.
+  bool beauty_moment_is_nested = false;  ///< The beauty's second moment accompanies the nested integrator's picture.
 
   std::vector<std::string> denoised_suffixes;  ///< "<beauty>_denoised" is a prior.
   std::string noisy_suffix;                    ///< "<layer> Noisy" is what the layer was before it was denoised.
@@ -87,6 +89,7 @@ struct Renderer {
   /// Factors that turn the channels of the motion pass into Frame::motion.
   std::array<Real, 4> motion_factors{1, 1, 1, 1};
   SampleMapFormat sample_map;
+  std::vector<std::string> other_pass_files;  ///< Passes without a role that it writes to files of their own.
 };
 
 /// All renderers. Where two use one name for different roles or ranks, the first of them decides.

@@ -1,6 +1,7 @@
 """Renders a ball on a floor with Mitsuba 3: render_mitsuba.py OUT SEED PARTS...
 
-PARTS are the integrators from the outer to the inner one: moment, aov, path. half: the film's default format."""
+PARTS are the integrators from the outer to the inner one: moment, aov, path. half: the film's default format; xyz,
+luminance: the pixel format of the film, in place of rgb."""
 
 import sys
 
@@ -9,10 +10,12 @@ import mitsuba as mi
 out, seed, *parts = sys.argv[1:]
 mi.set_variant("scalar_rgb")
 integrator = {"type": "path"}
-if "aov" in parts:
-    integrator = {"type": "aov", "aovs": "albedo:albedo,nn:sh_normal,dd.y:depth,uv:uv", "img": integrator}
-if "moment" in parts:
-    integrator = {"type": "moment", "img": integrator}
+for part in reversed(parts):
+    if part == "aov":
+        integrator = {"type": "aov", "aovs": "albedo:albedo,nn:sh_normal,dd.y:depth,uv:uv", "img": integrator}
+    if part == "moment":
+        integrator = {"type": "moment", "img": integrator}
+pixel_formats = [part for part in parts if part in ("xyz", "luminance")]
 transform = mi.ScalarTransform4f
 scene = {
     "type": "scene",
@@ -27,6 +30,7 @@ scene = {
             "height": 24,
             "rfilter": {"type": "box"},
             "component_format": "float16" if "half" in parts else "float32",
+            **({"pixel_format": pixel_formats[0]} if pixel_formats else {}),
         },
         "sampler": {"type": "independent", "sample_count": 16},
     },

@@ -170,6 +170,18 @@ class Mitsuba(RealFiles):
         _, report = self.denoised(path, "--samples", 16)
         self.assertEqual(report["variance_source"], "from the file")
 
+    def test_moments_within_the_integrator_aov_and_of_other_films(self):
+        for parts, found in (
+            (("aov", "moment", "path"), {("beauty", "second moment of CIE XYZ"): "img.m2_img"}),
+            (("moment", "aov", "path", "xyz"), {("beauty", "second moment"): "m2_img"}),
+            (("moment", "path", "luminance"), {("beauty", "second moment"): "m2_img"}),
+        ):
+            with self.subTest(parts=parts):
+                path = self.film(*parts)
+                self.assertLessEqual(found.items(), self.chosen(path).items())
+                _, report = self.denoised(path, "--samples", 16)
+                self.assertEqual(report["variance_source"], "from the file")
+
     def test_a_lamp_beyond_what_the_default_film_of_halves_holds(self):
         path = self.film("path", "half")
         self.assertTrue(np.isinf(exr.read(path)["R"]).any())
@@ -212,6 +224,8 @@ class LuxCore(RealFiles):
         pictures = [exr.read(self.folder / f"film{seed}_RGB_IMAGEPIPELINE.exr")["G"] for seed in (1, 2)]
         mean = sum(n * picture for n, picture in zip(ones, pictures)) / sum(ones)
         np.testing.assert_allclose(planes["RGB_IMAGEPIPELINE.G"], mean, rtol=1e-5)
+        self.assertIn("DIRECT_DIFFUSE.R", planes)
+        np.testing.assert_array_equal(planes["POSITION.R"], exr.read(self.folder / "film1_POSITION.exr")["R"])
         _, report = self.denoised(merged)
         self.assertEqual(report["variance_source"], "from the file")
 
