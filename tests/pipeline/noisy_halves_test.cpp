@@ -59,7 +59,7 @@ TEST(NoisyHalves, OfANeighbourHaveNoFeaturesAndNoBound) {
   Frame frame = test::make_scene(48, 32, 0.3, 1).frame;
   const NoisyHalves halves = make_noisy_halves(frame, HalvesFor::Neighbour, 0, Params(), phases);
   EXPECT_EQ(halves.prepared.pair.features[0].channels(), 0);
-  EXPECT_TRUE(halves.bound.empty());
+  EXPECT_TRUE(halves.prepared.pair.bound.empty());
 }
 
 }  // namespace
