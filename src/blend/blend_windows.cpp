@@ -181,19 +181,22 @@ POLYRECON_SIMD bool energies_of_fit(const Real* fit, std::size_t pitch, std::siz
   return finite;
 }
 
-/// Multiplies the weight of each pixel of a window by exp(-max(0, d^2 / b - 1)); see BlendedFit.
+/// Multiplies the weight of each pixel of a window by exp(-max(0, d^2 / b - 1)), and by the inverse of large d^2 / b;
+/// see BlendedFit.
 POLYRECON_SIMD void within_bound(const Window& window, const Image& other, const Image& bound, const Real* fit,
                                  std::size_t pitch, const Real* weight, Real* out) {
   constexpr Real tiny = std::numeric_limits<Real>::min();  // so that 0 / 0 is 0
-  constexpr Real most = 80;                                // exp(-most) is still a normal float
+  constexpr Real most = 60;                                // exp(-most) / 1e6 is still a normal float
   const Real *red = other.plane(0), *green = other.plane(1), *blue = other.plane(2), *bounds = bound.plane(0);
   const int* const offset = window.offset.data();
   for (int j = 0; j < window.count; ++j, fit += pitch) {
     const auto i = static_cast<std::size_t>(offset[j]);
     const Real r = fit[0] - red[i], g = fit[1] - green[i], b = fit[2] - blue[i];
     const Real excess = (r * r + g * g + b * b) / (bounds[i] + tiny) - 1;
+    // Beyond `most` windows that contradict less still count more.
+    const Real ratio = excess > most ? most / excess : 1, beyond = ratio * ratio;
     const auto factor =
-        static_cast<Real>(exp_minus(static_cast<float>(excess > 0 ? excess < most ? excess : most : 0)));
+        beyond * static_cast<Real>(exp_minus(static_cast<float>(excess > 0 ? excess < most ? excess : most : 0)));
     out[j] = bounds[i] > 0 ? weight[j] * factor : 0;
   }
 }

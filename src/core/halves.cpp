@@ -14,12 +14,20 @@ namespace {
 
 // Of w from that of equal halves. Files of half floats round A, B and their mean.
 constexpr double rounding = 0.01;
-constexpr double largest_share = 0.98;  // Beyond it the halves contradict the mean.
+constexpr double largest_share = 0.98;  // Beyond it the mean is of one half alone, or of neither.
+constexpr double exactly = 1e-4;        // share of the squares that the fit of w may leave
 
 /// Sums over a row of channel c for the least squares fit of w in mean - B = w (A - B), relative to the radiance.
 struct ShareSums {
   double product = 0;  ///< (mean - B) (A - B)
   double square = 0;   ///< (A - B)^2
+  double target = 0;   ///< (mean - B)^2
+};
+
+/// The least squares fit of w.
+struct Share {
+  double of_a = 0.5;  ///< A half where the halves do not differ.
+  bool exact = true;  ///< The mean is w A + (1 - w) B, rather than another picture of the scene.
 };
 
 ShareSums share_sums(const Image& mean, const Image& half_a, const Image& half_b, int c, int y) {
@@ -32,26 +40,31 @@ ShareSums share_sums(const Image& mean, const Image& half_a, const Image& half_b
     if (!std::isfinite(from_b) || !std::isfinite(difference)) continue;
     sums.product += weight * from_b * difference;
     sums.square += weight * difference * difference;
+    sums.target += weight * from_b * from_b;
   }
   return sums;
 }
 
-/// w of the least squares fit to all pixels and channels; a half where the halves do not differ.
-double share_of_a(const Image& mean, const Image& half_a, const Image& half_b) {
+/// The fit to all pixels and channels.
+Share share_of(const Image& mean, const Image& half_a, const Image& half_b) {
   std::vector<ShareSums> rows(static_cast<std::size_t>(mean.height()));
   for_rows(mean.height(), [&](int y) {
     for (int c = 0; c < mean.channels(); ++c) {
       const ShareSums row = share_sums(mean, half_a, half_b, c, y);
       rows[static_cast<std::size_t>(y)].product += row.product;
       rows[static_cast<std::size_t>(y)].square += row.square;
+      rows[static_cast<std::size_t>(y)].target += row.target;
     }
   });
   ShareSums total;
   for (const ShareSums& row : rows) {
     total.product += row.product;
     total.square += row.square;
+    total.target += row.target;
   }
-  return total.square > 0 ? total.product / total.square : 0.5;
+  if (!(total.square > 0)) return {};
+  const double share = total.product / total.square;
+  return {share, total.target - share * total.product < exactly * total.square};
 }
 
 bool is_share(double share) { return share <= largest_share && share >= 1 - largest_share; }
@@ -115,7 +128,8 @@ BlockRow block_row(const Image& mean, const Image& half_a, const Image& half_b, 
 }  // namespace
 
 bool contradict(const Image& mean, const Image& half_a, const Image& half_b) {
-  if (!is_share(share_of_a(mean, half_a, half_b))) return true;
+  const Share share = share_of(mean, half_a, half_b);
+  if (share.exact && !is_share(share.of_a)) return true;
   const auto rows = static_cast<std::size_t>((mean.height() + block_side - 1) / block_side);
   std::vector<BlockRow> blocks(rows * static_cast<std::size_t>(mean.channels()));
   in_parallel(blocks.size(), [&](std::size_t k) {
@@ -133,7 +147,7 @@ bool contradict(const Image& mean, const Image& half_a, const Image& half_b) {
 }
 
 double half_noise(const Image& mean, const Image& half_a, const Image& half_b) {
-  const double share = share_of_a(mean, half_a, half_b);
+  const double share = share_of(mean, half_a, half_b).of_a;
   if (std::abs(share - 0.5) < rounding || !is_share(share)) return 2;
   return (1 / share + 1 / (1 - share)) / 2;
 }

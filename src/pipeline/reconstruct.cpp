@@ -36,6 +36,7 @@
 namespace polyrecon {
 namespace {
 
+constexpr double gross_excess = 2;           // times the noise bound: ten standard deviations
 constexpr double max_restored_gain = 0.001;  // a tenth of the least visible step in brightness (Weber)
 constexpr double max_total_gain = 0.05;      // above what is lost because weights favour ordinary pixels
 constexpr double most_energy_change = 0.5;   // share of the input's; what fireflies and signs may cost is less
@@ -70,6 +71,34 @@ Candidate fit_polynomials(const Frame& frame, const HalfPair& pair, const Params
   return result;
 }
 
+/// The part of a pixel's change to keep: where every window contradicts the pixel grossly, they only take turns in
+/// being wrong, so the change ends at gross_excess times the noise bound.
+double kept_change(const HalfPair& pair, const Image& change, std::size_t i) {
+  if (pair.bound.empty()) return 1;
+  double squared = 0;
+  for (int c = 0; c < 3; ++c)
+    squared += static_cast<double>(change.plane(c)[i]) * static_cast<double>(change.plane(c)[i]);
+  const double most = gross_excess * gross_excess * static_cast<double>(pair.bound.plane(0)[i]);
+  return squared > most ? std::sqrt(most / squared) : 1;
+}
+
+/// Ends gross changes, in all layers alike so that those that add up to the beauty still do.
+void end_gross_changes(const HalfPair& pair, Image& image) {
+  Image change = image;
+  const auto input = [&](int c, std::size_t i) {
+    return Real(0.5) * (pair.color[0].plane(c)[i] + pair.color[1].plane(c)[i]);
+  };
+  for_rows(image.height(), [&](int y) {
+    for (int x = 0; x < image.width(); ++x) {
+      const std::size_t i = image.index(x, y);
+      for (int c = 0; c < image.channels(); ++c) change.plane(c)[i] -= input(c, i);
+      const auto kept = static_cast<Real>(kept_change(pair, change, i));
+      if (kept < 1)
+        for (int c = 0; c < image.channels(); ++c) image.plane(c)[i] = input(c, i) + kept * change.plane(c)[i];
+    }
+  });
+}
+
 /// The average of the halves; pixels without noise keep the input's exact value.
 Image average(const HalfPair& pair, const Candidate& solved) {
   Image out = solved.half[0];
@@ -84,6 +113,7 @@ Image average(const HalfPair& pair, const Candidate& solved) {
             noisy ? Real(0.5) * (solved.half[0].at(x, y, c) + solved.half[1].at(x, y, c)) : Real(0.5) * (a + b);
       }
   });
+  end_gross_changes(pair, out);
   return out;
 }
 

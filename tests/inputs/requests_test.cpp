@@ -42,7 +42,12 @@ TEST(Requests, OneChannelOfAColorIsNoLayerToBeDenoised) {
 
 TEST(Requests, OneHalfThatIsNamedAloneIsNoted) {
   const TemporaryFolder folder;
-  const std::string path = write(folder, join({layer("", "RGB"), layer("one", "RGB"), layer("two", "RGB", 7)}));
+  auto beauty = layer("", "RGB");
+  for (int c = 0; c < 3; ++c)
+    beauty[static_cast<std::size_t>(c)].samples = [c](int x, int y) {
+      return (testing::pattern(c)(x, y) + testing::pattern(7 + c)(x, y)) / 2;
+    };
+  const std::string path = write(folder, join({beauty, layer("one", "RGB"), layer("two", "RGB", 7)}));
   ReadOptions options;
   options.map = {parse_mapping("half-a=one")};
   const ReadResult alone = read_frame(path, options);
