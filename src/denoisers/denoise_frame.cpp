@@ -12,17 +12,17 @@ namespace {
 constexpr int rgb = 3;
 
 /// Ways to turn an image over.
-enum Turn : unsigned { as_it_is = 0, left_right = 1, up_down = 2, both = 3 };
-constexpr std::array<Turn, 2> half_turns{left_right, up_down};
-constexpr std::array<Turn, 4> mean_turns{as_it_is, both, left_right, up_down};
+enum Turn : unsigned { AsItIs = 0, LeftRight = 1, UpDown = 2, Both = 3 };
+constexpr std::array<Turn, 2> half_turns{LeftRight, UpDown};
+constexpr std::array<Turn, 4> mean_turns{AsItIs, Both, LeftRight, UpDown};
 
 Image turned(const Image& image, Turn turn) {
-  if (turn == as_it_is || image.empty()) return image;
+  if (turn == AsItIs || image.empty()) return image;
   Image out(image.width(), image.height(), image.channels());
   for_rows(image.height(), [&](int y) {
     for (int c = 0; c < image.channels(); ++c) {
-      const Real* from = image.row(c, (turn & up_down) != 0 ? image.height() - 1 - y : y);
-      if ((turn & left_right) != 0)
+      const Real* from = image.row(c, (turn & UpDown) != 0 ? image.height() - 1 - y : y);
+      if ((turn & LeftRight) != 0)
         std::reverse_copy(from, from + image.width(), out.row(c, y));
       else
         std::copy_n(from, image.width(), out.row(c, y));

@@ -24,14 +24,7 @@ constexpr int rgb = 3;
 // The part of the C interface that is used, as its reference documents it (oidn.h of version 2; the values of its
 // enumerations do not change within a major version).
 using Handle = void*;  // of a device, a filter or a buffer
-enum DeviceType : int {
-  any_device = 0,
-  cpu_device = 1,
-  sycl_device = 2,
-  cuda_device = 3,
-  hip_device = 4,
-  metal_device = 5
-};
+enum DeviceType : int { AnyDevice = 0, CpuDevice = 1, SyclDevice = 2, CudaDevice = 3, HipDevice = 4, MetalDevice = 5 };
 constexpr int format_float3 = 3;
 constexpr int quality_high = 6;
 constexpr int no_error = 0, cancelled_error = 6;
@@ -80,8 +73,8 @@ bool load(void* library, Functions& f) {
 }
 
 const std::map<std::string, int>& device_types() {
-  static const std::map<std::string, int> types{{"auto", any_device}, {"cpu", cpu_device},   {"cuda", cuda_device},
-                                                {"hip", hip_device},  {"sycl", sycl_device}, {"metal", metal_device}};
+  static const std::map<std::string, int> types{{"auto", AnyDevice}, {"cpu", CpuDevice},   {"cuda", CudaDevice},
+                                                {"hip", HipDevice},  {"sycl", SyclDevice}, {"metal", MetalDevice}};
   return types;
 }
 
