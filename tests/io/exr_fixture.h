@@ -66,7 +66,8 @@ inline Samples constant(double value) {
 
 /// Noise without sums: 0 to 1, unlike from pixel to pixel and from seed to seed.
 inline double grain(int x, int y, int seed) {
-  const unsigned mixed = static_cast<unsigned>(x * 7919 + y * 104729 + seed * 1299709) * 2654435761U;
+  const unsigned place = static_cast<unsigned>(x) * 7919U + static_cast<unsigned>(y) * 104729U;
+  const unsigned mixed = (place + static_cast<unsigned>(seed) * 1299709U) * 2654435761U;
   return (mixed >> 16 & 1023U) / 1023.0;
 }
 
