@@ -49,7 +49,8 @@ TEST(NoiseBound, TurnsWithTheImage) {
   test::Random random(4);
   const Image variance = image_of(23, 17, 3, [&](int, int, int) { return random.uniform(); });
   const auto transposed = [](const Image& image) {
-    return image_of(image.height(), image.width(), 3, [&](int x, int y, int c) { return image.at(y, x, c); });
+    return image_of(image.height(), image.width(), image.channels(),
+                    [&](int x, int y, int c) { return image.at(y, x, c); });
   };
   EXPECT_LT(test::max_difference(noise_bound(transposed(variance)), transposed(noise_bound(variance))), 1e-5);
 }
