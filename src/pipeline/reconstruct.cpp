@@ -71,30 +71,26 @@ Candidate fit_polynomials(const Frame& frame, const HalfPair& pair, const Params
   return result;
 }
 
-/// The part of a pixel's change to keep: where every window contradicts the pixel grossly, they only take turns in
-/// being wrong, so the change ends at gross_excess times the noise bound.
-double kept_change(const HalfPair& pair, const Image& change, std::size_t i) {
-  if (pair.bound.empty()) return 1;
-  double squared = 0;
-  for (int c = 0; c < 3; ++c)
-    squared += static_cast<double>(change.plane(c)[i]) * static_cast<double>(change.plane(c)[i]);
-  const double most = gross_excess * gross_excess * static_cast<double>(pair.bound.plane(0)[i]);
-  return squared > most ? std::sqrt(most / squared) : 1;
-}
-
-/// Ends gross changes, in all layers alike so that those that add up to the beauty still do.
+/// Ends changes at gross_excess times the noise bound, in all layers alike so that those that add up to the beauty
+/// still do: where every window contradicts a pixel grossly, they only take turns in being wrong.
 void end_gross_changes(const HalfPair& pair, Image& image) {
-  Image change = image;
+  if (pair.bound.empty()) return;
   const auto input = [&](int c, std::size_t i) {
     return Real(0.5) * (pair.color[0].plane(c)[i] + pair.color[1].plane(c)[i]);
   };
   for_rows(image.height(), [&](int y) {
     for (int x = 0; x < image.width(); ++x) {
       const std::size_t i = image.index(x, y);
-      for (int c = 0; c < image.channels(); ++c) change.plane(c)[i] -= input(c, i);
-      const auto kept = static_cast<Real>(kept_change(pair, change, i));
-      if (kept < 1)
-        for (int c = 0; c < image.channels(); ++c) image.plane(c)[i] = input(c, i) + kept * change.plane(c)[i];
+      double squared = 0;
+      for (int c = 0; c < ColorLayout::primaries; ++c) {
+        const auto change = static_cast<double>(image.plane(c)[i] - input(c, i));
+        squared += change * change;
+      }
+      const double most = gross_excess * gross_excess * static_cast<double>(pair.bound.plane(0)[i]);
+      if (!(squared > most)) continue;
+      const auto kept = static_cast<Real>(std::sqrt(most / squared));
+      for (int c = 0; c < image.channels(); ++c)
+        image.plane(c)[i] = input(c, i) + kept * (image.plane(c)[i] - input(c, i));
     }
   });
 }
