@@ -189,7 +189,8 @@ class Attacks(SceneTest):
             done = subprocess.run(shell, capture_output=True, text=True, cwd=self.folder)
             if done.returncode:
                 self.assertIn(done.returncode, (ExitCode.MEMORY, ExitCode.RENDERER), done.stderr)
-                self.assertRegex(done.stderr, "^polyrecon-blender: .*(Too many open files|no message|open files are allowed).*\n$")
+                reason = "(Too many open files|no message|open files are allowed)"
+                self.assertRegex(done.stderr, f"^polyrecon-blender: .*{reason}.*\n$")
             shutil.rmtree(self.folder / "o.passes", ignore_errors=True)
 
 
