@@ -17,7 +17,7 @@
 #include "cli/common/current_error.h"
 #include "cli/common/printed_text.h"
 #include "cli/common/signals.h"
-#include "io/atomic_file.h"
+#include "io/files/atomic_file.h"
 #include "polyrecon/error.h"
 
 namespace {

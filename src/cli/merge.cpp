@@ -16,7 +16,7 @@
 #include "cli/common/printed_text.h"
 #include "cli/common/read_limits.h"
 #include "core/parallel.h"
-#include "io/exr/file.h"
+#include "io/files/file.h"
 #include "polyrecon/error.h"
 
 namespace polyrecon {

@@ -8,8 +8,8 @@
 
 #include "core/halves.h"
 #include "core/relmse.h"
-#include "io/channel_names.h"
-#include "io/channel_reader.h"
+#include "io/files/channel_reader.h"
+#include "io/layers/channel_names.h"
 #include "io/observed_read.h"
 #include "io/renderers/known_names.h"
 #include "polyrecon/error.h"

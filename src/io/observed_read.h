@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "io/channel_reader.h"
+#include "io/files/channel_reader.h"
 #include "polyrecon/read_frame.h"
 
 namespace polyrecon {

@@ -12,13 +12,13 @@
 #include "core/halves.h"
 #include "core/rect.h"
 #include "core/repair.h"
-#include "io/beyond_range.h"
-#include "io/channel_names.h"
-#include "io/choose_layers.h"
-#include "io/exr/file.h"
+#include "io/files/file.h"
+#include "io/layers/channel_names.h"
+#include "io/layers/choose_layers.h"
 #include "io/observed_read.h"
-#include "io/pass_values.h"
 #include "io/renderers/known_names.h"
+#include "io/values/beyond_range.h"
+#include "io/values/pass_values.h"
 #include "polyrecon/error.h"
 
 namespace polyrecon {

@@ -26,17 +26,17 @@
 
 #include "core/first_line.h"
 #include "core/rect.h"
-#include "io/atomic_file.h"
-#include "io/beyond_range.h"
-#include "io/channel_groups.h"
 #include "io/exr/attributes.h"
 #include "io/exr/bands.h"
 #include "io/exr/out_of_memory.h"
 #include "io/exr/raw.h"
-#include "io/exr/single_part.h"
 #include "io/exr/writable.h"
-#include "io/file_identity.h"
+#include "io/files/atomic_file.h"
+#include "io/files/file_identity.h"
+#include "io/files/single_part.h"
+#include "io/layers/channel_groups.h"
 #include "io/renderers/polyrecon.h"
+#include "io/values/beyond_range.h"
 #include "polyrecon/error.h"
 
 namespace polyrecon {

@@ -1,8 +1,8 @@
 #pragma once
 
+#include "io/files/plain_image_file.h"
 #include "io/pictures/false_color.h"
 #include "io/pictures/preview.h"
-#include "io/plain_image_file.h"
 
 namespace polyrecon {
 

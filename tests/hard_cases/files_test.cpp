@@ -16,8 +16,8 @@
 #include <thread>
 
 #include "cli/program.h"
-#include "io/atomic_file.h"
 #include "io/exr_fixture.h"
+#include "io/files/atomic_file.h"
 #include "polyrecon/read_frame.h"
 #include "polyrecon/write_result.h"
 #include "support/instances.h"

@@ -2,8 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "io/exr/file.h"
 #include "io/exr_fixture.h"
+#include "io/files/file.h"
 #include "polyrecon/read_frame.h"
 #include "polyrecon/write_result.h"
 

@@ -7,9 +7,9 @@
 
 #include <array>
 
-#include "io/channel_names.h"
 #include "io/exr_fixture.h"
 #include "io/inspect.h"
+#include "io/layers/channel_names.h"
 #include "polyrecon/merge.h"
 #include "polyrecon/read_frame.h"
 #include "polyrecon/write_result.h"

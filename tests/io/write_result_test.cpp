@@ -12,8 +12,8 @@
 #include <cmath>
 #include <limits>
 
-#include "io/exr/file.h"
 #include "io/exr_fixture.h"
+#include "io/files/file.h"
 #include "polyrecon/read_frame.h"
 
 namespace polyrecon {

@@ -9,7 +9,7 @@
 #include <set>
 #include <utility>
 
-#include "io/atomic_file.h"
+#include "io/files/atomic_file.h"
 #include "polyrecon/error.h"
 
 namespace polyrecon {

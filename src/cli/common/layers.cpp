@@ -4,10 +4,10 @@
 
 #include <utility>
 
-#include "io/channel_names.h"
-#include "io/exr/file.h"
-#include "io/pass_values.h"
+#include "io/files/file.h"
+#include "io/layers/channel_names.h"
 #include "io/renderers/known_names.h"
+#include "io/values/pass_values.h"
 #include "polyrecon/error.h"
 
 namespace polyrecon {

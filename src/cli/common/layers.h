@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "io/channel_names.h"
-#include "io/exr/file.h"
+#include "io/files/file.h"
+#include "io/layers/channel_names.h"
 #include "polyrecon/image.h"
 
 namespace polyrecon {
@@ -24,7 +24,7 @@ const Layer* find_layer(const LayeredFile& file, const std::string& name);
 /// Whether a layer holds radiance, in three channels or in one of grey.
 bool is_color(const Layer& layer);
 
-/// The picture (io/channel_names.h) if it is_color, else nullptr.
+/// The picture (io/layers/channel_names.h) if it is_color, else nullptr.
 const Layer* color_layer(const LayeredFile& file);
 
 /// The same; throws Error{Missing} where there is none.

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "core/rect.h"
-#include "io/exr/file.h"
-#include "io/pass_values.h"
+#include "io/files/file.h"
+#include "io/values/pass_values.h"
 #include "maps/error_map_images.h"
 #include "polyrecon/error.h"
 #include "polyrecon/write_result.h"

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "cli/common/option_set.h"
-#include "io/exr/file.h"
+#include "io/files/file.h"
 
 namespace polyrecon {
 

@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <string_view>
 
-#include "io/atomic_file.h"
+#include "io/files/atomic_file.h"
 #include "polyrecon/error.h"
 
 namespace polyrecon {

@@ -14,7 +14,7 @@
 #include "cli/compare/comparison.h"
 #include "cli/compare/comparison_output.h"
 #include "cli/compare/comparison_page.h"
-#include "io/atomic_file.h"
+#include "io/files/atomic_file.h"
 #include "io/pictures/png_file.h"
 #include "polyrecon/error.h"
 

@@ -13,7 +13,7 @@
 #include "cli/denoise/job.h"
 #include "cli/denoise/sequence.h"
 #include "core/parallel.h"
-#include "io/exr/file.h"
+#include "io/files/file.h"
 
 namespace polyrecon {
 namespace {

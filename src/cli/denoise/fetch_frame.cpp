@@ -13,7 +13,7 @@
 #include "cli/common/checks.h"
 #include "cli/denoise/finished.h"
 #include "core/stopwatch.h"
-#include "io/file_identity.h"
+#include "io/files/file_identity.h"
 #include "polyrecon/error.h"
 #include "polyrecon/reconstruct.h"
 

@@ -10,7 +10,7 @@
 #include "cli/common/roles_output.h"
 #include "cli/denoise/write_outputs.h"
 #include "core/stopwatch.h"
-#include "io/atomic_file.h"
+#include "io/files/atomic_file.h"
 #include "pipeline/part_of_beauty.h"
 #include "pipeline/result_images.h"
 

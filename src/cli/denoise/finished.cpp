@@ -4,9 +4,9 @@
 #include <system_error>
 
 #include "cli/denoise/load_frame.h"
-#include "io/decode_file.h"
-#include "io/exr/file.h"
-#include "io/file_identity.h"
+#include "io/files/decode_file.h"
+#include "io/files/file.h"
+#include "io/files/file_identity.h"
 #include "io/renderers/polyrecon.h"
 #include "polyrecon/error.h"
 

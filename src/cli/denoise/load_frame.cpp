@@ -6,7 +6,7 @@
 #include <filesystem>
 
 #include "core/stopwatch.h"
-#include "io/file_identity.h"
+#include "io/files/file_identity.h"
 
 namespace polyrecon {
 

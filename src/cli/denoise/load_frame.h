@@ -39,7 +39,7 @@ struct LoadedFrame {
   double read_seconds = 0;
   std::vector<LoadedNeighbour> neighbours;
   PictureChoice picture;
-  std::string identity;  ///< Of the bytes of all files that `in` was read from; see io/file_identity.h.
+  std::string identity;  ///< Of the bytes of all files that `in` was read from; see io/files/file_identity.h.
 
   /// What stands behind it for the neighbours.
   std::string neighbours_identity() const;

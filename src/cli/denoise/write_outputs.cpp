@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "cli/common/map_files.h"
-#include "io/channel_names.h"
+#include "io/layers/channel_names.h"
 #include "io/renderers/renderers.h"
 #include "polyrecon/error.h"
 #include "polyrecon/write_result.h"

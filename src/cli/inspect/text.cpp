@@ -5,7 +5,7 @@
 #include "cli/common/printed_text.h"
 #include "cli/common/roles_output.h"
 #include "cli/inspect/report.h"
-#include "io/channel_names.h"
+#include "io/layers/channel_names.h"
 
 namespace polyrecon {
 namespace {

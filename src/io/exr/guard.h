@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "io/exr/file.h"
+#include "polyrecon/file_info.h"
 
 namespace polyrecon {
 

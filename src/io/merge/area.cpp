@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "io/channel_reader.h"
+#include "io/files/channel_reader.h"
 
 namespace polyrecon {
 

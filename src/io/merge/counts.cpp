@@ -8,7 +8,7 @@
 #include <set>
 
 #include "core/parallel.h"
-#include "io/channel_names.h"
+#include "io/layers/channel_names.h"
 #include "io/merge/area.h"
 #include "io/merge/shared_samples.h"
 #include "io/renderers/known_names.h"

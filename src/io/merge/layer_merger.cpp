@@ -9,10 +9,10 @@
 #include <utility>
 
 #include "core/parallel.h"
-#include "io/beyond_range.h"
 #include "io/merge/area.h"
 #include "io/merge/output.h"
 #include "io/merge/place_renders.h"
+#include "io/values/beyond_range.h"
 
 namespace polyrecon {
 namespace {

@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "io/exr/single_part.h"
-#include "io/file_identity.h"
+#include "io/files/file_identity.h"
+#include "io/files/single_part.h"
 #include "io/merge/area.h"
 #include "io/merge/copy_layer.h"
 #include "io/merge/counts.h"

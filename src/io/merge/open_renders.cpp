@@ -9,9 +9,9 @@
 #include <system_error>
 #include <utility>
 
-#include "io/channel_groups.h"
-#include "io/channel_names.h"
-#include "io/choose_layers.h"
+#include "io/layers/channel_groups.h"
+#include "io/layers/channel_names.h"
+#include "io/layers/choose_layers.h"
 #include "io/merge/place_renders.h"
 #include "polyrecon/error.h"
 

@@ -15,11 +15,11 @@
 #include <limits>
 #include <set>
 
-#include "io/channel_groups.h"
-#include "io/channel_names.h"
 #include "io/exr/attributes.h"
 #include "io/exr/bands.h"
 #include "io/exr/writable.h"
+#include "io/layers/channel_groups.h"
+#include "io/layers/channel_names.h"
 #include "io/renderers/known_names.h"
 
 namespace polyrecon {

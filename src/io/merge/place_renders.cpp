@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "core/rect.h"
-#include "io/exr/file.h"
+#include "io/files/file.h"
 #include "polyrecon/error.h"
 
 namespace polyrecon {

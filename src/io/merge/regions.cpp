@@ -7,7 +7,7 @@
 
 #include "core/parallel.h"
 #include "core/rect.h"
-#include "io/channel_reader.h"
+#include "io/files/channel_reader.h"
 
 namespace polyrecon {
 namespace {

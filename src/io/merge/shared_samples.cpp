@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "io/channel_names.h"
-#include "io/channel_reader.h"
+#include "io/files/channel_reader.h"
+#include "io/layers/channel_names.h"
 #include "io/renderers/known_names.h"
 
 namespace polyrecon {

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "core/rect.h"
-#include "io/exr/file.h"
+#include "io/files/file.h"
 #include "io/merge/counts.h"
 #include "io/merge/halves.h"
 #include "polyrecon/error.h"

@@ -2,7 +2,7 @@
 
 #include <OpenImageIO/strutil.h>
 
-#include "io/atomic_file.h"
+#include "io/files/atomic_file.h"
 #include "io/pictures/preview.h"
 
 namespace polyrecon {

@@ -9,7 +9,7 @@
 #include <filesystem>
 #include <set>
 
-#include "io/channel_names.h"
+#include "io/layers/channel_names.h"
 #include "io/renderers/known_names.h"
 #include "support/recorded.h"
 

@@ -1,4 +1,4 @@
-#include "io/exr/single_part.h"
+#include "io/files/single_part.h"
 
 #include <OpenEXR/ImfMultiPartInputFile.h>
 #include <OpenEXR/ImfThreading.h>
@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "io/atomic_file.h"
+#include "io/files/atomic_file.h"
 
 namespace polyrecon {
 void write_single_part(const std::string& target, const Imf::Header& header,

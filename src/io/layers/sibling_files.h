@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "io/channel_names.h"
-#include "io/exr/file.h"
+#include "io/files/file.h"
+#include "io/layers/channel_names.h"
 
 namespace polyrecon {
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "io/exr/file.h"
+#include "io/files/file.h"
 
 namespace polyrecon {
 

@@ -1,4 +1,4 @@
-#include "io/exr/file.h"
+#include "io/files/file.h"
 
 #include <OpenEXR/ImfStandardAttributes.h>
 #include <OpenEXR/ImfStringAttribute.h>

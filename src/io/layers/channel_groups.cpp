@@ -1,4 +1,4 @@
-#include "io/channel_groups.h"
+#include "io/layers/channel_groups.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "io/choose_layers.h"
+#include "io/layers/choose_layers.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -9,12 +9,12 @@
 #include <tuple>
 
 #include "core/rect.h"
-#include "io/channel_groups.h"
-#include "io/channel_names.h"
-#include "io/choose_picture.h"
+#include "io/layers/channel_groups.h"
+#include "io/layers/channel_names.h"
+#include "io/layers/choose_picture.h"
+#include "io/layers/sibling_files.h"
 #include "io/renderers/known_names.h"
 #include "io/renderers/polyrecon.h"
-#include "io/sibling_files.h"
 #include "polyrecon/error.h"
 
 namespace polyrecon {

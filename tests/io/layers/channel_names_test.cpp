@@ -1,4 +1,4 @@
-#include "io/channel_names.h"
+#include "io/layers/channel_names.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

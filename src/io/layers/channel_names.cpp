@@ -1,4 +1,4 @@
-#include "io/channel_names.h"
+#include "io/layers/channel_names.h"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "io/channel_groups.h"
+#include "io/layers/channel_groups.h"
 #include "io/renderers/known_names.h"
 #include "io/renderers/polyrecon.h"
 

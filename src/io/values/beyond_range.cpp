@@ -1,4 +1,4 @@
-#include "io/beyond_range.h"
+#include "io/values/beyond_range.h"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "io/channel_names.h"
+#include "io/layers/channel_names.h"
 #include "io/renderers/known_names.h"
 
 namespace polyrecon {

@@ -1,4 +1,4 @@
-#include "io/channel_reader.h"
+#include "io/files/channel_reader.h"
 
 #include <Iex.h>
 #include <OpenEXR/ImfFrameBuffer.h>
@@ -14,7 +14,7 @@
 
 #include "core/first_line.h"
 #include "io/exr/out_of_memory.h"
-#include "io/plain_image_file.h"
+#include "io/files/plain_image_file.h"
 #include "polyrecon/error.h"
 
 namespace polyrecon {

@@ -1,9 +1,5 @@
-#include "io/exr/file.h"
+#include "io/files/file.h"
 
-#include <OpenEXR/ImfChannelList.h>
-#include <OpenEXR/ImfMultiPartInputFile.h>
-#include <OpenEXR/ImfPartType.h>
-#include <OpenEXR/ImfStandardAttributes.h>
 #include <OpenEXR/ImfTestFile.h>
 #include <OpenEXR/ImfThreading.h>
 #include <fmt/format.h>
@@ -11,22 +7,15 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <exception>
 #include <filesystem>
 #include <fstream>
-#include <new>
 #include <string_view>
 
-#include "core/first_line.h"
 #include "core/parallel.h"
-#include "io/channel_reader.h"
-#include "io/exr/attributes.h"
-#include "io/exr/chunks.h"
-#include "io/exr/compression.h"
-#include "io/exr/guard.h"
-#include "io/exr/out_of_memory.h"
-#include "io/file_identity.h"
-#include "io/plain_image_file.h"
+#include "io/exr/description.h"
+#include "io/files/channel_reader.h"
+#include "io/files/file_identity.h"
+#include "io/files/plain_image_file.h"
 #include "polyrecon/error.h"
 
 namespace polyrecon {
@@ -34,31 +23,6 @@ namespace {
 
 [[noreturn]] void fail(const std::string& path, const std::string& what) {
   throw Error(ExitCode::BadInput, fmt::format("{}: {}", path, what));
-}
-
-Rect to_rect(const Imath::Box2i& box) { return {box.min.x, box.min.y, box.max.x + 1, box.max.y + 1}; }
-
-SampleType to_sample_type(Imf::PixelType type) {
-  if (type == Imf::HALF) return SampleType::Half;
-  return type == Imf::UINT ? SampleType::Uint : SampleType::Float;
-}
-
-PartInfo describe_part(const Imf::Header& header) {
-  PartInfo part;
-  if (header.hasName()) part.name = header.name();
-  if (header.hasView()) part.view = header.view();
-  part.data_window = to_rect(header.dataWindow());
-  part.display_window = to_rect(header.displayWindow());
-  part.compression = compression_name(header.compression());
-  part.deep = header.hasType() && Imf::isDeepData(header.type());
-  part.tiled = header.hasType() ? Imf::isTiled(header.type()) : header.hasTileDescription();
-  part.mipmapped = part.tiled && header.tileDescription().mode != Imf::ONE_LEVEL;
-  for (auto c = header.channels().begin(); c != header.channels().end(); ++c)
-    part.channels.push_back({c.name(), to_sample_type(c.channel().type), c.channel().xSampling, c.channel().ySampling});
-  if (Imf::hasMultiView(header)) part.views = Imf::multiView(header);
-  for (auto a = header.begin(); a != header.end(); ++a)
-    part.attributes.push_back({a.name(), a.attribute().typeName(), attribute_text(a.attribute())});
-  return part;
 }
 
 /// Zeros where the file is shorter.
@@ -82,24 +46,6 @@ std::uint64_t size_of_existing(const std::string& path) {
   if (failure || !std::ifstream(path, std::ios::binary)) fail(path, "cannot be opened for reading");
   if (bytes == 0 || begins_with_zeros(path)) fail(path, "not yet rendered: the file has no contents");
   return bytes;
-}
-
-void describe_exr(FileInfo& file, const ReadLimits& limits) {
-  const std::uint64_t table_begin = check_attribute_sizes(file.path, file.bytes);
-  std::vector<Imf::Header> headers;
-  try {
-    Imf::MultiPartInputFile input(file.path.c_str(), 0, false);
-    for (int p = 0; p < input.parts(); ++p) headers.push_back(input.header(p));
-  } catch (const std::bad_alloc&) {
-    throw;
-  } catch (const std::exception& problem) {
-    throw_if_out_of_memory(problem);
-    fail(file.path, fmt::format("incomplete or damaged header ({})", first_line(problem.what())));
-  }
-  check_claims(file.path, file.bytes, headers, limits);
-  check_chunks(file.path, file.bytes, table_begin, headers);
-  file.format = "openexr";
-  for (const Imf::Header& header : headers) file.parts.push_back(describe_part(header));
 }
 
 /// A linear format that renderers write.

@@ -5,7 +5,7 @@
 #include <sstream>
 #include <vector>
 
-#include "io/channel_names.h"
+#include "io/layers/channel_names.h"
 #include "support/recorded.h"
 
 namespace polyrecon {
@@ -58,7 +58,7 @@ std::string described(const std::vector<Layer>& layers, const Line& line) {
 /// Every name that a renderer uses, files of each renderer, and names that look like one of these: what the program
 /// takes each layer for.
 TEST(KnownNames, AreClassifiedAsListed) {
-  const std::string path = POLYRECON_SOURCE_DIR "/tests/io/known_names.txt";
+  const std::string path = POLYRECON_SOURCE_DIR "/tests/io/renderers/known_names.txt";
   std::istringstream listed(test::text_of(path));
   const std::vector<Line> lines = read_lines(listed);
   ASSERT_GT(lines.size(), 500u);

@@ -1,4 +1,4 @@
-#include "io/plain_image_file.h"
+#include "io/files/plain_image_file.h"
 
 #include <OpenImageIO/imageio.h>
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-#include "io/sibling_files.h"
+#include "io/layers/sibling_files.h"
 
 #include <algorithm>
 #include <cstring>
@@ -7,7 +7,7 @@
 #include <system_error>
 #include <utility>
 
-#include "io/channel_names.h"
+#include "io/layers/channel_names.h"
 #include "io/renderers/known_names.h"
 
 namespace polyrecon {

@@ -1,4 +1,4 @@
-#include "io/decode_file.h"
+#include "io/files/decode_file.h"
 
 #include <OpenEXR/ImfMultiPartInputFile.h>
 #include <OpenEXR/ImfThreading.h>
@@ -6,7 +6,7 @@
 
 #include "core/first_line.h"
 #include "io/exr/bands.h"
-#include "io/exr/file.h"
+#include "io/files/file.h"
 #include "polyrecon/error.h"
 
 namespace polyrecon {

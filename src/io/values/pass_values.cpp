@@ -1,4 +1,4 @@
-#include "io/pass_values.h"
+#include "io/values/pass_values.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,8 +7,8 @@
 #include "core/parallel.h"
 #include "core/relmse.h"
 #include "core/repair.h"
-#include "io/cie_xyz.h"
 #include "io/renderers/known_names.h"
+#include "io/values/cie_xyz.h"
 
 namespace polyrecon {
 namespace {

@@ -26,7 +26,7 @@ Image read_channels(const FileInfo& file, int part, const std::vector<std::strin
 void read_planes(const FileInfo& file, int part, const std::vector<std::string>& channels,
                  const std::vector<Real*>& planes);
 
-/// Copies the first channels of a band (io/channel_reader.h) into as many planes of the caller.
+/// Copies the first channels of a band (io/files/channel_reader.h) into as many planes of the caller.
 void copy_band(const Band& band, const std::vector<Real*>& planes);
 
 }  // namespace polyrecon

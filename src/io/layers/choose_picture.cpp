@@ -1,4 +1,4 @@
-#include "io/choose_picture.h"
+#include "io/layers/choose_picture.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
