@@ -21,12 +21,23 @@ PHASES = [
         [
             ("prepare", "src/features"),
             ("noise_bound", "src/blend"),
+        ],
+        "HalfPair",
+    ),
+    (
+        "prepare",
+        [
             ("remove_outliers", "src/outliers"),
             ("floor_variance", "src/noise"),
         ],
         "HalfPair",
     ),
     ("join", [("join_neighbours", "src/temporal")], "HalfPair"),
+    (
+        "prior",
+        [("denoise_frame", "src/denoisers; --prior oidn"), ("make_validation", "src/pipeline; a prior in halves")],
+        "HalfPair, ReadyPrior",
+    ),
     (
         "fit",
         [("fit_and_blend", "src/regression, src/blend"), ("select", "src/blend"), ("add_coarse", "src/blend")],
@@ -36,7 +47,7 @@ PHASES = [
     (
         "finish",
         [
-            ("add_prior", "src/blend"),
+            ("use_prior", "src/pipeline, src/prior"),
             ("raise_undershoot", "src/blend; mean of both halves"),
             ("restore_energy", "src/outliers"),
         ],

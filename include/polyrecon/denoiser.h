@@ -30,9 +30,10 @@ class Denoiser {
   virtual std::string place() const { return {}; }
 
   /// Removes the noise of the features. A denoiser that takes noisy ones returns them as they are.
-  virtual DenoiserFeatures clean(DenoiserFeatures noisy, std::size_t max_bytes, Progress& progress) const = 0;
+  virtual DenoiserFeatures prefilter(DenoiserFeatures noisy, std::size_t max_bytes, Progress& progress) const = 0;
 
-  /// Denoises a picture of 3 channels, linear radiance, all values finite. features: clean, of the picture's size.
+  /// Denoises a picture of 3 channels, linear radiance, all values finite. features: prefiltered, of the picture's
+  /// size.
   virtual Image denoise(const Image& noisy, const DenoiserFeatures& features, std::size_t max_bytes,
                         Progress& progress) const = 0;
 };

@@ -54,8 +54,8 @@ struct TemporalParams {
 
 /// What another denoiser in this process is run on.
 struct DenoiserParams {
-  int mean_runs = 2;           ///< Times that the mean is denoised, next to the halves: 0..4.
-  bool clean_features = true;  ///< Whether it cleans the features itself; if not, it gets those of the fits.
+  int mean_runs = 2;               ///< Times that the mean is denoised, next to the halves: 0..4.
+  bool prefilter_features = true;  ///< Whether it prefilters the features itself; if not, it gets those of the fits.
 };
 
 /// The steps of the method that may run.

@@ -46,8 +46,9 @@ int mean_runs(bool independent_halves, const DenoiserParams& params) {
 
 Pass denoise_frame(const Denoiser& denoiser, DenoiserInput input, const DenoiserParams& params, std::size_t max_bytes,
                    Progress& progress) {
-  const DenoiserFeatures features =
-      input.clean_features ? std::move(input.features) : denoiser.clean(std::move(input.features), max_bytes, progress);
+  const DenoiserFeatures features = input.noise_free_features
+                                        ? std::move(input.features)
+                                        : denoiser.prefilter(std::move(input.features), max_bytes, progress);
   const auto denoised = [&](const Image& noisy, Turn turn) {
     const DenoiserFeatures f{turned(features.albedo, turn), turned(features.normal, turn)};
     return turned(denoiser.denoise(turned(noisy, turn), f, max_bytes, progress), turn);
@@ -71,9 +72,9 @@ Pass denoise_frame(const Denoiser& denoiser, DenoiserInput input, const Denoiser
   return out;
 }
 
-std::size_t denoiser_calls(bool independent_halves, bool clean_features, const DenoiserParams& params) {
+std::size_t denoiser_calls(bool independent_halves, bool noise_free_features, const DenoiserParams& params) {
   return static_cast<std::size_t>(mean_runs(independent_halves, params)) + (independent_halves ? 2 : 0) +
-         (clean_features ? 0 : 1);
+         (noise_free_features ? 0 : 1);
 }
 
 }  // namespace polyrecon

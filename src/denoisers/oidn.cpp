@@ -24,7 +24,7 @@ class Oidn final : public Denoiser {
   }
   std::string place() const override { return library_.path(); }
 
-  DenoiserFeatures clean(DenoiserFeatures noisy, std::size_t max_bytes, Progress& progress) const override {
+  DenoiserFeatures prefilter(DenoiserFeatures noisy, std::size_t max_bytes, Progress& progress) const override {
     const double share = noisy.albedo.empty() || noisy.normal.empty() ? 1 : 0.5;
     if (!noisy.albedo.empty()) noisy.albedo = run({nullptr, &noisy.albedo, nullptr}, share, max_bytes, progress);
     if (!noisy.normal.empty()) noisy.normal = run({nullptr, nullptr, &noisy.normal}, share, max_bytes, progress);

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "blend/noise_bound.h"
-#include "blend/prior.h"
 #include "core/candidate.h"
 #include "core/color_layout.h"
 #include "core/wrap.h"
@@ -11,9 +10,10 @@
 #include "maps/error_map_images.h"
 #include "noise/variance.h"
 #include "outliers/restore.h"
-#include "pipeline/prior.h"
 #include "pipeline/stage.h"
+#include "pipeline/use_prior.h"
 #include "polyrecon/error.h"
+#include "prior/prior_candidate.h"
 #include "regression/basis.h"
 #include "temporal/neighbour.h"
 
@@ -22,11 +22,11 @@ namespace {
 
 constexpr double allocator = 1.08;  // unused memory between images of unequal sizes; tests/bench/scaling.py: up to 6 %
 
-// A denoiser: what a library needs in addition to its images when it is told to take as little as it can, its code and
+// A denoiser: what a library needs in addition to its images under its least memory limit, its code and
 // weights included (Open Image Denoise 2.5: 350 MB for 1920 x 1080 and more), and the images of one run.
 constexpr std::size_t least_denoiser_bytes = std::size_t{384} << 20;
 constexpr std::size_t denoiser_features_channels = 3 + 3, denoised_channels = 3 * 3, denoiser_run_channels = 3 * 8;
-constexpr std::size_t judge_halves_channels = 2 * 3;  // our halves next to those of a prior
+constexpr std::size_t validation_halves_channels = 2 * 3;  // our halves next to those of a prior
 
 std::size_t count(int channels) { return static_cast<std::size_t>(channels); }
 
@@ -46,7 +46,7 @@ bool prior_has_halves(const FrameShape& shape) { return shape.prior_channels > 3
 /// Channels held to the end of a reconstruction: images of the frame and the noise variance of the beauty.
 std::size_t kept_channels(const FrameShape& shape) {
   constexpr std::size_t alpha = 1, sample_count = 1;
-  const std::size_t prior = count(shape.prior_channels) + (prior_has_halves(shape) ? judge_halves_channels : 0);
+  const std::size_t prior = count(shape.prior_channels) + (prior_has_halves(shape) ? validation_halves_channels : 0);
   return count(shape.color_channels) + alpha + sample_count + prior + noise_variance_channels +
          count(shape.other_channels);
 }
@@ -63,7 +63,7 @@ std::size_t finishing_channels(const FrameShape& shape) {
   const std::size_t colors = count(shape.color_channels);
   constexpr std::size_t order_map = 1;
   const std::size_t layers_without_prior = colors > 3 ? colors : 0;
-  const std::size_t prior = shape.prior_channels > 0 ? prior_work_channels + layers_without_prior : 0;
+  const std::size_t prior = shape.prior_channels > 0 ? prior_candidate_channels + layers_without_prior : 0;
   return pair_channels(shape) + candidate_channels(colors) + error_map_channels() + order_map +
          std::max(prior, restore_channels(colors));
 }
@@ -119,10 +119,10 @@ MemoryNeeds memory_needs(const FrameShape& passes, const Params& params) {
   const std::size_t preparing = count(shape.channels + shape.other_channels) + noise_variance_channels +
                                 pair_channels(shape) + feature_in_preparation_channels;
   const std::size_t denoising = kept_channels(shape) + pair_channels(shape) + denoiser_features_channels;
-  const std::size_t judging =
-      prior_has_halves(shape) ? pair_channels(shape) + judge_channels(count(model_features(shape))) : 0;
+  const std::size_t validating =
+      prior_has_halves(shape) ? pair_channels(shape) + validation_channels(count(model_features(shape))) : 0;
   const std::size_t holding =
-      kept_channels(shape) + std::max({fitting_channels(shape), judging, finishing_channels(shape)});
+      kept_channels(shape) + std::max({fitting_channels(shape), validating, finishing_channels(shape)});
   MemoryNeeds needs;
   needs.prepare = with_gaps(program_bytes + image_bytes(preparing));
   if (shape.runs_denoiser)

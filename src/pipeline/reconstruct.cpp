@@ -22,11 +22,11 @@
 #include "pipeline/noisy_halves.h"
 #include "pipeline/notes.h"
 #include "pipeline/phases.h"
-#include "pipeline/prior.h"
 #include "pipeline/result_images.h"
 #include "pipeline/savings.h"
 #include "pipeline/solve.h"
 #include "pipeline/stage.h"
+#include "pipeline/use_prior.h"
 #include "polyrecon/error.h"
 #include "temporal/join.h"
 #include "temporal/neighbour.h"
@@ -240,9 +240,9 @@ Result reconstruct(Frame& frame, const std::vector<TimedNeighbour>& neighbours, 
     });
   const std::size_t max_bytes = tile_memory(shape, params);
   ReadyPrior prior = ready_prior(std::move(frame.prior), denoiser != nullptr, halves.prepared);
-  if (prior.judged)
-    prior.judge = phases.run("judge of the prior", judge_units(pair),
-                             [&](Progress& p) { return judge_prior(prior.pass, pair, params, max_bytes, p); });
+  if (prior.validated)
+    prior.validation = phases.run("validation of the prior", validation_units(pair),
+                                  [&](Progress& p) { return make_validation(prior.pass, pair, params, max_bytes, p); });
 
   // Polynomials around every centre, of the order with the least estimated error, blended (equations 3 to 9).
   Candidate solved = fit_polynomials(frame, pair, params, max_bytes, phases, report);

@@ -17,8 +17,8 @@ constexpr int width = 8, height = 6;
 class Shifting final : public Denoiser {
  public:
   std::string name() const override { return "shifting"; }
-  DenoiserFeatures clean(DenoiserFeatures noisy, std::size_t, Progress&) const override {
-    ++cleaned;
+  DenoiserFeatures prefilter(DenoiserFeatures noisy, std::size_t, Progress&) const override {
+    ++prefiltered;
     return noisy;
   }
   Image denoise(const Image& noisy, const DenoiserFeatures& features, std::size_t, Progress&) const override {
@@ -27,7 +27,7 @@ class Shifting final : public Denoiser {
       return static_cast<double>(x > 0 ? noisy.at(x - 1, y, c) : 0) + static_cast<double>(features.albedo.at(x, y, c));
     });
   }
-  mutable int cleaned = 0, denoised = 0;
+  mutable int prefiltered = 0, denoised = 0;
 };
 
 DenoiserInput input(bool independent) {
@@ -49,7 +49,7 @@ TEST(DenoiseFrame, AHalfIsMadeOfItselfAndTurnedBack) {
   EXPECT_EQ(pass.half_b.at(4, 2, 1), 3 + 10 + 400);
   EXPECT_EQ(pass.half_a.at(3, 2, 0), pass.half_a.at(3, 2, 1)) << "B must not be seen in A";
   EXPECT_EQ(pass.mean.at(4, 2, 1), (5 + 3 + 10) / 2.0 + 400);
-  EXPECT_EQ(denoiser.cleaned, 1);
+  EXPECT_EQ(denoiser.prefiltered, 1);
   EXPECT_EQ(denoiser.denoised, 2);
 }
 
@@ -70,10 +70,10 @@ TEST(DenoiseFrame, HalvesOfOnePictureAreNotDenoised) {
 
 TEST(DenoiseFrame, CleanFeaturesStayAsTheyAre) {
   const Shifting denoiser;
-  DenoiserInput clean = input(true);
-  clean.clean_features = true;
-  denoise_frame(denoiser, clean, {1, false}, 0, silent_progress());
-  EXPECT_EQ(denoiser.cleaned, 0);
+  DenoiserInput noise_free = input(true);
+  noise_free.noise_free_features = true;
+  denoise_frame(denoiser, noise_free, {1, false}, 0, silent_progress());
+  EXPECT_EQ(denoiser.prefiltered, 0);
   EXPECT_EQ(denoiser_calls(true, true, {1, false}), 3);
   EXPECT_EQ(denoiser_calls(true, false, {1, true}), 4);
   EXPECT_EQ(denoiser_calls(false, false, {0, true}), 2);

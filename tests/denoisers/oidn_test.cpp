@@ -35,7 +35,7 @@ TEST(Oidn, RemovesTheNoiseOfASceneOfKnownTruth) {
   SKIP_WITHOUT_OIDN();
   const auto denoiser = make_oidn({});
   const test::Scene scene = test::make_scene(160, 120, 0.3, 5);
-  const DenoiserFeatures features = denoiser->clean(
+  const DenoiserFeatures features = denoiser->prefilter(
       {scene.frame.features[0].pass.mean, scene.frame.features[1].pass.mean}, plenty, silent_progress());
   const Image out = denoiser->denoise(scene.frame.beauty.mean, features, plenty, silent_progress());
   EXPECT_LT(mse(out, scene.truth), 0.05 * mse(scene.frame.beauty.mean, scene.truth));

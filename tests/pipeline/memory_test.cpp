@@ -3,11 +3,11 @@
 #include <gtest/gtest.h>
 
 #include "blend/levels.h"
-#include "blend/prior.h"
 #include "core/candidate.h"
 #include "pipeline/stage.h"
 #include "polyrecon/error.h"
 #include "polyrecon/reconstruct.h"
+#include "prior/prior_candidate.h"
 #include "support/allocations.h"
 #include "support/reconstruction.h"
 #include "support/scene.h"

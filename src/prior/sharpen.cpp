@@ -1,4 +1,4 @@
-#include "blend/sharpen.h"
+#include "prior/sharpen.h"
 
 #include <Eigen/Dense>
 #include <algorithm>

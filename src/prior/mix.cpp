@@ -1,4 +1,4 @@
-#include "blend/mix_prior.h"
+#include "prior/mix.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,7 +17,7 @@ constexpr int beauty_channels = 3;
 constexpr std::array<double, 3> share_sigmas{6, 12, 24};  // pixels
 constexpr double noise_sigma = 2;                         // pixels
 constexpr double kept_noise_sigma = 6;                    // pixels
-constexpr double unjudged = 0.25;
+constexpr double share_without_validation = 0.25;
 constexpr double most_factor = 4, least_magnitude = 1e-12;
 constexpr double mean_noise_part = 0.1, least_noise = 0.003;
 
@@ -85,7 +85,7 @@ Image difference(const Image& a, const Image& b) {
   return out;
 }
 
-/// k of unjudged_share at a pixel; the image continues with the values of its border.
+/// k of unvalidated_share at a pixel; the image continues with the values of its border.
 double corner_of_spectrum(const Image& image, int x, int y, int c) {
   constexpr std::array<double, 4> taps{1, -3, 3, -1};
   double sum = 0;
@@ -99,7 +99,7 @@ double corner_of_spectrum(const Image& image, int x, int y, int c) {
 
 }  // namespace
 
-Image reconstruction_share(const HalfPair& pair, const HonestHalves& halves) {
+Image reconstruction_share(const HalfPair& pair, const ValidationHalves& halves) {
   Image terms(pair.width(), pair.height(), 2);
   for (std::size_t h = 0; h < 2; ++h)
     add_terms(pair.color[1 - h], halves.prior[h], halves.ours[h], pair.epsilon, pair.sampled, terms);
@@ -125,7 +125,7 @@ Image reconstruction_share(const HalfPair& pair, const HonestHalves& halves) {
   return share;
 }
 
-Image unjudged_share(const HalfPair& pair, const Image& prior, const Image& reconstruction) {
+Image unvalidated_share(const HalfPair& pair, const Image& prior, const Image& reconstruction) {
   const Image noisy = mean_of_halves(pair.color, beauty_channels);
   const Image s = term_weights(noisy, prior, pair.epsilon, pair.sampled);
   const Image taken = difference(noisy, prior), kept = difference(reconstruction, prior);
@@ -144,7 +144,7 @@ Image unjudged_share(const HalfPair& pair, const Image& prior, const Image& reco
     for (int x = 0; x < share.width(); ++x) {
       const double noise = terms.at(x, y, 1);
       const double b = noise > 0 ? std::clamp(static_cast<double>(terms.at(x, y, 0)) / noise, 0.0, 1.0) : 0;
-      share.at(x, y, 0) = static_cast<Real>(unjudged * (1 - b));
+      share.at(x, y, 0) = static_cast<Real>(share_without_validation * (1 - b));
     }
   });
   return share;

@@ -9,10 +9,11 @@
 
 namespace polyrecon {
 
-/// What judges a prior: two pictures of each half of the samples that have seen nothing of the other half. 3 channels.
-struct HonestHalves {
+/// Two pictures of each half of the samples, which the other half can validate because they are made without it. 3
+/// channels.
+struct ValidationHalves {
   std::array<Image, 2> prior;  ///< The half, denoised by the other denoiser.
-  std::array<Image, 2> ours;   ///< The half, reconstructed by itself.
+  std::array<Image, 2> ours;   ///< The half, reconstructed alone.
 };
 
 /// Share of the reconstruction in its mix with a prior, 1 channel, 0..1.
@@ -21,21 +22,21 @@ struct HonestHalves {
 /// least squares: the noise of y_o is independent of P_h and D_h, so that
 ///     w = sum (y_o - P_h) (D_h - P_h) s / sum (D_h - P_h)^2 s
 /// estimates the w of least squared error against the true image. Sums are over both halves, the colours, and Gaussians
-/// of 6, 12 and 24 pixels, whose three w are averaged. Each is drawn towards the w of the whole frame where (D - P)^2
-/// is less than on average. s = 1 / (P_h^2 + epsilon) / (v + mean(v) / 10 + 0.003), with v the smoothed relative (y_o -
-/// P_h)^2, lets noisy pixels weigh less. pair: the samples, the first 3 channels of color.
-Image reconstruction_share(const HalfPair& pair, const HonestHalves& halves);
+/// of 6, 12 and 24 pixels, whose three w are averaged. Each is regularised towards the w of the whole frame where (D -
+/// P)^2 is less than on average. s = 1 / (P_h^2 + epsilon) / (v + mean(v) / 10 + 0.003), with v the smoothed relative
+/// (y_o - P_h)^2, lets noisy pixels weigh less. pair: the samples, the first 3 channels of color.
+Image reconstruction_share(const HalfPair& pair, const ValidationHalves& halves);
 
 /// Channels that reconstruction_share holds in addition to its arguments.
 constexpr std::size_t share_work_channels = 2 + 3 + 2 * 3 + 1;
 
-/// The same where nothing judges the prior, as the halves were split from one picture and their noise may have been
-/// told wrong: a quarter, less what the reconstruction f has kept of the noise y - P,
+/// The same where nothing validates the prior, since the halves were split from one picture and their noise may have
+/// been estimated wrong: a quarter, less what the reconstruction f has kept of the noise y - P,
 ///     w = (1 - b) / 4,   b = sum k(y - P) k(f - P) s / sum k(y - P)^2 s, within 0..1.
 /// k is the product of [1 -3 3 -1] along x and along y, which passes the corner of the spectrum only: white noise is
 /// there, and hardly anything of the picture. Sums are Gaussians of 6 pixels. y: the mean of the pair.
 /// prior, reconstruction: 3 channels.
-Image unjudged_share(const HalfPair& pair, const Image& prior, const Image& reconstruction);
+Image unvalidated_share(const HalfPair& pair, const Image& prior, const Image& reconstruction);
 
 /// prior + share (reconstruction - prior) for the beauty of both halves; the rest stays as it is.
 Candidate mix_with_prior(Candidate reconstruction, const Image& prior, const Image& share);

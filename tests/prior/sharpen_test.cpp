@@ -1,4 +1,4 @@
-#include "blend/sharpen.h"
+#include "prior/sharpen.h"
 
 #include <gtest/gtest.h>
 

@@ -3,6 +3,7 @@
 #include <cstddef>
 
 #include "blend/select.h"
+#include "core/color_layout.h"
 #include "core/half_pair.h"
 #include "polyrecon/frame.h"
 
@@ -14,23 +15,17 @@ struct CorrectedPrior {
   Image sharpening;  ///< The part of value that sharpen_to added.
 };
 
-/// Channels that the corrections by a prior hold, but for the tiles of select_correction: the corrected prior, and the
-/// beauty of both halves before and after.
-constexpr std::size_t prior_work_channels = 2 * 3 + 2 * 3 + 2 * 3;
+/// Channels that add_prior holds in addition to the tiles of select_correction: the corrected prior, and the beauty of
+/// both halves before and after.
+constexpr std::size_t prior_candidate_channels = 3 * 2 * std::size_t{ColorLayout::primaries};
 
 /// Prepares a prior for add_prior. It is the mean of the pass's halves where it has them (which averages their noise),
 /// else its mean.
-/// - Each channel is scaled to the sum of the noisy halves if that takes a factor of 1/2 to 2. Noise hardly changes a
-///   sum over the frame, so the factor is a difference in exposure.
-/// - Pixels that are not usable get the value of the reconstruction, as do all pixels of a prior without a usable one.
-/// - A blurred prior is sharpened (blend/sharpen.h).
+/// - It is brought to the exposure of the pair (prior/exposure.h), with the reconstruction as fallback.
+/// - A blurred prior is sharpened (prior/sharpen.h).
 /// prior: not empty, of the pair's size.
 /// reconstruction: the mean of the halves of the result so far, 3 channels.
 CorrectedPrior correct_prior(Pass prior, const HalfPair& pair, const Image& reconstruction);
-
-/// Brings a picture of another denoiser to the exposure of the pair, as correct_prior does. Pixels that are not usable
-/// get the value of `fallback`. 3 channels each.
-Image in_exposure(Image prior, const HalfPair& pair, const Image& fallback);
 
 /// Part of the input's noise that the prior holds: 0 for a prior without it, 1 for the input itself. Computed as the
 /// slope of the prior's difference from the reconstruction on the input's difference from it, relative to the brightest

@@ -1,4 +1,4 @@
-#include "pipeline/prior.h"
+#include "pipeline/use_prior.h"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,6 @@
 #include <string>
 #include <utility>
 
-#include "blend/prior.h"
 #include "core/color_layout.h"
 #include "core/halves.h"
 #include "core/parallel.h"
@@ -15,6 +14,8 @@
 #include "maps/error_map.h"
 #include "noise/fission.h"
 #include "pipeline/solve.h"
+#include "prior/exposure.h"
+#include "prior/prior_candidate.h"
 
 namespace polyrecon {
 namespace {
@@ -25,7 +26,7 @@ constexpr double most_noise_in_prior = 0.9;  // above it the prior is the input,
 // The mean of a prior against that of its halves in the picture that is mixed in. Both are of the same samples; the
 // mean has seen more of them at once.
 constexpr Real mean_share = Real(2) / 3;
-constexpr std::uint64_t judge_stream = std::uint64_t{1} << 40;  // apart from those of frames and their neighbours
+constexpr std::uint64_t validation_stream = std::uint64_t{1} << 40;  // apart from those of frames and their neighbours
 
 Image finite_mean(const Frame& frame, Role role) {
   for (const Feature& feature : frame.features)
@@ -67,7 +68,7 @@ Image fitted_feature(const std::vector<FeatureUse>& uses, Role role, const HalfP
 /// A half as a pair of its own.
 HalfPair half_alone(const HalfPair& pair, std::size_t h) {
   HalfPair out;
-  out.color = split_halves(beauty_of(pair.color[h]), pair.variance, judge_stream + h);
+  out.color = split_halves(beauty_of(pair.color[h]), pair.variance, validation_stream + h);
   out.variance = scaled(pair.variance, Real(2));
   out.features = {pair.features[h], pair.features[h]};
   out.epsilon = pair.epsilon;
@@ -75,21 +76,22 @@ HalfPair half_alone(const HalfPair& pair, std::size_t h) {
   return out;
 }
 
-Params judge_params(const Params& params) {
-  Params judge = params_for(Quality::Draft);
-  judge.stages = 2;
-  judge.patch = params.patch;
-  return judge;
+Params validation_params(const Params& params) {
+  Params validation = params_for(Quality::Draft);
+  validation.stages = 2;
+  validation.patch = params.patch;
+  return validation;
 }
 
 /// The picture that is mixed in.
-Image picture_of(const Pass& prior, const HonestHalves& judge, const HalfPair& pair, const Image& reconstruction) {
+Image picture_of(const Pass& prior, const ValidationHalves& validation, const HalfPair& pair,
+                 const Image& reconstruction) {
   Image mean = in_exposure(prior.mean, pair, reconstruction);
-  if (judge.prior[0].empty()) return mean;
+  if (validation.prior[0].empty()) return mean;
   for_rows(mean.height(), [&](int y) {
     for (int c = 0; c < rgb; ++c)
       for (int x = 0; x < mean.width(); ++x) {
-        const Real halves = Real(0.5) * (judge.prior[0].at(x, y, c) + judge.prior[1].at(x, y, c));
+        const Real halves = Real(0.5) * (validation.prior[0].at(x, y, c) + validation.prior[1].at(x, y, c));
         mean.at(x, y, c) = halves + mean_share * (mean.at(x, y, c) - halves);
       }
   });
@@ -98,12 +100,12 @@ Image picture_of(const Pass& prior, const HonestHalves& judge, const HalfPair& p
 
 Candidate mix(const ReadyPrior& prior, const HalfPair& pair, const Image& reconstruction, Candidate solved,
               ErrorMap& error, Decision& decision) {
-  const Image picture = picture_of(prior.pass, prior.judge, pair, reconstruction);
+  const Image picture = picture_of(prior.pass, prior.validation, pair, reconstruction);
   const Image share =
-      prior.judged ? reconstruction_share(pair, prior.judge) : unjudged_share(pair, picture, reconstruction);
+      prior.validated ? reconstruction_share(pair, prior.validation) : unvalidated_share(pair, picture, reconstruction);
   lower_error(reconstruction, picture, share, pair.sampled, error);
   decision.reason += fmt::format(", {:.0f} % of the result{}", 100 * (1 - mean_of(share)),
-                                 prior.judged ? "" : "; one render has no halves to judge it by");
+                                 prior.validated ? "" : "; a single render has no halves to validate it");
   return mix_with_prior(std::move(solved), picture, share);
 }
 
@@ -119,47 +121,47 @@ Pass make_prior(const Denoiser& denoiser, DenoiserFeatures features, const std::
   DenoiserInput input{{beauty_of(pair.color[0]), beauty_of(pair.color[1])},
                       prepared.independent_halves,
                       std::move(features),
-                      !params.clean_features};
-  if (input.clean_features)
+                      !params.prefilter_features};
+  if (input.noise_free_features)
     input.features = {fitted_feature(uses, Role::Albedo, pair, std::move(input.features.albedo)),
                       fitted_feature(uses, Role::Normal, pair, std::move(input.features.normal))};
   return denoise_frame(denoiser, std::move(input), params, max_bytes, progress);
 }
 
 std::size_t make_prior_units(const Prepared& prepared, const DenoiserParams& params) {
-  return Denoiser::units * denoiser_calls(prepared.independent_halves, !params.clean_features, params);
+  return Denoiser::units * denoiser_calls(prepared.independent_halves, !params.prefilter_features, params);
 }
 
 ReadyPrior ready_prior(Pass prior, bool made_here, const Prepared& prepared) {
   ReadyPrior out{std::move(prior), made_here, false, {}};
-  out.judged = out.pass.has_halves() && prepared.independent_halves;
-  // The mean of a file may be any picture; what its halves judge is their own.
-  if (out.judged && !made_here) out.pass.mean = mean_of_halves({out.pass.half_a, out.pass.half_b}, rgb);
+  out.validated = out.pass.has_halves() && prepared.independent_halves;
+  // The mean of a file may be any picture; only the mean of its halves is validated.
+  if (out.validated && !made_here) out.pass.mean = mean_of_halves({out.pass.half_a, out.pass.half_b}, rgb);
   return out;
 }
 
-HonestHalves judge_prior(Pass& prior, const HalfPair& pair, const Params& params, std::size_t max_bytes,
-                         Progress& progress) {
-  HonestHalves out;
+ValidationHalves make_validation(Pass& prior, const HalfPair& pair, const Params& params, std::size_t max_bytes,
+                                 Progress& progress) {
+  ValidationHalves out;
   for (std::size_t h = 0; h < 2; ++h) {
     FitCounters not_reported;
-    out.ours[h] =
-        mean_of_halves(solve(half_alone(pair, h), judge_params(params), max_bytes, not_reported, progress).half, rgb);
+    out.ours[h] = mean_of_halves(
+        solve(half_alone(pair, h), validation_params(params), max_bytes, not_reported, progress).half, rgb);
     out.prior[h] = in_exposure(std::move(h == 0 ? prior.half_a : prior.half_b), pair, out.ours[h]);
   }
   return out;
 }
 
-std::size_t judge_units(const HalfPair& pair) { return 2 * fit_units(pair, judge_params(Params())); }
+std::size_t validation_units(const HalfPair& pair) { return 2 * fit_units(pair, validation_params(Params())); }
 
-std::size_t judge_channels(std::size_t feature_channels) {
+std::size_t validation_channels(std::size_t feature_channels) {
   return (half_pair_channels(rgb, feature_channels) + 2 * candidate_channels(rgb)) * 4 / 3;
 }
 
 Candidate use_prior(ReadyPrior prior, const HalfPair& pair, const Image& reconstruction, const SelectParams& params,
                     std::size_t max_bytes, Candidate solved, ErrorMap& error, std::vector<Decision>& decisions) {
   Decision decision{"prior", true, "prior '" + prior.pass.name + "'"};
-  if (prior.made_here || prior.judged) {
+  if (prior.made_here || prior.validated) {
     solved = mix(prior, pair, reconstruction, std::move(solved), error, decision);
   } else {
     const CorrectedPrior corrected = correct_prior(std::move(prior.pass), pair, reconstruction);

@@ -1,4 +1,4 @@
-#include "blend/prior.h"
+#include "prior/prior_candidate.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "blend/mix_prior.h"
+#include "prior/mix.h"
 
 #include <gtest/gtest.h>
 
@@ -40,7 +40,8 @@ TEST(ReconstructionShare, IsThatOfLeastError) {
   // Of two pictures with independent errors, the best mix gives each the share of the other's variance.
   for (const double ours : {0.05, 0.1, 0.2}) {
     constexpr double prior = 0.1;
-    const HonestHalves halves{{with_error(prior, 1), with_error(prior, 2)}, {with_error(ours, 3), with_error(ours, 4)}};
+    const ValidationHalves halves{{with_error(prior, 1), with_error(prior, 2)},
+                                  {with_error(ours, 3), with_error(ours, 4)}};
     const double best = prior * prior / (prior * prior + ours * ours);
     EXPECT_NEAR(mean(reconstruction_share(noisy_pair(5), halves)), best, 0.05) << ours;
   }
@@ -48,12 +49,12 @@ TEST(ReconstructionShare, IsThatOfLeastError) {
 
 TEST(ReconstructionShare, ANoisyPriorThatCopiesItsHalfIsLeftOut) {
   const HalfPair pair = noisy_pair(6);
-  const HonestHalves halves{pair.color, {with_error(0.05, 1), with_error(0.05, 2)}};
+  const ValidationHalves halves{pair.color, {with_error(0.05, 1), with_error(0.05, 2)}};
   EXPECT_GT(mean(reconstruction_share(pair, halves)), 0.93);
 }
 
 TEST(ReconstructionShare, FollowsThePlace) {
-  HonestHalves halves{{with_error(0.02, 1), with_error(0.02, 2)}, {with_error(0.02, 3), with_error(0.02, 4)}};
+  ValidationHalves halves{{with_error(0.02, 1), with_error(0.02, 2)}, {with_error(0.02, 3), with_error(0.02, 4)}};
   for (std::size_t h = 0; h < 2; ++h)
     for (int c = 0; c < 3; ++c)
       for (int y = 0; y < size; ++y)
@@ -70,7 +71,7 @@ TEST(ReconstructionShare, PicturesThatAreEqualGiveOurs) {
   EXPECT_EQ(share.at(3, 3, 0), 1);
 }
 
-TEST(UnjudgedShare, IsAQuarterLessTheNoiseThatWasKept) {
+TEST(UnvalidatedShare, IsAQuarterLessTheNoiseThatWasKept) {
   const HalfPair pair = noisy_pair(9);
   const Image noisy = test::mean_of(pair.color[0], pair.color[1]);
   const Image prior = image_of(size, size, 3, [](int x, int y, int) { return truth(x, y); });
@@ -78,7 +79,7 @@ TEST(UnjudgedShare, IsAQuarterLessTheNoiseThatWasKept) {
     const Image ours = image_of(size, size, 3, [&](int x, int y, int c) {
       return truth(x, y) + kept * (static_cast<double>(noisy.at(x, y, c)) - truth(x, y)) + 0.05;
     });
-    EXPECT_NEAR(mean(unjudged_share(pair, prior, ours)), 0.25 * (1 - kept), 0.002) << kept;
+    EXPECT_NEAR(mean(unvalidated_share(pair, prior, ours)), 0.25 * (1 - kept), 0.002) << kept;
   }
 }
 

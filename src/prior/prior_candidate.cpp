@@ -1,4 +1,4 @@
-#include "blend/prior.h"
+#include "prior/prior_candidate.h"
 
 #include <algorithm>
 #include <array>
@@ -7,17 +7,16 @@
 #include <vector>
 
 #include "blend/select.h"
-#include "blend/sharpen.h"
 #include "core/gaussian.h"
 #include "core/halves.h"
 #include "core/parallel.h"
 #include "core/repair.h"
+#include "prior/exposure.h"
+#include "prior/sharpen.h"
 
 namespace polyrecon {
 namespace {
 
-// Largest ratio between the exposures of a frame and its prior; beyond it the prior is a different image.
-constexpr double most_gain = 2;
 // D / E up to which a prior is fully trusted. E is known to a factor of 2.5 (TakesTheNoiseOutOfASceneOfKnownTruth in
 // tests/pipeline/reconstruct_test.cpp).
 constexpr double plausible = 2;
@@ -27,19 +26,6 @@ constexpr std::array<double, 6> shares{0.5, 0.6, 0.7, 0.8, 0.9, 1};
 constexpr double doubt = 2;            // error of the sharpening, relative to what it changed
 constexpr double least_error = 1e-12;  // relative; keeps D / E finite
 constexpr int beauty_channels = 3;
-
-/// Factor that scales a channel of the prior to the pair's sum over the pixels where the prior is usable; 1 if the
-/// factor would be outside of 1 / most_gain to most_gain.
-double exposure_gain(const Image& prior, const HalfPair& pair, int c) {
-  double noisy = 0, denoised = 0;
-  for (std::size_t i = 0; i < prior.pixels(); ++i) {
-    if (!usable(prior.plane(c)[i])) continue;
-    noisy += 0.5 * (static_cast<double>(pair.color[0].plane(c)[i]) + static_cast<double>(pair.color[1].plane(c)[i]));
-    denoised += static_cast<double>(prior.plane(c)[i]);
-  }
-  const double gain = noisy / denoised;
-  return gain >= 1 / most_gain && gain <= most_gain ? gain : 1;
-}
 
 /// D / E of the candidate with this share of the prior.
 Image contradiction(const Image& reconstruction, const CorrectedPrior& prior, double share, const Image& mse,
@@ -88,17 +74,6 @@ Image toward(Image f, const Image& prior, Real share, const Image& trust) {
 }
 
 }  // namespace
-
-Image in_exposure(Image prior, const HalfPair& pair, const Image& fallback) {
-  for (int c = 0; c < beauty_channels; ++c) {
-    const auto gain = static_cast<Real>(exposure_gain(prior, pair, c));
-    for (std::size_t i = 0; i < prior.pixels(); ++i) {
-      const Real value = prior.plane(c)[i];
-      prior.plane(c)[i] = usable(value) ? gain * value : fallback.plane(c)[i];
-    }
-  }
-  return prior;
-}
 
 CorrectedPrior correct_prior(Pass prior, const HalfPair& pair, const Image& reconstruction) {
   Image out = prior.has_halves() ? mean_of_halves({std::move(prior.half_a), std::move(prior.half_b)}, beauty_channels)
