@@ -1,6 +1,7 @@
 // The parameters of a reconstruction, with their defaults and presets. Distances are pixels unless stated otherwise.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <limits>
 #include <vector>
@@ -68,6 +69,15 @@ struct Steps {
 
 /// Presets: Draft is the fastest, Best the slowest.
 enum class Quality { Draft, Standard, Best };
+
+struct NamedQuality {
+  Quality quality;
+  const char* name;
+};
+
+/// All qualities by name, from fast to accurate.
+inline constexpr std::array<NamedQuality, 3> qualities{
+    {{Quality::Draft, "draft"}, {Quality::Standard, "standard"}, {Quality::Best, "best"}}};
 
 /// Parts of the method that can be switched off to measure their effect (docs/results/accuracy.md).
 struct Parts {

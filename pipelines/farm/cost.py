@@ -10,6 +10,7 @@ if not __package__:  # run as a script from a checkout
     sys.path[0] = str(pathlib.Path(__file__).resolve().parents[2])
     __package__ = "pipelines.farm"
 
+from ..common.denoise_defaults import QUALITIES
 from ..common.errors import DriverError, ExitCode, run_main
 from .requirements import Frame, Model, Node, threads_for
 from .submission import positive, size
@@ -19,7 +20,6 @@ examples:
   polyrecon-farm cost                                                      # for 1000 frames of 4K
   polyrecon-farm cost --size 1920x1080 --frames 240 --node-cpus 32 --node-memory 128G --price 0.03
 """
-QUALITIES = ("draft", "standard", "best")
 
 
 def row(*cells):

@@ -8,12 +8,12 @@ import math
 import pathlib
 from dataclasses import dataclass
 
+from ..common.denoise_defaults import DEFAULT_FRAME_RADIUS
 from ..common.errors import DriverError, ExitCode
 
 MODEL_FILE = pathlib.Path(__file__).with_name("model.json")
 MEMORY_MARGIN = 1.15  # requested memory over that of the model
 MIB = 1 << 20
-DEFAULT_RADIUS = 2  # default of `polyrecon denoise --frame-radius`
 
 
 @dataclass(frozen=True)
@@ -61,7 +61,7 @@ class Model:
                 ExitCode.BAD_INPUT, f"{path}: is not a file that farm_model.py writes ({error})"
             ) from error
 
-    def peak_bytes(self, frame, quality, aovs=0, radius=DEFAULT_RADIUS):
+    def peak_bytes(self, frame, quality, aovs=0, radius=DEFAULT_FRAME_RADIUS):
         """Largest resident size of `polyrecon denoise` on a sequence, with the next frame, and without tiles."""
         m = self.memory
         per_pixel = m["per_pixel"][quality] + m["per_fit_channel"] * (frame.fit_channels + 3 * aovs)
@@ -69,17 +69,17 @@ class Model:
         per_pixel += held * (self.neighbour["bytes"] + self.neighbour["bytes_per_aov"] * aovs)
         return m["base"] + frame.pixels * (per_pixel + m["per_channel"] * frame.channels)
 
-    def request_bytes(self, frame, quality, aovs=0, radius=DEFAULT_RADIUS):
+    def request_bytes(self, frame, quality, aovs=0, radius=DEFAULT_FRAME_RADIUS):
         """The memory to request from an engine: peak_bytes with a margin, in whole MiB."""
         return math.ceil(MEMORY_MARGIN * self.peak_bytes(frame, quality, aovs, radius) / MIB) * MIB
 
-    def cpu_seconds(self, frame, quality, radius=DEFAULT_RADIUS):
+    def cpu_seconds(self, frame, quality, radius=DEFAULT_FRAME_RADIUS):
         """Processor seconds of one frame, of all threads, on a machine like the measured one."""
         s = self.seconds
         per_pixel = s["per_pixel"][quality] + s["per_channel"] * frame.channels + self.neighbour["seconds"] * 2 * radius
         return s["start"] + frame.pixels * per_pixel
 
-    def wall_seconds(self, frame, quality, threads, radius=DEFAULT_RADIUS):
+    def wall_seconds(self, frame, quality, threads, radius=DEFAULT_FRAME_RADIUS):
         """Seconds of one frame by Amdahl's law with the measured parallel part."""
         return self.cpu_seconds(frame, quality, radius) * (1 - self.parallel_part + self.parallel_part / threads)
 

@@ -5,9 +5,10 @@ import json
 import os
 import re
 
+from ..common.denoise_defaults import DEFAULT_FRAME_RADIUS, DEFAULT_QUALITY
 from ..common.errors import DriverError, ExitCode
 from ..common.frame_names import frame_path, is_pattern
-from .requirements import DEFAULT_RADIUS, MEMORY_MARGIN, Model, frame_of
+from .requirements import MEMORY_MARGIN, Model, frame_of
 
 
 def size(text):
@@ -76,11 +77,11 @@ def value_of(option, words, default):
 
 
 def quality_of(words):
-    return value_of("--quality", words, "standard")
+    return value_of("--quality", words, DEFAULT_QUALITY)
 
 
 def radius_of(words):
-    radius = value_of("--frame-radius", words, str(DEFAULT_RADIUS))
+    radius = value_of("--frame-radius", words, str(DEFAULT_FRAME_RADIUS))
     if not radius.isdecimal():
         raise DriverError(ExitCode.USAGE, f"--frame-radius {radius}: must be a whole number")
     return int(radius)

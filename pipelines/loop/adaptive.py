@@ -12,9 +12,9 @@ import pathlib
 import time
 from typing import Optional
 
+from ..common.denoise_defaults import DEFAULT_QUALITY
 from ..common.digests import digest
 from .budget import (
-    RESULT_OVER_DECISION,
     SAMPLES_SPENT,
     SECONDS_SPENT,
     Budget,
@@ -38,7 +38,6 @@ from .reconstruction import Reconstruction
 from .renderer import Audit
 from .rendering import PartRendering
 
-QUALITIES = tuple(RESULT_OVER_DECISION)
 MIN_UNIFORM_COUNT = 1  # Samples of each half: a uniform round of fewer does not exist.
 NO_DECISION = ", too few of them to judge where samples should go"
 NO_ERROR_LEFT = "no error is left that more samples could lower"
@@ -52,7 +51,7 @@ class Settings:
     frame: Optional[int] = None  # None: the scene's current frame
     first_pass: int = 8  # Samples per pixel
     max_rounds: int = 8
-    quality: str = "standard"  # Of the last reconstruction: one of QUALITIES
+    quality: str = DEFAULT_QUALITY  # Of the last reconstruction
     resume: bool = False
     identity: dict = dataclasses.field(default_factory=dict)  # Of the scene: see journal.State
     scene: Optional[str] = None  # Path of the input that is compared where the renderer lists none

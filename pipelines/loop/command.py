@@ -2,6 +2,7 @@
 
 from ..common.arguments import positive
 from ..common.command import each_frame
+from ..common.denoise_defaults import DEFAULT_QUALITY, QUALITIES
 from ..common.terminal import print_lines
 from . import adaptive, report
 from .budget import Budget
@@ -24,9 +25,9 @@ def add_loop_arguments(parser, first_pass, first_pass_help):
     )
     parser.add_argument(
         "--quality",
-        choices=adaptive.QUALITIES,
-        default="standard",
-        help="quality of the last reconstruction (standard)",
+        choices=QUALITIES,
+        default=DEFAULT_QUALITY,
+        help=f"quality of the last reconstruction ({DEFAULT_QUALITY})",
     )
     parser.add_argument("--resume", action="store_true", help="continue with the passes of an earlier run")
 

@@ -9,6 +9,7 @@
 #include "html/page.h"
 #include "html/plot.h"
 #include "io/pictures/preview.h"
+#include "polyrecon/params.h"
 #include "presets/pareto.h"
 #include "sweep/pictures.h"
 
@@ -128,7 +129,8 @@ std::string samples_section(const Sweep& sweep) {
   for (const SweptInput* input : inputs)
     plot.series[0].points.push_back({input->samples, input->noisy.relative_mse, "", input->name});
   std::string rows;
-  for (const char* quality : {"draft", "standard", "best"}) {
+  for (const NamedQuality& named : qualities) {
+    const char* const quality = named.name;
     PlotSeries series{quality, plot_color(plot.series.size() - 1), Marker::Square, true, {}};
     CostPoint before;
     for (const SweptInput* input : inputs) {

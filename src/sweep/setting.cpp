@@ -121,8 +121,8 @@ const std::vector<std::string>& setting_groups() {
 
 std::vector<Setting> settings_for(const Frame& frame, const std::vector<std::string>& groups) {
   Settings list(groups);
-  list.add({"draft", "quality", params_for(Quality::Draft)});
-  list.add({"best", "quality", params_for(Quality::Best)});
+  for (const NamedQuality& named : qualities)
+    if (named.quality != Quality::Standard) list.add({named.name, "quality", params_for(named.quality)});
   add_numbers(frame, list);
   add_bandwidths(list);
   add_inputs(frame, list);

@@ -28,8 +28,8 @@ from accuracy import table, write_between  # noqa: E402
 from false_edges import false_edges  # noqa: E402
 
 from pipelines.common import exr  # noqa: E402
+from pipelines.common.denoise_defaults import QUALITIES  # noqa: E402
 
-QUALITIES = ("draft", "standard", "best")
 FIGURES = ("relMSE", "trimmed", "FLIP", "energy", "false edges")
 MEASURED = re.compile(r" (A|B|Variance)(\.\w+)?$")  # channels that a single render does not have
 

@@ -20,6 +20,10 @@ import numpy as np
 import OpenImageIO as oiio
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT))
+
+from pipelines.common.denoise_defaults import QUALITIES  # noqa: E402
+
 OUT_OF_MEMORY = 33  # exit code: the limit is too low for the frame, said before any work
 BAND = 64  # rows written at a time: the largest frame need not fit into memory here
 
@@ -31,7 +35,7 @@ examples:
   tests/bench/scaling.py --sizes 5120x3200 --quality draft --max-memory 4G 6G 12G
                                                             # memory is bounded, the picture stays the same to the bit
   tests/bench/scaling.py --sizes 1920x1080 --quality draft --max-memory least 4G --prior
-                                                            # the same with a denoised layer to be judged
+                                                            # the same with a prior
 """
 
 
@@ -57,7 +61,7 @@ def arguments():
         default=[size(s) for s in ("640x400", "1280x800", "1920x1080", "2560x1600", "5120x3200")],
         help="frames to time (default: 0.25, 1, 2, 4 and 16 Mpx)",
     )
-    parser.add_argument("--quality", nargs="+", choices=["draft", "standard", "best"], default=["draft", "standard"])
+    parser.add_argument("--quality", nargs="+", choices=QUALITIES, default=["draft", "standard"])
     parser.add_argument(
         "--max-memory",
         nargs="+",

@@ -8,6 +8,8 @@ import subprocess
 import tempfile
 import unittest
 
+from pipelines.common import denoise_defaults
+
 from . import tree
 
 PAGE = pathlib.Path("docs/reference/command_line.md")
@@ -25,6 +27,15 @@ class CommandLine(unittest.TestCase):
         )
         if change:
             self.fail(f"{PAGE} is stale. Update it with `{UPDATE}` and commit it. What differs:\n{change}")
+
+    def test_drivers_know_qualities_and_the_frame_radius(self):
+        page = tree.read(PAGE)
+        self.assertEqual(
+            sorted(denoise_defaults.QUALITIES), re.search(r"\| `--quality` `([^`]+)`", page)[1].split("\\|")
+        )
+        self.assertIn(denoise_defaults.DEFAULT_QUALITY, denoise_defaults.QUALITIES)
+        radius = re.search(r"\| `--frame-radius` .*; default: (\d+)", page)[1]
+        self.assertEqual(denoise_defaults.DEFAULT_FRAME_RADIUS, int(radius))
 
     def test_the_list_of_all_steps_but_fireflies(self):
         steps = re.search(r"`--steps`.* or a list of ([\w,-]+)", tree.read(PAGE))[1].split(",")

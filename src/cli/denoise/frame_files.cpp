@@ -17,8 +17,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int default_radius = 2;  // of a sequence, in frames
-
 /// The path of an output of a list that goes into a folder: the name of the input.
 std::string path_in_folder(const OutputOption& option, const std::string& folder, const std::string& input) {
   std::error_code ignored;
@@ -143,7 +141,7 @@ FrameList list_frames(const DenoiseOptions& o) {
   const auto pattern = o.inputs.size() == 1 ? FramePattern::parse(o.inputs.front()) : std::nullopt;
   FrameList list;
   list.is_sequence = pattern || o.inputs.size() > 1;
-  list.radius = o.frame_radius.value_or(list.is_sequence ? default_radius : 0);
+  list.radius = o.frame_radius.value_or(list.is_sequence ? default_frame_radius : 0);
   if (pattern)
     list.frames = frames_of_pattern(o, *pattern, list.radius);
   else if (list.is_sequence)

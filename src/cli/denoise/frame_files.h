@@ -9,6 +9,9 @@ namespace polyrecon {
 
 struct DenoiseOptions;
 
+/// --frame-radius of a sequence.
+constexpr int default_frame_radius = 2;
+
 /// The files that `denoise` writes for a frame; a path is empty where the file was not requested.
 struct OutputPaths {
   std::string picture, error_map, order_map, sample_map, report;

@@ -99,8 +99,7 @@ Params with_options(Params params, const DenoiseOptions& o, const StepsChoice& s
 }
 
 std::string name_of(Quality quality) {
-  const auto& names = quality_names();
-  return std::find_if(names.begin(), names.end(), [&](const auto& entry) { return entry.second == quality; })->first;
+  return std::find_if(qualities.begin(), qualities.end(), [&](const auto& q) { return q.quality == quality; })->name;
 }
 
 std::string settings_of(const OptionSet& set, Quality quality, const Job& job) {

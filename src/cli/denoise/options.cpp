@@ -1,10 +1,13 @@
 #include "cli/denoise/options.h"
 
+#include <fmt/format.h>
+
 #include <map>
 
 #include "cli/common/numbers.h"
 #include "cli/common/read_limits.h"
 #include "cli/common/steps_option.h"
+#include "cli/denoise/frame_files.h"
 
 namespace polyrecon {
 namespace {
@@ -81,8 +84,10 @@ void add_sequence_options(OptionSet& set, DenoiseOptions& o) {
       ->check([](const std::string& text) { return std::string(text.empty() ? "is empty" : ""); }, "", "")
       ->type_name("RANGES");
   set.add(Changes::Result, "--frame-radius", o.frame_radius,
-          "Frames before and after that help each frame of a sequence, along its motion vectors if it has any; "
-          "default: 2")
+          fmt::format(
+              "Frames before and after that help each frame of a sequence, along its motion vectors if it has any; "
+              "default: {}",
+              default_frame_radius))
       ->check(CLI::Range(0, 8))
       ->type_name("R");
   set.add_flag(Changes::Run, "--skip-existing", o.run.skip_existing,
@@ -133,8 +138,11 @@ void add_run_options(OptionSet& set, DenoiseOptions& o) {
 }  // namespace
 
 const std::map<std::string, Quality>& quality_names() {
-  static const std::map<std::string, Quality> names{
-      {"draft", Quality::Draft}, {"standard", Quality::Standard}, {"best", Quality::Best}};
+  static const std::map<std::string, Quality> names = [] {
+    std::map<std::string, Quality> out;
+    for (const NamedQuality& named : qualities) out.emplace(named.name, named.quality);
+    return out;
+  }();
   return names;
 }
 

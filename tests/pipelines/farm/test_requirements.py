@@ -6,6 +6,7 @@ import tempfile
 import unittest
 from pathlib import Path
 
+from pipelines.common.denoise_defaults import QUALITIES
 from pipelines.common.errors import DriverError, ExitCode
 from pipelines.farm.requirements import Frame, Model, Node, chunk_for, frame_of, threads_for
 
@@ -63,7 +64,7 @@ class Requirements(unittest.TestCase):
 
     def test_larger_asks_for_more(self):
         model, small = Model(), Frame(1920, 1080, 42, 41)
-        for quality in ("draft", "standard", "best"):
+        for quality in QUALITIES:
             self.assertLess(model.peak_bytes(small, quality), model.peak_bytes(Frame(3840, 2160, 42, 41), quality) / 2)
         self.assertLess(model.wall_seconds(small, "standard", 2), model.wall_seconds(small, "standard", 1))
 

@@ -1,0 +1,5 @@
+"""What drivers know about options of `polyrecon denoise`. A test, tests/docs/test_command_line.py, compares the two."""
+
+QUALITIES = ("draft", "standard", "best")  # --quality, from fast to accurate
+DEFAULT_QUALITY = "standard"
+DEFAULT_FRAME_RADIUS = 2  # --frame-radius of a sequence
