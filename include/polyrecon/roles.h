@@ -53,6 +53,14 @@ enum class EmptyValue {
   ZeroOrSky   ///< Distances of the sky: Frame::sky_depth or more, 1e10 or +Inf.
 };
 
+/// What a pass tells about the surface that a pixel sees. Renderers commonly write a pass of each kind.
+enum class Surface {
+  Color,
+  Direction,  ///< Like Distance, it differs from an empty background, so that it shows silhouettes.
+  Distance,
+  None
+};
+
 /// Numbers of channels that a layer of a role can have.
 class ChannelCounts {
  public:
@@ -83,6 +91,7 @@ struct RoleInfo {
   bool noise_is_estimated = false;  ///< A feature whose noise is estimated where the file does not hold it.
   FeatureTransform transform = FeatureTransform::Scaled;
   EmptyValue empty = EmptyValue::Zero;
+  Surface surface = Surface::None;
 };
 
 /// A row for each role, in the order of the enumeration.

@@ -17,6 +17,11 @@ constexpr RoleInfo feature(Role role, const char* name, int channels, ChannelCou
   return info;
 }
 
+constexpr RoleInfo showing(Surface surface, RoleInfo info) {
+  info.surface = surface;
+  return info;
+}
+
 /// A pass that describes the scene and takes no part in the fit.
 constexpr RoleInfo description(Role role, const char* name, int channels, ChannelCounts layer_channels) {
   RoleInfo info{role, name, channels, layer_channels, Values::Average};
@@ -40,10 +45,11 @@ constexpr RoleInfo alpha() {
 // docs/dev/add_a_feature_pass.md.
 constexpr std::array<RoleInfo, role_count> table{
     color(Role::Beauty, "beauty", true, true),
-    feature(Role::Normal, "normal", 3, {1, 3}, Noise::Estimated),
-    feature(Role::Albedo, "albedo", 3, {1, 3}, Noise::Estimated),
+    showing(Surface::Direction, feature(Role::Normal, "normal", 3, {1, 3}, Noise::Estimated)),
+    showing(Surface::Color, feature(Role::Albedo, "albedo", 3, {1, 3}, Noise::Estimated)),
     // An estimate of the depth's noise gains nothing.
-    feature(Role::Depth, "depth", 1, {1, 2, 3}, Noise::IfKnown, EmptyValue::ZeroOrSky, FeatureTransform::BoundedDepth),
+    showing(Surface::Distance, feature(Role::Depth, "depth", 1, {1, 2, 3}, Noise::IfKnown, EmptyValue::ZeroOrSky,
+                                       FeatureTransform::BoundedDepth)),
     feature(Role::Visibility, "visibility", 1, {1, 2, 3}, Noise::Estimated, EmptyValue::ZeroOrOne),
     description(Role::SpecularAlbedo, "specular-albedo", 3, {3}),
     description(Role::Roughness, "roughness", 1, {1}),

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "core/halves.h"
 #include "core/repair.h"
@@ -12,12 +11,6 @@ namespace {
 
 constexpr int repair_depth = 8;       // pixels, as for features
 constexpr double least_depth = 1e-6;  // depths below it, and 0 of an empty background, are one
-
-std::optional<std::size_t> surface_of(Role role) {
-  const auto found = std::find(surface_roles.begin(), surface_roles.end(), role);
-  if (found == surface_roles.end()) return std::nullopt;
-  return static_cast<std::size_t>(found - surface_roles.begin());
-}
 
 void to_logarithm(Image& depth, double sky) {
   for (std::size_t i = 0; i < depth.pixels(); ++i) {
@@ -37,18 +30,19 @@ double noise_at(const Pass& pass, int c, std::size_t i) {
 
 std::size_t geometry_channels() {
   int channels = info_of(Role::Motion).channels;
-  for (const Role role : surface_roles) channels += info_of(role).channels;
+  for (const RoleInfo& info : role_table())
+    if (info.surface != Surface::None) channels += info.channels;
   return static_cast<std::size_t>(channels);
 }
 
 Geometry geometry_of(const Frame& frame) {
   Geometry out{frame.data_window, frame.motion, {}};
   for (const Feature& feature : frame.features) {
-    const auto surface = surface_of(feature.role);
-    if (!surface) continue;
-    Image& image = out.surface[*surface];
+    const Surface surface = info_of(feature.role).surface;
+    if (surface == Surface::None) continue;
+    Image& image = out.surface[index_of(surface)];
     image = feature.pass.mean;
-    if (*surface == DepthSurface) to_logarithm(image, frame.sky_depth);
+    if (surface == Surface::Distance) to_logarithm(image, frame.sky_depth);
     repair_nonfinite(image, repair_depth);
   }
   return out;
@@ -57,9 +51,9 @@ Geometry geometry_of(const Frame& frame) {
 std::array<Image, surfaces> surface_noise(const Frame& frame) {
   std::array<Image, surfaces> out;
   for (const Feature& feature : frame.features) {
-    const auto surface = surface_of(feature.role);
-    if (!surface || !feature.pass.noise_is_known()) continue;
-    Image& noise = out[*surface];
+    const Surface surface = info_of(feature.role).surface;
+    if (surface == Surface::None || !feature.pass.noise_is_known()) continue;
+    Image& noise = out[index_of(surface)];
     noise = Image(frame.width(), frame.height(), 1);
     for (int c = 0; c < feature.pass.mean.channels(); ++c)
       for (std::size_t i = 0; i < noise.pixels(); ++i)

@@ -1,22 +1,24 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 
 #include "polyrecon/frame.h"
 #include "polyrecon/image.h"
+#include "polyrecon/roles.h"
 
 namespace polyrecon {
 
-/// The passes that say which surface a pixel shows.
-enum Surface { AlbedoSurface, NormalSurface, DepthSurface };
-inline constexpr std::array surface_roles{Role::Albedo, Role::Normal, Role::Depth};
-inline constexpr std::size_t surfaces = surface_roles.size();
+/// Kinds of passes that tell which surface a pixel sees.
+constexpr std::size_t surfaces = static_cast<std::size_t>(Surface::None);
+
+constexpr std::size_t index_of(Surface surface) { return static_cast<std::size_t>(surface); }
 
 /// What tells where the points of a frame are in another frame, and whether a pixel shows the same surface there.
 struct Geometry {
   Rect window;                          ///< As Frame::data_window.
   Image motion;                         ///< As Frame::motion.
-  std::array<Image, surfaces> surface;  ///< Albedo, normal, and the logarithm of the depth; empty where unknown.
+  std::array<Image, surfaces> surface;  ///< By index_of; the logarithm of the distance; empty where unknown.
 };
 
 /// Channels of a Geometry.

@@ -79,10 +79,14 @@ void add_depth_change(const Image& a, const Image& b, Image& change) {
 Image surface_change(int width, int height, const std::array<Image, surfaces>& a,
                      const std::array<Image, surfaces>& noise, const std::array<Image, surfaces>& b) {
   Image change(width, height, 1);
-  const auto both_have = [&](Surface s) { return !a[s].empty() && !b[s].empty(); };
-  for (const Surface s : {AlbedoSurface, NormalSurface})
-    if (both_have(s)) add_change(a[s], b[s], noise[s], s == AlbedoSurface ? dark_albedo : short_normal, change);
-  if (both_have(DepthSurface)) add_depth_change(a[DepthSurface], b[DepthSurface], change);
+  for (const Surface surface : {Surface::Color, Surface::Direction, Surface::Distance}) {
+    const std::size_t s = index_of(surface);
+    if (a[s].empty() || b[s].empty()) continue;
+    if (surface == Surface::Distance)
+      add_depth_change(a[s], b[s], change);
+    else
+      add_change(a[s], b[s], noise[s], surface == Surface::Color ? dark_albedo : short_normal, change);
+  }
   return change;
 }
 

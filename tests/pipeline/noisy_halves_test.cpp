@@ -45,8 +45,8 @@ TEST_P(NoisyHalvesOf, ColoursAndNoiseDoNotDependOnThePurpose) {
     EXPECT_TRUE(test::same_bits(other.prepared.pair.variance, alone.prepared.pair.variance));
     for (std::size_t h = 0; h < 2; ++h)
       EXPECT_TRUE(test::same_bits(other.prepared.pair.color[h], alone.prepared.pair.color[h]));
-    EXPECT_FALSE(other.geometry.surface[DepthSurface].empty());
-    EXPECT_TRUE(alone.geometry.surface[DepthSurface].empty());
+    EXPECT_FALSE(other.geometry.surface[index_of(Surface::Distance)].empty());
+    EXPECT_TRUE(alone.geometry.surface[index_of(Surface::Distance)].empty());
   }
 }
 

@@ -64,8 +64,9 @@ struct Sequence {
     const auto image = [&](int k) {
       return test::image_of(width, truth.height(), channels, [&](int x, int y, int c) { return of(k, x, y, c); });
     };
-    geometry.surface[surface] = image(0);
-    for (std::size_t n = 0; n < frames.size(); ++n) frames[n].geometry.surface[surface] = image(neighbours[n].offset);
+    geometry.surface[index_of(surface)] = image(0);
+    for (std::size_t n = 0; n < frames.size(); ++n)
+      frames[n].geometry.surface[index_of(surface)] = image(neighbours[n].offset);
   }
 
   /// Mean squared error of both halves, where take(x, y).
@@ -267,7 +268,7 @@ TEST(JoinNeighbours, AlbedoThatDiffersKeepsNeighboursOut) {
   const auto stripe = [](int frame, int x) { return (x - 2 * frame) / 4 % 2 == 0 ? 1.0 : 0.92; };
   const Truth moving = [&](int frame, int x, int) { return stripe(frame, x); };
   Sequence with(moving, Image()), without(moving, Image());
-  with.show(AlbedoSurface, 3, [&](int k, int x, int, int) { return stripe(k, x); });
+  with.show(Surface::Color, 3, [&](int k, int x, int, int) { return stripe(k, x); });
   with.join();
   without.join();
   const auto bias = [](const Sequence& s) {  // of the mean of each column, as the stripes are columns
@@ -291,12 +292,12 @@ TEST(JoinNeighbours, SurfacesThatAgreeKeepTheGain) {
   const double noise = 0.05;
   std::array<HalfPair, 5> noisy;
   for (std::size_t k = 0; k < noisy.size(); ++k) noisy[k] = test::pair_of(s.truth, noise, 60 + k);
-  s.show(AlbedoSurface, 3, [&](int k, int x, int y, int c) {
+  s.show(Surface::Color, 3, [&](int k, int x, int y, int c) {
     return static_cast<double>(noisy[static_cast<std::size_t>(k + 2)].color[0].at(x, y, c));
   });
-  s.show(NormalSurface, 3, [](int, int, int, int c) { return c == 2 ? 1.0 : 0.0; });
-  s.show(DepthSurface, 1, [](int k, int x, int, int) { return std::log(2.0 + 0.1 * x + 0.05 * k); });
-  s.noise[AlbedoSurface] = Image(width, height, 1, static_cast<Real>(3 * noise * noise));
+  s.show(Surface::Direction, 3, [](int, int, int, int c) { return c == 2 ? 1.0 : 0.0; });
+  s.show(Surface::Distance, 1, [](int k, int x, int, int) { return std::log(2.0 + 0.1 * x + 0.05 * k); });
+  s.noise[index_of(Surface::Color)] = Image(width, height, 1, static_cast<Real>(3 * noise * noise));
   EXPECT_GT(s.join().weight, 3);
   EXPECT_LT(s.error(), 0.27 * sigma * sigma);
 }
@@ -305,8 +306,8 @@ TEST(JoinNeighbours, SurfacesThatAgreeKeepTheGain) {
 TEST(JoinNeighbours, ADepthOrANormalThatDiffersKeepsNeighboursOut) {
   const Truth still = [](int, int x, int y) { return texture(x, y); };
   Sequence depth(still, Image()), normal(still, Image());
-  depth.show(DepthSurface, 1, [](int k, int, int, int) { return std::log(k == 0 ? 5.0 : 3.0); });
-  normal.show(NormalSurface, 3, [](int k, int, int, int c) { return c == (k == 0 ? 2 : 0) ? 1.0 : 0.0; });
+  depth.show(Surface::Distance, 1, [](int k, int, int, int) { return std::log(k == 0 ? 5.0 : 3.0); });
+  normal.show(Surface::Direction, 3, [](int k, int, int, int c) { return c == (k == 0 ? 2 : 0) ? 1.0 : 0.0; });
   EXPECT_LT(depth.join().weight, 0.02);
   EXPECT_LT(normal.join().weight, 0.02);
 }

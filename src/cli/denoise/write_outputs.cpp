@@ -61,7 +61,8 @@ std::string alpha_note(const ReadResult& in, const Result& result) {
 /// Whether a feature shows where things end, as alpha does.
 bool shows_silhouettes(const FrameSource& source) {
   return std::any_of(source.chosen.begin(), source.chosen.end(), [](const RoleChoice& choice) {
-    return choice.role == Role::Normal || choice.role == Role::Depth;
+    const Surface surface = info_of(choice.role).surface;
+    return surface == Surface::Direction || surface == Surface::Distance;
   });
 }
 

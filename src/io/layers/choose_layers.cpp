@@ -81,14 +81,17 @@ bool is_one_bare_image(const FrameSource& source) {
 }
 
 /// Whether files next to the input can hold passes that a file of several layers lacks: it has one picture, and not
-/// every feature that renderers commonly write.
+/// every pass that renderers commonly write.
 bool may_lack_passes(const FrameSource& source) {
   const Layer* beauty = picture_layer(source.layers);
   const auto elsewhere = [&](const Layer& l) {
     return l.role == Role::Beauty && l.companion == Companion::Mean && !(place_of(l) == place_of(*beauty));
   };
+  const auto is_common_and_lacking = [&](const RoleInfo& info) {
+    return info.surface != Surface::None && !has_mean(source, info.role);
+  };
   return beauty && std::none_of(source.layers.begin(), source.layers.end(), elsewhere) &&
-         !(has_mean(source, Role::Normal) && has_mean(source, Role::Albedo) && has_mean(source, Role::Depth));
+         std::any_of(role_table().begin(), role_table().end(), is_common_and_lacking);
 }
 
 /// Whether a file of several layers lacks the pass.

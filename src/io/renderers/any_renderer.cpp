@@ -11,6 +11,8 @@ Renderer any_renderer() {
       {"Alpha", Role::Alpha, 1},       {"Position", Role::Other, 1},
       {"UV", Role::Other, 1},
   };
+  r.feature_words = {{"normal", Role::Normal},       {"albedo", Role::Albedo},        {"basecolor", Role::Albedo},
+                     {"diffusecolor", Role::Albedo}, {"diffusefilter", Role::Albedo}, {"depth", Role::Depth}};
   r.data_prefixes = {"crypto"};  // Cryptomatte
   r.affixes = {{"_variance", Companion::VarianceOfMean}};
   r.denoised_suffixes = {"_denoised", "_denoise", " Denoised"};

@@ -11,12 +11,6 @@ namespace {
 
 constexpr std::string_view ignored_in_names = " _-()";  // "Normal (shading)" is NormalShading
 
-/// What names of features say in words, normalised.
-constexpr std::array words_of_features{
-    std::pair{"normal", Role::Normal},        std::pair{"albedo", Role::Albedo},
-    std::pair{"basecolor", Role::Albedo},     std::pair{"diffusecolor", Role::Albedo},
-    std::pair{"diffusefilter", Role::Albedo}, std::pair{"depth", Role::Depth}};
-
 std::string normalised(std::string_view name) {
   std::string out;
   for (const char c : name)
@@ -77,8 +71,9 @@ std::optional<PassClass> classify_letter(const std::string& letter) {
 std::optional<Role> feature_in_words(const std::string& pass) {
   const std::string name = normalised(pass);
   if (known_passes().count(name) > 0 || has_data_prefix(pass)) return std::nullopt;
-  for (const auto& [word, role] : words_of_features)
-    if (name.find(word) != std::string::npos) return role;
+  for (const Renderer& renderer : renderers())
+    for (const FeatureWord& known : renderer.feature_words)
+      if (name.find(known.word) != std::string::npos) return known.role;
   return std::nullopt;
 }
 

@@ -23,6 +23,12 @@ struct PassName {
   std::size_t channels = 0;  ///< Of a layer with this name; 0: all that the role allows.
 };
 
+/// A word that names of features contain, without capitals.
+struct FeatureWord {
+  std::string word;
+  Role role;
+};
+
 /// How the name of a layer that accompanies another one is made from the name of that one.
 struct CompanionAffix {
   enum class Place {
@@ -65,6 +71,7 @@ struct Renderer {
 
   std::vector<PassName> passes;
   std::vector<PassName> letters;           ///< Of layers of one channel with a name that the user gives. Case matters.
+  std::vector<FeatureWord> feature_words;  ///< For passes that no renderer is known to write; the first word decides.
   std::vector<std::string> data_prefixes;  ///< Passes whose names begin so hold data even if they look like colours.
   std::vector<CompanionAffix> affixes;
   std::vector<BeautyCompanion> beauty_companions;
