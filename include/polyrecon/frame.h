@@ -55,6 +55,7 @@ struct FrameShape {
   int color_channels = 3;      ///< Beauty and AOVs.
   int feature_channels = 0;    ///< Means of the features.
   int prior_channels = 0;      ///< The prior, with halves and variance; it stays in memory during the fits.
+  bool prior_has_halves = false;
   bool runs_denoiser = false;  ///< The prior is made by a denoiser in this process.
   int wrapped_rows = 0;        ///< Rows of a frame that wraps, else 0: columns are repeated beyond both ends.
   int other_channels = 0;      ///< Other frames in memory at the same time: neighbours in time, the next of a sequence.

@@ -14,15 +14,22 @@
 #include "regression/order_selection.h"
 #include "regression/weights.h"
 #include "regression/window.h"
+#include "core/color_layout.h"
 
 namespace polyrecon {
 namespace {
 
-/// Channels of the blend sums that have one value per window: relative bias 3, variance 3, order 1, weight 1.
-constexpr std::size_t constants = 8;
+/// Channels of the blend sums that have one value per window, behind those of the response.
+enum WindowConstant : std::size_t {
+  RelativeBias = 0,
+  Variance = RelativeBias + ColorLayout::primaries,
+  Order = Variance + ColorLayout::primaries,
+  Weight,
+  constants
+};
 
 /// Sums of equation (3) for one bandwidth over an area. Channels are interleaved, since a window adds to all of them at
-/// each of its pixels: response | relative bias 3 | variance 3 | order 1 | weight 1.
+/// each of its pixels: response | WindowConstant.
 class BlendSums {
  public:
   /// Sets all sums of the area to zero.
@@ -217,11 +224,11 @@ void blend(const FitSource& source, const OrderChoice& choice, const double* ene
            BlendSums& sums) {
   double constant[constants];
   for (std::size_t c = 0; c < 3; ++c) {
-    constant[c] = std::sqrt((choice.error[c] - choice.variance[c]) / (energy[c] + source.epsilon));
-    constant[3 + c] = choice.variance[c];
+    constant[RelativeBias + c] = std::sqrt((choice.error[c] - choice.variance[c]) / (energy[c] + source.epsilon));
+    constant[Variance + c] = choice.variance[c];
   }
-  constant[6] = choice.order;
-  constant[7] = 1;
+  constant[Order] = choice.order;
+  constant[Weight] = 1;
   const Real* weight = s.weight.data();
   if (source.bound && !source.bound->empty()) {
     within_bound(s.window, *source.other, *source.bound, s.fit.data(), s.fit_pitch, weight, s.bound_weight.data());
@@ -336,7 +343,8 @@ BlendedFit normalise(BlendPlane& plane, const FitSource& source, const std::vect
     std::size_t uncovered = 0;
     for (int x = 0; x < width; ++x) {
       const Real* sums = plane.at(x, y);
-      const Real weight = sums[plane.channels - 1];
+      const Real* const constant = sums + channels;
+      const Real weight = constant[Weight];
       const bool covered = weight > std::numeric_limits<Real>::min();
       for (int c = 0; c < channels; ++c) out.value.at(x, y, c) = covered ? sums[c] / weight : response.at(x, y, c);
       if (!covered) {  // keeps the response; the variance is that of the mean of both halves, half that of one
@@ -346,11 +354,11 @@ BlendedFit normalise(BlendPlane& plane, const FitSource& source, const std::vect
       }
       for (int c = 0; c < 3; ++c) {
         const double f = out.value.at(x, y, c), energy = f * f + source.epsilon;
-        const double bias = sums[channels + c] / weight;
+        const double bias = constant[RelativeBias + static_cast<std::size_t>(c)] / weight;
         out.squared_bias.at(x, y, c) = storable(bias * bias * energy);
-        out.variance.at(x, y, c) = sums[channels + 3 + c] / weight;
+        out.variance.at(x, y, c) = constant[Variance + static_cast<std::size_t>(c)] / weight;
       }
-      out.order.at(x, y, 0) = sums[channels + 6] / weight;
+      out.order.at(x, y, 0) = constant[Order] / weight;
     }
     counters.uncovered_pixels += uncovered;
   });
@@ -384,8 +392,7 @@ std::vector<unsigned char> needed_centers(const std::vector<unsigned char>& acti
 }  // namespace
 
 std::size_t blended_fit_channels(std::size_t color_channels) {
-  constexpr std::size_t squared_bias = 3, variance = 3, order = 1;
-  return color_channels + squared_bias + variance + order;
+  return color_channels + constants - 1;  // of the weight no image is made
 }
 
 std::size_t blend_sums_channels(std::size_t color_channels) { return color_channels + constants; }

@@ -11,6 +11,7 @@
 #include "core/parallel.h"
 #include "core/real.h"
 #include "core/tiles.h"
+#include "core/pi.h"
 
 namespace polyrecon {
 namespace {
@@ -20,7 +21,6 @@ constexpr double tie = 1e-3;  // the best candidate is the mean of those whose r
 // Limits of the relative noise variance, which keep shares finite and above zero.
 constexpr Real least_relative_variance = Real(1e-12), most_relative_variance = Real(1e12);
 constexpr std::size_t largest_tile = std::size_t{1024} * 1024;  // pixels; larger ones are not faster
-constexpr double pi = 3.14159265358979323846;
 
 /// 1 / (brightness^2 + epsilon). The square is smoothed so that one dark pixel does not dominate the risk of its
 /// neighbourhood.

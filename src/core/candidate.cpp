@@ -1,10 +1,18 @@
 #include "core/candidate.h"
 
+#include "core/color_layout.h"
+
 namespace polyrecon {
+namespace {
+
+constexpr int bias_channels = ColorLayout::primaries, variance_channels = ColorLayout::primaries, order_channels = 1;
+
+}  // namespace
 
 Candidate make_candidate(int width, int height, int color_channels) {
   const auto image = [&](int channels) { return Image(width, height, channels); };
-  return {{image(color_channels), image(color_channels)}, image(3), image(3), image(1)};
+  return {{image(color_channels), image(color_channels)}, image(bias_channels), image(variance_channels),
+          image(order_channels)};
 }
 
 Candidate crop(const Candidate& candidate, const Rect& r) {
@@ -22,8 +30,7 @@ void paste(const Candidate& source, const Rect& from, Candidate& target, int x, 
 }
 
 std::size_t candidate_channels(std::size_t color_channels) {
-  constexpr std::size_t squared_bias = 3, variance = 3, order = 1;
-  return 2 * color_channels + squared_bias + variance + order;
+  return 2 * color_channels + bias_channels + variance_channels + order_channels;
 }
 
 }  // namespace polyrecon

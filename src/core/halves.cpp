@@ -127,6 +127,14 @@ BlockRow block_row(const Image& mean, const Image& half_a, const Image& half_b, 
 
 }  // namespace
 
+double known_variance(const Pass& pass, int c, std::size_t i) {
+  const auto usable_or_none = [](double variance) { return std::isfinite(variance) ? std::max(variance, 0.0) : 0; };
+  if (!pass.variance.empty() && usable(pass.variance.plane(c)[i]))
+    return usable_or_none(static_cast<double>(pass.variance.plane(c)[i]));
+  if (!pass.has_halves()) return 0;
+  return usable_or_none(variance_of_mean<double>(pass.half_a.plane(c)[i], pass.half_b.plane(c)[i]));
+}
+
 bool contradict(const Image& mean, const Image& half_a, const Image& half_b) {
   const Share share = share_of(mean, half_a, half_b);
   if (share.exact && !is_share(share.of_a)) return true;

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 
+#include "polyrecon/frame.h"
 #include "polyrecon/image.h"
 
 namespace polyrecon {
@@ -13,6 +15,9 @@ template <typename T>
 T variance_of_mean(T a, T b) {
   return (a - b) * (a - b) / 4;
 }
+
+/// Variance of the mean of a pass at a pixel: the one of the file, else that of the halves; 0 where neither is usable.
+double known_variance(const Pass& pass, int c, std::size_t i);
 
 /// (A + B) / 2 of the first `channels` channels.
 Image mean_of_halves(const std::array<Image, 2>& halves, int channels);

@@ -9,6 +9,9 @@ namespace polyrecon {
 /// Largest magnitude of a usable value. Its square and sums of squares fit into a float.
 constexpr Real largest_value = Real(1e15);
 
+/// Depth to which holes of passes are filled, in pixels: the values around a larger hole say nothing of its middle.
+constexpr int repair_depth = 8;
+
 /// Whether a value is finite and its magnitude at most largest_value.
 bool usable(Real value);
 

@@ -3,13 +3,14 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/color_layout.h"
 #include "core/halves.h"
 #include "core/parallel.h"
 
 namespace polyrecon {
 namespace {
 
-constexpr int rgb = 3;
+constexpr int rgb = ColorLayout::primaries;
 
 /// Ways to turn an image over.
 enum Turn : unsigned { AsItIs = 0, LeftRight = 1, UpDown = 2, Both = 3 };

@@ -20,15 +20,14 @@
 namespace polyrecon {
 namespace {
 
-constexpr int repair_radius = 8;      // pixels; the values around a larger hole say nothing of its middle
 constexpr double noise_floor = 1e-5;  // noise variance over variance of the feature below which it is not prefiltered
 
 /// Repairs an image and continues it beyond the picture. Returns the number of repaired pixels of the picture.
 std::size_t repair(Image& image, const Image& picture, Real largest = largest_value) {
-  if (picture.empty()) return repair_nonfinite(image, repair_radius, largest);
+  if (picture.empty()) return repair_nonfinite(image, repair_depth, largest);
   image = outside_set_to(std::numeric_limits<Real>::quiet_NaN(), picture, std::move(image));
   const std::size_t all = image.pixels();
-  return repair_nonfinite(image, repair_radius, largest) - (all - picture_pixels(picture, all));
+  return repair_nonfinite(image, repair_depth, largest) - (all - picture_pixels(picture, all));
 }
 
 /// Calls body(c, y) for every row of every channel, rows in parallel.
@@ -71,15 +70,6 @@ struct FeatureStatistics {
   double noise = 0;     ///< Mean noise variance of the usual values.
   std::size_t usable_pixels = 0, noisy_pixels = 0;
 };
-
-/// Noise variance of a pass at a pixel; 0 where it is unknown.
-double noise_at(const Pass& pass, int c, std::size_t i) {
-  if (!pass.variance.empty() && usable(pass.variance.plane(c)[i]))
-    return static_cast<double>(pass.variance.plane(c)[i]);
-  if (!pass.has_halves()) return 0;
-  const double variance = variance_of_mean<double>(pass.half_a.plane(c)[i], pass.half_b.plane(c)[i]);
-  return std::isfinite(variance) ? variance : 0;
-}
 
 bool may_show_sky(const Feature& feature) { return info_of(feature.role).empty == EmptyValue::ZeroOrSky; }
 
@@ -125,7 +115,7 @@ FeatureStatistics statistics_of(const Feature& feature, double sky) {
       found.usual.add(v);
       sum += v;
       square += v * v;
-      const double variance = noise_at(feature.pass, c, i);
+      const double variance = known_variance(feature.pass, c, i);
       noise += variance;
       noisy += variance > 0;
     }

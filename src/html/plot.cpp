@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "html/page.h"
+#include "core/pi.h"
 
 namespace polyrecon {
 namespace {
@@ -72,7 +73,6 @@ class Labels {
   }
 
  private:
-  static constexpr double pi = 3.14159265358979323846;
   std::vector<Box> taken_;
 
   bool blocked(const Box& box) const {

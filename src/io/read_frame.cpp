@@ -9,6 +9,7 @@
 #include <memory>
 #include <utility>
 
+#include "core/frame_shape.h"
 #include "core/halves.h"
 #include "core/rect.h"
 #include "core/repair.h"
@@ -212,17 +213,9 @@ class FrameBuilder {
   }
 
   FrameShape shape() const {
-    FrameShape shape{window_.area(), static_cast<int>(reader_.samples() / window_.area()), 3};
+    FrameShape shape{window_.area(), static_cast<int>(reader_.samples() / window_.area())};
     shape.wrapped_rows = result_.frame.wraps ? window_.height() : 0;
-    for (const PassChoice& pass : passes_) {
-      const RoleInfo& info = info_of(pass.role);
-      if (pass.role == Role::Color) shape.color_channels += info.channels;
-      if (info.feature) shape.feature_channels += info.channels;
-      if (noise_is_estimated(pass.role, pass.variance >= 0 || pass.half_a >= 0)) shape.channels += info.channels;
-      if (pass.role == Role::Prior)
-        for (const int index : {pass.mean, pass.variance, pass.half_a, pass.half_b})
-          shape.prior_channels += index < 0 ? 0 : info.channels;
-    }
+    for (const PassChoice& pass : passes_) add_pass(shape, pass.role, {pass.variance >= 0, pass.half_a >= 0});
     return shape;
   }
 

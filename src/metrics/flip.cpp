@@ -11,13 +11,13 @@
 
 #include "core/parallel.h"
 #include "polyrecon/error.h"
+#include "core/pi.h"
 
 namespace polyrecon {
 namespace {
 
 using Color = std::array<double, 3>;
 
-constexpr double pi = 3.14159265358979323846;
 constexpr double pixels_per_degree = 0.7 * 3840 / 0.7 * pi / 180;
 
 // The constants below are those of the paper of 2020 (sections 4.1, 4.2).

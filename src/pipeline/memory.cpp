@@ -5,6 +5,7 @@
 #include "blend/noise_bound.h"
 #include "core/candidate.h"
 #include "core/color_layout.h"
+#include "core/frame_shape.h"
 #include "core/wrap.h"
 #include "features/prepare.h"
 #include "maps/error_map_images.h"
@@ -13,6 +14,7 @@
 #include "pipeline/stage.h"
 #include "pipeline/use_prior.h"
 #include "polyrecon/error.h"
+#include "prior/mix.h"
 #include "prior/prior_candidate.h"
 #include "regression/basis.h"
 #include "temporal/neighbour.h"
@@ -25,8 +27,10 @@ constexpr double allocator = 1.08;  // unused memory between images of unequal s
 // A denoiser: what a library needs in addition to its images under its least memory limit, its code and
 // weights included (Open Image Denoise 2.5: 350 MB for 1920 x 1080 and more), and the images of one run.
 constexpr std::size_t least_denoiser_bytes = std::size_t{384} << 20;
-constexpr std::size_t denoiser_features_channels = 3 + 3, denoised_channels = 3 * 3, denoiser_run_channels = 3 * 8;
-constexpr std::size_t validation_halves_channels = 2 * 3;  // our halves next to those of a prior
+constexpr std::size_t rgb = ColorLayout::primaries;
+constexpr std::size_t denoiser_features_channels = 2 * rgb;  // albedo and normal
+constexpr std::size_t denoiser_run_channels = 8 * rgb;
+constexpr std::size_t validation_halves_channels = 2 * rgb;  // our halves next to those of a prior
 
 std::size_t count(int channels) { return static_cast<std::size_t>(channels); }
 
@@ -41,12 +45,10 @@ std::size_t pair_channels(const FrameShape& shape) {
   return half_pair_channels(count(shape.color_channels), count(model_features(shape)));
 }
 
-bool prior_has_halves(const FrameShape& shape) { return shape.prior_channels > 3; }
-
 /// Channels held to the end of a reconstruction: images of the frame and the noise variance of the beauty.
 std::size_t kept_channels(const FrameShape& shape) {
   constexpr std::size_t alpha = 1, sample_count = 1;
-  const std::size_t prior = count(shape.prior_channels) + (prior_has_halves(shape) ? validation_halves_channels : 0);
+  const std::size_t prior = count(shape.prior_channels) + (shape.prior_has_halves ? validation_halves_channels : 0);
   return count(shape.color_channels) + alpha + sample_count + prior + noise_variance_channels +
          count(shape.other_channels);
 }
@@ -62,8 +64,9 @@ std::size_t fitting_channels(const FrameShape& shape) {
 std::size_t finishing_channels(const FrameShape& shape) {
   const std::size_t colors = count(shape.color_channels);
   constexpr std::size_t order_map = 1;
-  const std::size_t layers_without_prior = colors > 3 ? colors : 0;
-  const std::size_t prior = shape.prior_channels > 0 ? prior_candidate_channels + layers_without_prior : 0;
+  const std::size_t layers_without_prior = colors > rgb ? colors : 0;
+  const std::size_t using_prior = std::max(prior_candidate_channels, share_channels);
+  const std::size_t prior = shape.prior_channels > 0 ? using_prior + layers_without_prior : 0;
   return pair_channels(shape) + candidate_channels(colors) + error_map_channels() + order_map +
          std::max(prior, restore_channels(colors));
 }
@@ -71,29 +74,24 @@ std::size_t finishing_channels(const FrameShape& shape) {
 }  // namespace
 
 FrameShape shape_of(const Frame& frame) {
-  FrameShape shape{frame.beauty.mean.pixels(), 0, ColorLayout(static_cast<int>(frame.aovs.size()), false).channels()};
+  FrameShape shape{frame.beauty.mean.pixels(), frame.motion.channels()};
   shape.wrapped_rows = frame.wraps ? frame.height() : 0;
-  const auto add = [&](const Pass& pass) {
+  const auto add = [&](Role role, const Pass& pass) {
     for (const Image* image : {&pass.mean, &pass.variance, &pass.half_a, &pass.half_b})
       shape.channels += image->channels();
+    if (!pass.mean.empty()) add_pass(shape, role, {!pass.variance.empty(), pass.has_halves()});
   };
-  add(frame.prior);
-  shape.prior_channels = shape.channels;
-  add(frame.beauty);
-  shape.channels += frame.motion.channels();
-  for (const Pass& aov : frame.aovs) add(aov);
-  for (const Feature& feature : frame.features) {
-    add(feature.pass);
-    const int channels = feature.pass.mean.channels();
-    shape.feature_channels += channels;
-    if (noise_is_estimated(feature.role, feature.pass.noise_is_known())) shape.channels += channels;
-  }
+  add(Role::Beauty, frame.beauty);
+  add(Role::Prior, frame.prior);
+  for (const Pass& aov : frame.aovs) add(Role::Color, aov);
+  for (const Feature& feature : frame.features) add(feature.role, feature.pass);
   return shape;
 }
 
 void add_denoiser(FrameShape& shape) {
   shape.runs_denoiser = true;
-  shape.prior_channels = static_cast<int>(denoised_channels);
+  shape.prior_channels = 0;
+  add_pass(shape, Role::Prior, {false, true});
   shape.channels += shape.prior_channels + static_cast<int>(denoiser_features_channels);
 }
 
@@ -120,7 +118,7 @@ MemoryNeeds memory_needs(const FrameShape& passes, const Params& params) {
                                 pair_channels(shape) + feature_in_preparation_channels;
   const std::size_t denoising = kept_channels(shape) + pair_channels(shape) + denoiser_features_channels;
   const std::size_t validating =
-      prior_has_halves(shape) ? pair_channels(shape) + validation_channels(count(model_features(shape))) : 0;
+      shape.prior_has_halves ? pair_channels(shape) + validation_channels(count(model_features(shape))) : 0;
   const std::size_t holding =
       kept_channels(shape) + std::max({fitting_channels(shape), validating, finishing_channels(shape)});
   MemoryNeeds needs;

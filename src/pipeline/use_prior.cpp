@@ -21,7 +21,6 @@ namespace polyrecon {
 namespace {
 
 constexpr int rgb = ColorLayout::primaries;
-constexpr int repair_depth = 8;              // pixels, as for the features of the fits
 constexpr double most_noise_in_prior = 0.9;  // above it the prior is the input, which would validate itself
 // The mean of a prior against that of its halves in the picture that is mixed in. Both are of the same samples; the
 // mean has seen more of them at once.

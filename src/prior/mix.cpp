@@ -13,7 +13,7 @@
 namespace polyrecon {
 namespace {
 
-constexpr int beauty_channels = 3;
+constexpr int beauty_channels = ColorLayout::primaries;
 constexpr std::array<double, 3> share_sigmas{6, 12, 24};  // pixels
 constexpr double noise_sigma = 2;                         // pixels
 constexpr double kept_noise_sigma = 6;                    // pixels

@@ -4,6 +4,7 @@
 #include <cstddef>
 
 #include "core/candidate.h"
+#include "core/color_layout.h"
 #include "core/half_pair.h"
 #include "polyrecon/image.h"
 
@@ -27,8 +28,9 @@ struct ValidationHalves {
 /// (y_o - P_h)^2, lets noisy pixels weigh less. pair: the samples, the first 3 channels of color.
 Image reconstruction_share(const HalfPair& pair, const ValidationHalves& halves);
 
-/// Channels that reconstruction_share holds in addition to its arguments.
-constexpr std::size_t share_work_channels = 2 + 3 + 2 * 3 + 1;
+/// Channels that reconstruction_share or unvalidated_share holds in addition to its arguments.
+constexpr std::size_t share_channels =
+    2 /* terms */ + 3 * ColorLayout::primaries /* weights, differences of two pictures */ + 1 /* share */;
 
 /// The same where nothing validates the prior, since the halves were split from one picture and their noise may have
 /// been estimated wrong: a quarter, less what the reconstruction f has kept of the noise y - P,

@@ -25,7 +25,7 @@ constexpr double plausible = 2;
 constexpr std::array<double, 6> shares{0.5, 0.6, 0.7, 0.8, 0.9, 1};
 constexpr double doubt = 2;            // error of the sharpening, relative to what it changed
 constexpr double least_error = 1e-12;  // relative; keeps D / E finite
-constexpr int beauty_channels = 3;
+constexpr int beauty_channels = ColorLayout::primaries;
 
 /// D / E of the candidate with this share of the prior.
 Image contradiction(const Image& reconstruction, const CorrectedPrior& prior, double share, const Image& mse,

@@ -9,6 +9,9 @@
 
 namespace polyrecon {
 
+constexpr int band_rows = 256;            // Rows of a frame that are estimated at once.
+constexpr double least_variance = 1e-30;  // A variance up to it counts as none.
+
 /// An estimate of the current frame from other frames; zero where it is not valid.
 struct Estimate {
   std::array<Image, 2> color;

@@ -9,7 +9,6 @@
 namespace polyrecon {
 namespace {
 
-constexpr int repair_depth = 8;       // pixels, as for features
 constexpr double least_depth = 1e-6;  // depths below it, and 0 of an empty background, are one
 
 void to_logarithm(Image& depth, double sky) {
@@ -17,13 +16,6 @@ void to_logarithm(Image& depth, double sky) {
     const auto z = static_cast<double>(depth.plane(0)[i]);
     depth.plane(0)[i] = static_cast<Real>(std::log(std::isnan(z) ? sky : std::clamp(z, least_depth, sky)));
   }
-}
-
-double noise_at(const Pass& pass, int c, std::size_t i) {
-  const double variance = !pass.variance.empty()
-                              ? static_cast<double>(pass.variance.plane(c)[i])
-                              : variance_of_mean<double>(pass.half_a.plane(c)[i], pass.half_b.plane(c)[i]);
-  return std::isfinite(variance) ? std::max(variance, 0.0) : 0;
 }
 
 }  // namespace
@@ -57,7 +49,7 @@ std::array<Image, surfaces> surface_noise(const Frame& frame) {
     noise = Image(frame.width(), frame.height(), 1);
     for (int c = 0; c < feature.pass.mean.channels(); ++c)
       for (std::size_t i = 0; i < noise.pixels(); ++i)
-        noise.plane(0)[i] += static_cast<Real>(noise_at(feature.pass, c, i));
+        noise.plane(0)[i] += static_cast<Real>(known_variance(feature.pass, c, i));
   }
   return out;
 }

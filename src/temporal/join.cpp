@@ -15,17 +15,15 @@
 #include "temporal/neighbour.h"
 #include "temporal/shared_noise.h"
 #include "temporal/surface_change.h"
+#include "core/pi.h"
 
 namespace polyrecon {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
 constexpr double ratio_sigma = 2;  // pixels; variances are averaged before they are compared, as single ones are noisy
 // K: variance of a pixel over that of the fitted image; about the number of pixels that a fit averages.
 constexpr double noise_of_fit = 30;
 constexpr double agreement_sigma = 16;  // pixels
-constexpr double tiny = 1e-30;
-constexpr int band_rows = 256;  // height of a band of the frame
 
 /// The difference of a half from its estimate. Channels: difference RGB, the sum over RGB of its noise variance, and 1;
 /// all zero where the estimate is not valid.
@@ -63,7 +61,7 @@ Image gate(const Image& difference, const TemporalParams& p) {
         if (!(d.plane(4)[i] > 0)) continue;
         // Difference and noise are sums over the valid pixels only, with the same weights.
         const double noise = std::max(static_cast<double>(d.plane(3)[i]), static_cast<double>(floor.plane(3)[i]));
-        const double change = squared(d, i) / std::max(kept * noise, tiny);
+        const double change = squared(d, i) / std::max(kept * noise, least_variance);
         excess.plane(0)[i] += static_cast<Real>(std::max(0.0, change - p.accept) / p.softness);
       }
     });

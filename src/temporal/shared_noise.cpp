@@ -24,8 +24,6 @@ constexpr double one_seed = 0.8;         // of the noisy pixels
 constexpr double around_block = 1;       // blocks
 constexpr int shared_block = 16;         // pixels
 constexpr double most_of_one_pixel = 5;  // squared difference, in units of its noise, that a pixel counts with at most
-constexpr double tiny = 1e-30;
-constexpr int band_rows = 256;  // rows that are looked at together; a multiple of a block
 
 /// Squared differences of the means of both halves from the estimate's, in units of the variance of independent noise,
 /// and 1; both 0 where there is neither noise nor an estimate. Independent noise makes 1 on average, shared noise 0.
@@ -43,7 +41,7 @@ Image noise_ratios(const HalfPair& pair, const Estimate& estimate) {
         square += d * d / 4;
         noise += static_cast<double>(pair.variance.plane(c)[i] + estimate.variance.plane(c)[i]) / 2;
       }
-      if (!(noise > tiny)) continue;
+      if (!(noise > least_variance)) continue;
       out.plane(0)[i] = static_cast<Real>(std::min(square / noise, most_of_one_pixel));
       out.plane(1)[i] = 1;
     }
@@ -120,7 +118,7 @@ Image common_blocks(const HalfPair& pair, const Places& neighbour) {
     const Estimate estimate = estimate_at({neighbour}, std::abs(neighbour.offset), band);
     for (const Rect& block : aligned_blocks(part.variance.bounds(), shared_block)) {
       const CornerSums sums = corner_sums(part, estimate, block);
-      if (!(sums.noise > tiny && sums.own > tiny && sums.other > tiny)) continue;
+      if (!(sums.noise > least_variance && sums.own > least_variance && sums.other > least_variance)) continue;
       const int column = block.x0 / shared_block, row = (y + block.y0) / shared_block;
       const Common found = common(sums);
       out.at(column, row, 0) = static_cast<Real>(found.rho);

@@ -5,11 +5,11 @@
 
 #include "core/gaussian.h"
 #include "core/parallel.h"
+#include "core/pi.h"
 
 namespace polyrecon {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
 constexpr double around = 1;  // pixels; contrast and squares are averaged with a Gaussian of this standard deviation
 // Gaussians under which surfaces are compared: wider ones find less, as noise and sampling errors average out.
 constexpr std::array<double, 2> scales{1, 2};

@@ -21,7 +21,7 @@ bool is_picture(const Layer& layer, Role role) {
 
 /// The layer that takes the result: the denoised one where the renderer's own denoiser wrote both, since people and
 /// compositors look for the result there; else the noisy one.
-std::string picture_layer(const DonePicture& done) {
+std::string result_layer(const DonePicture& done) {
   const ReadResult& in = done.in;
   if (!done.report.picture.layer.empty()) return in.frame.beauty.name;
   for (const Role role : {Role::Prior, Role::Beauty})
@@ -69,7 +69,7 @@ bool shows_silhouettes(const FrameSource& source) {
 void add_replacements(const DonePicture& done, bool with_alpha, std::vector<Replacement>& list) {
   const ReadResult& in = done.in;
   const Rect& window = in.frame.data_window;
-  const std::string picture = picture_layer(done);
+  const std::string picture = result_layer(done);
   list.push_back({picture, done.result.beauty, false, window});
   for (std::size_t i = 0; i < done.result.aovs.size(); ++i)
     list.push_back({in.frame.aovs[i].name, done.result.aovs[i], false, window});
@@ -91,7 +91,7 @@ FrameSource joined_source(const std::vector<DonePicture>& pictures) {
 /// Writes the maps of one picture. Returns notes about them.
 std::vector<std::string> write_maps_of(const Job& job, const FrameFiles& files, const DonePicture& done,
                                        const OutputPaths& outputs, Progress& progress) {
-  const MapWindows windows = windows_of(done.in, picture_layer(done));
+  const MapWindows windows = windows_of(done.in, result_layer(done));
   const Result& result = done.result;
   if (!outputs.order_map.empty()) write_order_map(outputs.order_map, result.order, windows);
   if (outputs.error_map.empty() && !job.sample_map) return {};
