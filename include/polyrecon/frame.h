@@ -51,10 +51,10 @@ struct Frame {
 /// The size of a frame, known before any pixel is read; memory needs are estimated from it.
 struct FrameShape {
   std::size_t pixels = 0;
-  int channels = 0;            ///< All passes in use, with their halves and variances, those to be estimated included.
-  int color_channels = 3;      ///< Beauty and AOVs.
-  int feature_channels = 0;    ///< Means of the features.
-  int prior_channels = 0;      ///< The prior, with halves and variance; it stays in memory during the fits.
+  int channels = 0;          ///< All passes in use, with their halves and variances, those to be estimated included.
+  int color_channels = 3;    ///< Beauty and AOVs.
+  int feature_channels = 0;  ///< Means of the features.
+  int prior_channels = 0;    ///< The prior, with halves and variance; it stays in memory during the fits.
   bool prior_has_halves = false;
   bool runs_denoiser = false;  ///< The prior is made by a denoiser in this process.
   int wrapped_rows = 0;        ///< Rows of a frame that wraps, else 0: columns are repeated beyond both ends.

@@ -20,7 +20,9 @@ from typing import Optional
 
 import numpy as np
 
-SAMPLE_COUNT = "Sample Count.X"
+from ..common.layer_names import SAMPLE_COUNT_PASS
+
+SAMPLE_COUNT = f"{SAMPLE_COUNT_PASS}.X"
 RENDER_SECONDS = "Render Seconds.X"
 
 

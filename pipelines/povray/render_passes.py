@@ -18,6 +18,7 @@ import numpy as np
 from ..common import exr
 from ..common.arguments import add_pass_timeout
 from ..common.errors import run_main
+from ..common.layer_names import HALF_A_SUFFIX, HALF_B_SUFFIX, VARIANCE_SUFFIX
 from ..common.terminal import print_lines
 from ..loop.renderer import SAMPLE_COUNT
 from . import passes
@@ -118,7 +119,13 @@ def channels(layers):
     found = {}
     for name, layer in layers.items():
         suffixes = {"Denoising Normal": "XYZ", "Denoising Depth": "Z", "Visibility": "X"}.get(name, "RGB")
-        for kind, planes in (("", layer.mean), (" Variance", layer.variance), (" A", layer.a), (" B", layer.b)):
+        kinds = {
+            "": layer.mean,
+            VARIANCE_SUFFIX: layer.variance,
+            HALF_A_SUFFIX: layer.a,
+            HALF_B_SUFFIX: layer.b,
+        }
+        for kind, planes in kinds.items():
             found.update({f"{name}{kind}.{suffix}": planes[..., i] for i, suffix in enumerate(suffixes)})
     return found
 

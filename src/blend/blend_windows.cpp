@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/color_layout.h"
 #include "core/fast_math.h"
 #include "core/parallel.h"
 #include "core/picture_mask.h"
@@ -14,7 +15,6 @@
 #include "regression/order_selection.h"
 #include "regression/weights.h"
 #include "regression/window.h"
-#include "core/color_layout.h"
 
 namespace polyrecon {
 namespace {

@@ -9,9 +9,9 @@
 #include "core/halves.h"
 #include "core/near_best.h"
 #include "core/parallel.h"
+#include "core/pi.h"
 #include "core/real.h"
 #include "core/tiles.h"
-#include "core/pi.h"
 
 namespace polyrecon {
 namespace {

@@ -11,7 +11,9 @@ constexpr int bias_channels = ColorLayout::primaries, variance_channels = ColorL
 
 Candidate make_candidate(int width, int height, int color_channels) {
   const auto image = [&](int channels) { return Image(width, height, channels); };
-  return {{image(color_channels), image(color_channels)}, image(bias_channels), image(variance_channels),
+  return {{image(color_channels), image(color_channels)},
+          image(bias_channels),
+          image(variance_channels),
           image(order_channels)};
 }
 

@@ -6,8 +6,8 @@
 #include <array>
 #include <cmath>
 
-#include "html/page.h"
 #include "core/pi.h"
+#include "html/page.h"
 
 namespace polyrecon {
 namespace {

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "core/parallel.h"
-#include "polyrecon/error.h"
 #include "core/pi.h"
+#include "polyrecon/error.h"
 
 namespace polyrecon {
 namespace {

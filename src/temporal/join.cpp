@@ -8,6 +8,7 @@
 
 #include "core/gaussian.h"
 #include "core/parallel.h"
+#include "core/pi.h"
 #include "core/rect.h"
 #include "polyrecon/error.h"
 #include "temporal/estimate.h"
@@ -15,7 +16,6 @@
 #include "temporal/neighbour.h"
 #include "temporal/shared_noise.h"
 #include "temporal/surface_change.h"
-#include "core/pi.h"
 
 namespace polyrecon {
 namespace {

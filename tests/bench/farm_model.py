@@ -23,6 +23,7 @@ import OpenImageIO as oiio
 import scaling
 
 sys.path.append(str(scaling.ROOT))
+from pipelines.common.layer_names import HALF_A_SUFFIX, HALF_B_SUFFIX, SAMPLE_COUNT_PASS, VARIANCE_SUFFIX
 from pipelines.farm.requirements import MODEL_FILE, Model, frame_of
 
 FRAMES = 2
@@ -39,7 +40,7 @@ SCALING_SIZE = (640, 360)
 THREADS = 2
 AOV_BYTES = 2 * 3 * 4.0  # of a pixel of a neighbour: two halves of three floats
 TURNS = 3  # of --scaling
-TRAITS = (" Variance", " A", " B", " Count")
+TRAITS = (VARIANCE_SUFFIX, HALF_A_SUFFIX, HALF_B_SUFFIX, SAMPLE_COUNT_PASS)
 
 
 def plain(name):

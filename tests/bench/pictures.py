@@ -29,9 +29,11 @@ from false_edges import false_edges  # noqa: E402
 
 from pipelines.common import exr  # noqa: E402
 from pipelines.common.denoise_defaults import QUALITIES  # noqa: E402
+from pipelines.common.layer_names import HALF_A_SUFFIX, HALF_B_SUFFIX, VARIANCE_SUFFIX  # noqa: E402
 
 FIGURES = ("relMSE", "trimmed", "FLIP", "energy", "false edges")
-MEASURED = re.compile(r" (A|B|Variance)(\.\w+)?$")  # channels that a single render does not have
+# Channels that a single render does not have.
+MEASURED = re.compile(rf"({HALF_A_SUFFIX}|{HALF_B_SUFFIX}|{VARIANCE_SUFFIX})(\.\w+)?$")
 
 
 def size_of(path):

@@ -4,7 +4,7 @@
 
     tests/bench/second_opinion.py samples/study_16.exr=samples/study_ref.exr ...
 
-relMSE is the mean of ((x - r)^2 - Var(r)) / (r^2 + 0.01); "trimmed" leaves out the 0.1 % of worst pixels; figures of
+relMSE is that of relmse.py; "trimmed" leaves out the 0.1 % of worst pixels; figures of
 the program are over those of the network alone. "energy" is the change of the picture's sum, in percent of the
 render's."""
 
@@ -22,6 +22,8 @@ from pyoidn.filter import OIDN_FORMAT_FLOAT3, OIDN_QUALITY_HIGH
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT))
+from relmse import relative_squares  # noqa: E402
+
 from pipelines.common import exr  # noqa: E402
 
 
@@ -54,7 +56,7 @@ def network_alone(channels):
 
 
 def scores(picture, reference, variance):
-    error = (((picture - reference).astype("d") ** 2 - variance) / (reference.astype("d") ** 2 + 0.01)).mean(-1)
+    error = relative_squares(picture.astype("d"), reference.astype("d"), variance).mean(-1)
     return error.mean(), numpy.sort(error.ravel())[: int(error.size * 0.999)].mean()
 
 

@@ -3,9 +3,9 @@
 and prints relMSE of each frame and flicker, in thousandths, and the frame that loses most against the first radius.
 Needs numpy and OpenImageIO's Python module.
 
-relMSE: mean of ((x - r)^2 - Var r) / (r^2 + 0.01), r the reference, Var r the variance of its mean.
-flicker: variance over the frames of a shot of the relative error (x - r) / sqrt(r^2 + 0.01), less the variance that the
-reference's noise adds, averaged over pixels and shots.
+relMSE: as relmse.py computes it; r is the reference, and Var r the variance of its mean.
+flicker: variance over the frames of a shot of the relative error (x - r) / sqrt(r^2 + relmse.FLOOR), less the variance
+that the reference's noise adds, averaged over pixels and shots.
 """
 
 import argparse

@@ -4,6 +4,8 @@ every folder."""
 import re
 import unittest
 
+from pipelines.common import layer_names
+
 from . import tree
 
 
@@ -27,6 +29,12 @@ class Drivers(unittest.TestCase):
         self.assertIn("blender", folders)
         rows = column_of_code("pipelines/README.md", "folder")
         self.assertEqual(folders, {row[0].rstrip("/") for row in rows})
+
+    def test_layers_are_named_as_by_the_program(self):
+        header = tree.read("src/io/renderers/polyrecon.h")
+        named = dict(re.findall(r"constexpr const char\* (\w+) = \"([^\"]*)\";", header))
+        for constant in ("variance_suffix", "half_a_suffix", "half_b_suffix", "sample_count_pass"):
+            self.assertEqual(getattr(layer_names, constant.upper()), named[constant])
 
 
 if __name__ == "__main__":

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <cstdio>
 #include <memory>
 #include <string>
@@ -14,6 +16,7 @@
 #include "cli/compare/comparison.h"
 #include "cli/compare/comparison_output.h"
 #include "cli/compare/comparison_page.h"
+#include "core/relmse.h"
 #include "io/files/atomic_file.h"
 #include "io/pictures/png_file.h"
 #include "polyrecon/error.h"
@@ -62,8 +65,9 @@ void setup_compare(CLI::App& app, Command& chosen) {
   add_display_options(*sub, o->display);
   add_memory_limit(*sub, o->max_memory);
   sub->footer(
-      "relMSE is the mean over pixels and RGB of ((x - r)^2 - Var(r)) / (r^2 + 0.01), with Var(r) from the "
-      "reference's\n"
+      fmt::format("relMSE is the mean over pixels and RGB of ((x - r)^2 - Var(r)) / (r^2 + {:g}), with Var(r) from the "
+                  "reference's\n",
+                  relmse_floor) +
       "variance layer. trimmed is relMSE without the 0.1 % worst pixels. energy is mean(x) / mean(r) - 1. FLIP is the\n"
       "mean of HDR-FLIP, the difference that a viewer notices when the pictures alternate, 0 to 1. bad is the number "
       "of\n"

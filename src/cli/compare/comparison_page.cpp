@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cli/compare/comparison_output.h"
+#include "core/relmse.h"
 #include "core/resample.h"
 #include "html/page.h"
 #include "io/pictures/false_color.h"
@@ -133,8 +134,9 @@ std::string comparison_page(const std::string& reference, const std::vector<Comp
   const std::string title = "Against " + reference;
   std::string html =
       page_head(title, page_width, rules) + "<h1>" + escaped(title) +
-      "</h1>\n<p class='soft'>relMSE: mean of ((x - r)² - Var r) / (r² + 0.01); trimmed: without the 0.1 % worst "
-      "pixels; energy: mean(x) / mean(r) - 1; FLIP: the difference that a viewer notices when the pictures alternate, "
+      fmt::format("</h1>\n<p class='soft'>relMSE: mean of ((x - r)² - Var r) / (r² + {:g}); ", relmse_floor) +
+      "trimmed: without the 0.1 % worst pixels; energy: mean(x) / mean(r) - 1; FLIP: the difference that a viewer "
+      "notices when the pictures alternate, "
       "0 "
       "to 1. Arrow keys alternate the pictures.</p>\n";
   std::size_t section = 0;

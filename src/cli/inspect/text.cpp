@@ -5,6 +5,7 @@
 #include "cli/common/printed_text.h"
 #include "cli/common/roles_output.h"
 #include "cli/inspect/report.h"
+#include "core/relmse.h"
 #include "io/layers/channel_names.h"
 
 namespace polyrecon {
@@ -47,7 +48,8 @@ std::string inspect_text(const InspectReport& report) {
   text += roles_text(found.source);
   if (!found.missing.empty()) text += text_line("missing: {}", fmt::join(found.missing, ", "));
   if (found.samples > 0) text += text_line("samples per pixel: {:g}", found.samples);
-  if (found.noise_level >= 0) text += text_line("noise level (variance / (mean^2 + 0.01)): {:.4g}", found.noise_level);
+  if (found.noise_level >= 0)
+    text += text_line("noise level (variance / (mean^2 + {:g})): {:.4g}", relmse_floor, found.noise_level);
   for (const Decision& d : report.steps) text += text_line("step: {}: {}", d.step, decision_text(d));
   for (const FoundDenoiser& d : report.denoisers)
     text += text_line("--prior {}: {}", d.option, d.name.empty() ? d.problem : d.name + ", " + d.place);
