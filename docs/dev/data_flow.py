@@ -10,7 +10,7 @@ PHASES = [
     (
         "survey",
         [
-            ("picture_of, hide_void", "src/core; void pixels"),
+            ("rendered_mask, hide_void", "src/core; void pixels"),
             ("noise_variance", "src/noise"),
             ("choose_features", "src/features"),
         ],

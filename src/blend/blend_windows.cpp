@@ -6,8 +6,8 @@
 
 #include "core/color_layout.h"
 #include "core/fast_math.h"
+#include "core/mask.h"
 #include "core/parallel.h"
-#include "core/picture_mask.h"
 #include "core/real.h"
 #include "core/rect.h"
 #include "core/simd.h"
@@ -243,7 +243,7 @@ struct Blending {
   const FitParams& params;
   BasisLayout layout;
   FitCounters& counters;
-  const Image& picture;
+  const Image& mask;
   std::vector<BlendPlane> planes;
 
   std::size_t responses() const { return static_cast<std::size_t>(source.response->channels()); }
@@ -280,7 +280,7 @@ void work_block(Blending& b, const Rect& block, Scratch& s) {
   s.bound_weight.resize(s.weight.size());
   s.fit_pitch = (b.responses() + responses_at_once - 1) / responses_at_once * responses_at_once;
   s.fit.resize(static_cast<std::size_t>(s.window.stride) * s.fit_pitch);
-  s.distances.load(*b.source.guide, *b.source.guide_variance, block, p.radius, p.patch, &b.picture);
+  s.distances.load(*b.source.guide, *b.source.guide_variance, block, p.radius, p.patch, &b.mask);
   std::vector<Real> limits;
   for (const Real bandwidth : p.bandwidths) limits.push_back(cut_exponent * bandwidth * bandwidth);
   const WindowSource source{b.source.response, b.source.noise_variance, b.source.features, b.source.guess};
@@ -404,7 +404,7 @@ int fit_halo(const FitParams& params) {
   int lattices = 1;
   for (int step = params.stride / 2; step >= 1; step /= 2) ++lattices;
   const int radii = std::max(lattices, 2);
-  // Patches at the rim of the picture continue it by what is at most another patch radius away.
+  // Patches at the rim of the mask continue it by what is at most another patch radius away.
   return radii * params.radius + 2 * params.patch.radius + 1;
 }
 
@@ -412,8 +412,8 @@ std::vector<BlendedFit> fit_and_blend(const FitSource& source, const std::vector
                                       const FitParams& params, FitCounters& counters, Progress& progress) {
   const int width = source.response->width(), height = source.response->height();
   const Image everywhere;
-  const Image& picture = source.picture ? *source.picture : everywhere;
-  Blending b{source, params, BasisLayout(source.features->channels(), params.max_order), counters, picture, {}};
+  const Image& mask = source.mask ? *source.mask : everywhere;
+  Blending b{source, params, BasisLayout(source.features->channels(), params.max_order), counters, mask, {}};
   for (std::size_t h = 0; h < params.bandwidths.size(); ++h)
     b.planes.emplace_back(width, height, source.response->channels());
   const auto needed = needed_centers(active, width, height, params.radius);
@@ -431,8 +431,8 @@ std::vector<BlendedFit> fit_and_blend(const FitSource& source, const std::vector
         // Lattices start again in each block, so that a crop has the same ones for any stride.
         const bool on_lattice = x % block_size % step == 0 && y % block_size % step == 0;
         const bool sparse = static_cast<double>(plane.sums[(i + 1) * plane.channels - 1]) < least_coverage;
-        is_center[i] = on_lattice && !done[i] && in_picture(picture, i) &&
-                       (step == params.stride ? needed[i] : active[i] && sparse);
+        is_center[i] =
+            on_lattice && !done[i] && in_mask(mask, i) && (step == params.stride ? needed[i] : active[i] && sparse);
         done[i] |= is_center[i];
       }
     sweep(b, progress, [&](int x, int y) { return is_center[source.response->index(x, y)] != 0; });

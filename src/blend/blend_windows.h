@@ -36,7 +36,7 @@ struct FitSource {
   const Image* guide_variance = nullptr;  ///< Noise variance of guide.
   const Image* guess = nullptr;           ///< The previous stage's guess of mu, 3 channels; null in stage 1.
   double epsilon = 0;                     ///< As in HalfPair; see BlendedFit.
-  const Image* picture = nullptr;         ///< HalfPair::sampled: other pixels are in no window. Null: all may be.
+  const Image* mask = nullptr;            ///< HalfPair::sampled: other pixels are in no window. Null: all may be.
   const Image* other = nullptr;           ///< Colours of the half that is not fitted; needed with a bound.
   const Image* bound = nullptr;           ///< HalfPair::bound. Null or empty: windows count by their weights alone.
 };

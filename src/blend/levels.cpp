@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "blend/select.h"
-#include "core/picture_mask.h"
+#include "core/mask.h"
 #include "core/resample.h"
 
 namespace polyrecon {
@@ -45,11 +45,11 @@ HalfPair downsample(const HalfPair& pair) {
 
 Candidate add_coarse(const HalfPair& pair, Candidate fine, const Candidate& coarse, const SelectParams& params,
                      std::size_t max_bytes) {
-  const Image coarse_picture = pair.sampled.empty() ? Image() : half_resolution(pair.sampled);  // > 0: some picture
+  const Image coarse_mask = pair.sampled.empty() ? Image() : half_resolution(pair.sampled);  // > 0: partly inside
   std::array<Image, 2> remainder;
   for (std::size_t h = 0; h < 2; ++h)
     remainder[h] = double_resolution(plus(coarse.half[h], -1, half_resolution(fine.half[h], pair.sampled)),
-                                     pair.width(), pair.height(), coarse_picture);
+                                     pair.width(), pair.height(), coarse_mask);
   const auto make = [&](const std::array<Image, 2>& halves, const Rect& region) {
     std::vector<std::array<Image, 2>> corrected(2);
     for (std::size_t h = 0; h < 2; ++h) {

@@ -24,13 +24,13 @@ constexpr std::size_t largest_tile = std::size_t{1024} * 1024;  // pixels; large
 
 /// 1 / (brightness^2 + epsilon). The square is smoothed so that one dark pixel does not dominate the risk of its
 /// neighbourhood.
-Image inverse_brightness(const Image& brightness, double epsilon, const Image& picture) {
+Image inverse_brightness(const Image& brightness, double epsilon, const Image& mask) {
   Image out = brightness;
   for_rows(out.height(), [&](int y) {
     for (int c = 0; c < 3; ++c)
       for (int x = 0; x < out.width(); ++x) out.at(x, y, c) *= out.at(x, y, c);
   });
-  out = gaussian_blur(out, brightness_sigma, picture);
+  out = gaussian_blur(out, brightness_sigma, mask);
   for_rows(out.height(), [&](int y) {
     for (int c = 0; c < 3; ++c)
       for (int x = 0; x < out.width(); ++x)
@@ -63,8 +63,7 @@ struct Best {
 };
 
 /// exp(-z^2 / 2), z = D / SE, of a candidate compared with the best one of each pixel.
-Image likelihood(const Image& raw, const Image& risk, const Best& best, const SelectParams& params,
-                 const Image& picture) {
+Image likelihood(const Image& raw, const Image& risk, const Best& best, const SelectParams& params, const Image& mask) {
   const int width = raw.width(), height = raw.height();
   Image moments(width, height, 2);
   for_rows(height, [&](int y) {
@@ -74,7 +73,7 @@ Image likelihood(const Image& raw, const Image& risk, const Best& best, const Se
       moments.at(x, y, 1) = difference * difference;
     }
   });
-  moments = gaussian_blur(moments, params.risk_sigma, picture);
+  moments = gaussian_blur(moments, params.risk_sigma, mask);
   // The number of independent pixels whose mean has the variance of the Gaussian average.
   const double independent = 4 * pi * params.risk_sigma * params.risk_sigma;
   Image out(width, height, 1);
@@ -91,14 +90,14 @@ Image likelihood(const Image& raw, const Image& risk, const Best& best, const Se
 }
 
 /// Divides the shares of a candidate by the standard deviation s of its noise, which is relative like the risk.
-void divide_by_noise(const Image& variance, const Image& scale, double sigma, const Image& picture, Image& shares) {
+void divide_by_noise(const Image& variance, const Image& scale, double sigma, const Image& mask, Image& shares) {
   if (variance.empty()) return;
   Image relative(shares.width(), shares.height(), 1);
   for_rows(shares.height(), [&](int y) {
     for (int c = 0; c < 3; ++c)
       for (int x = 0; x < shares.width(); ++x) relative.at(x, y, 0) += variance.at(x, y, c) * scale.at(x, y, c);
   });
-  relative = gaussian_blur(relative, sigma, picture);
+  relative = gaussian_blur(relative, sigma, mask);
   for_rows(shares.height(), [&](int y) {
     for (int x = 0; x < shares.width(); ++x) {
       const Real v = relative.at(x, y, 0) + least_relative_variance;
@@ -177,7 +176,7 @@ Candidate select(const HalfPair& pair, const Image& brightness, const std::vecto
       for (int x = 0; x < width; ++x) total.at(x, y, 0) += shares[k].at(x, y, 0);
     });
   }
-  if (!pair.sampled.empty())  // far from the picture all shares are 0
+  if (!pair.sampled.empty())  // far from the mask all shares are 0
     std::replace(total.plane(0), total.plane(0) + total.pixels(), Real(0), Real(1));
   Candidate out = make_candidate(width, height, candidates[0].half[0].channels());
   const auto value = [](Real v) { return v; };

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <vector>
 
+#include "core/mask.h"
 #include "core/parallel.h"
-#include "core/picture_mask.h"
 #include "core/simd.h"
 
 namespace polyrecon {
@@ -63,9 +63,9 @@ Image gaussian_blur(const Image& image, double sigma) {
   return out;
 }
 
-Image gaussian_blur(const Image& image, double sigma, const Image& picture) {
-  if (picture.empty()) return gaussian_blur(image, sigma);
-  return divided_by_share(gaussian_blur(outside_set_to(0, picture, image), sigma), gaussian_blur(picture, sigma));
+Image gaussian_blur(const Image& image, double sigma, const Image& mask) {
+  if (mask.empty()) return gaussian_blur(image, sigma);
+  return divided_by_share(gaussian_blur(outside_set_to(0, mask, image), sigma), gaussian_blur(mask, sigma));
 }
 
 }  // namespace polyrecon

@@ -12,8 +12,8 @@ int gaussian_radius(double sigma);
 /// that are inside the image, so a constant stays a constant up to the border.
 Image gaussian_blur(const Image& image, double sigma);
 
-/// The same over the pixels that hold a picture (core/picture.h): what is beyond them counts like what is beyond the
+/// The same over the pixels inside a mask (core/mask.h): what is beyond them counts like what is beyond the
 /// border. 0 where there are none.
-Image gaussian_blur(const Image& image, double sigma, const Image& picture);
+Image gaussian_blur(const Image& image, double sigma, const Image& mask);
 
 }  // namespace polyrecon

@@ -12,8 +12,8 @@ HalfPair crop(const HalfPair& pair, const Rect& r) {
 }
 
 std::size_t half_pair_channels(std::size_t color_channels, std::size_t feature_channels) {
-  constexpr std::size_t variance = 3, picture = 1, bound = 1;
-  return 2 * color_channels + variance + picture + bound + 2 * feature_channels;
+  constexpr std::size_t variance = 3, mask = 1, bound = 1;
+  return 2 * color_channels + variance + mask + bound + 2 * feature_channels;
 }
 
 }  // namespace polyrecon

@@ -16,8 +16,8 @@ struct HalfPair {
   std::array<Image, 2> features;  ///< Prepared features, one channel per regressor, at most
                                   ///< BasisLayout::max_features (regression/basis.h); 0 channels where there are none.
   double epsilon = 0;             ///< Added to squared radiance when errors are compared relative to it; > 0.
-  Image sampled = {};  ///< Mask of the pixels that are samples of the picture (core/picture.h). Colours and variance of
-                       ///< others continue the picture next to them; no window and no average takes them.
+  Image sampled = {};  ///< Mask of the pixels that count as samples (core/void_pixels.h). Colours and variance of
+                       ///< others continue the samples next to them; no window and no average takes them.
   Image bound = {};    ///< See noise_bound (blend/noise_bound.h), 1 channel; empty where pixels are not bound.
 
   int width() const { return variance.width(); }

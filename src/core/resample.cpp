@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "core/mask.h"
 #include "core/parallel.h"
-#include "core/picture_mask.h"
 #include "core/rect.h"
 
 namespace polyrecon {
@@ -40,15 +40,15 @@ Image double_resolution(const Image& image, int width, int height) {
   return out;
 }
 
-Image half_resolution(const Image& image, const Image& picture) {
-  if (picture.empty()) return half_resolution(image);
-  return divided_by_share(half_resolution(outside_set_to(0, picture, image)), half_resolution(picture));
+Image half_resolution(const Image& image, const Image& mask) {
+  if (mask.empty()) return half_resolution(image);
+  return divided_by_share(half_resolution(outside_set_to(0, mask, image)), half_resolution(mask));
 }
 
-Image double_resolution(const Image& image, int width, int height, const Image& picture) {
-  if (picture.empty()) return double_resolution(image, width, height);
-  return divided_by_share(double_resolution(outside_set_to(0, picture, image), width, height),
-                          double_resolution(picture, width, height));
+Image double_resolution(const Image& image, int width, int height, const Image& mask) {
+  if (mask.empty()) return double_resolution(image, width, height);
+  return divided_by_share(double_resolution(outside_set_to(0, mask, image), width, height),
+                          double_resolution(mask, width, height));
 }
 
 Image at_most_wide(const Image& image, int max_width) {

@@ -8,15 +8,15 @@ namespace polyrecon {
 /// the border).
 Image half_resolution(const Image& image);
 
-/// The same over the pixels that hold a picture (core/picture.h); 0 where there are none.
-Image half_resolution(const Image& image, const Image& picture);
+/// The same over the pixels inside a mask (core/mask.h); 0 where there are none.
+Image half_resolution(const Image& image, const Image& mask);
 
 /// The image at twice the resolution, cut to width x height: bilinear between the centres of the coarse pixels and
 /// constant beyond them.
 Image double_resolution(const Image& image, int width, int height);
 
-/// The same over the coarse pixels that hold a picture; 0 where there are none.
-Image double_resolution(const Image& image, int width, int height, const Image& picture);
+/// The same over the coarse pixels inside a mask; 0 where there are none.
+Image double_resolution(const Image& image, int width, int height, const Image& mask);
 
 /// The image reduced to a width of at most max_width pixels. Each pixel is the mean of a square block of pixels.
 Image at_most_wide(const Image& image, int max_width);

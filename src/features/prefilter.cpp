@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "core/fast_math.h"
+#include "core/mask.h"
 #include "core/parallel.h"
-#include "core/picture_mask.h"
 #include "core/rect.h"
 #include "core/simd.h"
 
@@ -114,10 +114,10 @@ struct Padded {
 /// Filters one tile of source with weights measured on guide.
 class TileFilter {
  public:
-  TileFilter(const Image& source, const Image& guide, const Image& variance, const Image& picture, const Rect& tile,
+  TileFilter(const Image& source, const Image& guide, const Image& variance, const Image& mask, const Rect& tile,
              const PrefilterParams& params)
       : source_(source),
-        picture_(picture),
+        mask_(mask),
         tile_(tile),
         params_(params),
         values_(guide, tile, params.search_radius + params.patch_radius),
@@ -141,7 +141,7 @@ class TileFilter {
     for (int c = 0; c < source_.channels(); ++c)
       for (int y = 0; y < tile_.height(); ++y)
         for (int x = 0; x < tile_.width(); ++x)
-          if (total_[at(x, y)] > 0)  // else no pixel around is in the picture
+          if (total_[at(x, y)] > 0)  // else no pixel around is inside the mask
             out.at(tile_.x0 + x, tile_.y0 + y, c) =
                 static_cast<Real>(sum_[static_cast<std::size_t>(c) * tile_.area() + at(x, y)] / total_[at(x, y)]);
   }
@@ -172,9 +172,9 @@ class TileFilter {
     const int x0 = std::max(0, -dx - tile_.x0), x1 = std::min(tile_.width(), source_.width() - dx - tile_.x0);
     if (x0 >= x1) return;
     const std::size_t first = source_.index(tile_.x0 + x0 + dx, tile_.y0 + y + dy);
-    if (!picture_.empty())
+    if (!mask_.empty())
       for (int x = x0; x < x1; ++x)
-        if (!in_picture(picture_, first + static_cast<std::size_t>(x - x0))) weight_[static_cast<std::size_t>(x)] = 0;
+        if (!in_mask(mask_, first + static_cast<std::size_t>(x - x0))) weight_[static_cast<std::size_t>(x)] = 0;
     add_values(weight_.data() + x0, total_.data() + at(x0, y), x1 - x0);
     for (int c = 0; c < source_.channels(); ++c)
       accumulate(weight_.data() + x0, source_.row(c, tile_.y0 + y + dy) + tile_.x0 + x0 + dx,
@@ -182,7 +182,7 @@ class TileFilter {
   }
 
   const Image& source_;
-  const Image& picture_;
+  const Image& mask_;
   Rect tile_;
   const PrefilterParams& params_;
   Padded values_, noise_;
@@ -203,7 +203,7 @@ bool has_noise(const Image& noise, const Rect& tile) {
 }  // namespace
 
 std::array<Image, 2> prefilter(const std::array<Image, 2>& halves, const Image& variance, const PrefilterParams& params,
-                               Progress& progress, const Image& picture) {
+                               Progress& progress, const Image& mask) {
   constexpr int tile_side = 64;  // the sums and distances of a tile stay in the second-level cache
   const Image noise = widened_variance(variance);
   std::array<Image, 2> out = halves;
@@ -212,7 +212,7 @@ std::array<Image, 2> prefilter(const std::array<Image, 2>& halves, const Image& 
   tiles.erase(std::remove_if(tiles.begin(), tiles.end(), noise_free), tiles.end());
   parallel_for(2 * tiles.size(), progress, [&](std::size_t i) {
     const std::size_t h = i % 2;
-    TileFilter(halves[h], halves[1 - h], noise, picture, tiles[i / 2], params).run(out[h]);
+    TileFilter(halves[h], halves[1 - h], noise, mask, tiles[i / 2], params).run(out[h]);
   });
   return out;
 }

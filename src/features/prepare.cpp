@@ -9,8 +9,8 @@
 
 #include "core/color_layout.h"
 #include "core/halves.h"
+#include "core/mask.h"
 #include "core/parallel.h"
-#include "core/picture_mask.h"
 #include "core/repair.h"
 #include "noise/feature_noise.h"
 #include "noise/fission.h"
@@ -22,12 +22,12 @@ namespace {
 
 constexpr double noise_floor = 1e-5;  // noise variance over variance of the feature below which it is not prefiltered
 
-/// Repairs an image and continues it beyond the picture. Returns the number of repaired pixels of the picture.
-std::size_t repair(Image& image, const Image& picture, Real largest = largest_value) {
-  if (picture.empty()) return repair_nonfinite(image, repair_depth, largest);
-  image = outside_set_to(std::numeric_limits<Real>::quiet_NaN(), picture, std::move(image));
+/// Repairs an image and continues it beyond the mask. Returns the number of repaired pixels inside the mask.
+std::size_t repair(Image& image, const Image& mask, Real largest = largest_value) {
+  if (mask.empty()) return repair_nonfinite(image, repair_depth, largest);
+  image = outside_set_to(std::numeric_limits<Real>::quiet_NaN(), mask, std::move(image));
   const std::size_t all = image.pixels();
-  return repair_nonfinite(image, repair_depth, largest) - (all - picture_pixels(picture, all));
+  return repair_nonfinite(image, repair_depth, largest) - (all - mask_pixels(mask, all));
 }
 
 /// Calls body(c, y) for every row of every channel, rows in parallel.
@@ -38,8 +38,8 @@ void for_rows_of(const Image& image, const Body& body) {
   });
 }
 
-/// Mean of the finite, positive values of the beauty over all pixels of the picture.
-double mean_brightness(const Image& beauty, const Image& picture) {
+/// Mean of the finite, positive values of the beauty over all pixels inside the mask.
+double mean_brightness(const Image& beauty, const Image& mask) {
   const double sum = ordered_sum(static_cast<std::size_t>(beauty.height()), [&](std::size_t y) {
     double row = 0;
     for (int c = 0; c < 3; ++c) {
@@ -49,7 +49,7 @@ double mean_brightness(const Image& beauty, const Image& picture) {
     }
     return row;
   });
-  return sum / (3.0 * static_cast<double>(picture_pixels(picture, beauty.pixels())));
+  return sum / (3.0 * static_cast<double>(mask_pixels(mask, beauty.pixels())));
 }
 
 struct Range {
@@ -202,15 +202,15 @@ Real half_noise_of(const Pass& pass) {
 
 /// Moves the halves out of a pass and repairs them. A pass without halves has its mean split, with half_variance as the
 /// noise variance of one half; where that is empty both halves are the mean.
-std::array<Image, 2> halves_of(Pass& pass, const Image& half_variance, std::uint64_t stream, const Image& picture,
+std::array<Image, 2> halves_of(Pass& pass, const Image& half_variance, std::uint64_t stream, const Image& mask,
                                std::size_t& repaired, double correlation = 0) {
   if (pass.has_halves()) {
     std::array<Image, 2> halves{std::move(pass.half_a), std::move(pass.half_b)};
-    for (Image& half : halves) repaired += repair(half, picture);
+    for (Image& half : halves) repaired += repair(half, mask);
     return halves;
   }
   Image mean = pass.mean;
-  repaired += repair(mean, picture);
+  repaired += repair(mean, mask);
   if (half_variance.empty()) return {mean, mean};
   Image variance = half_variance;
   scale(variance, Real(0.5));
@@ -225,13 +225,13 @@ void remove_noise_of_sky(const Image& depth, double sky, Image& variance) {
 
 /// Noise variance of one half of a feature; empty where it is unknown. An estimated variance is that of the mean, which
 /// then serves as both halves: splitting it adds as much noise as the independence of the halves removes.
-Image feature_half_variance(Feature& feature, double sky, const Image& picture, std::size_t& repaired) {
+Image feature_half_variance(Feature& feature, double sky, const Image& mask, std::size_t& repaired) {
   Pass& pass = feature.pass;
   if (!pass.variance.empty()) {
     const Real of_half = pass.variance_is_estimated ? Real(1) : half_noise_of(pass);
     Image variance = std::move(pass.variance);
     if (may_show_sky(feature)) remove_noise_of_sky(pass.mean, sky, variance);
-    repaired += repair(variance, picture);
+    repaired += repair(variance, mask);
     make_non_negative(variance);
     scale(variance, of_half);
     return variance;
@@ -244,7 +244,7 @@ Image feature_half_variance(Feature& feature, double sky, const Image& picture, 
     for (int x = 0; x < variance.width(); ++x) values[x] = 2 * variance_of_mean(values[x], b[x]);
   });
   if (may_show_sky(feature)) remove_noise_of_sky(pass.mean, sky, variance);
-  repaired += repair(variance, picture);
+  repaired += repair(variance, mask);
   return variance;
 }
 
@@ -263,10 +263,10 @@ std::size_t negative_pixels(const Image& image) {
 
 /// Halves of a colour pass that has none. They differ by the pass's share, pass / beauty, of the difference between the
 /// beauty's halves, so that the halves of passes which add up to the beauty add up to the beauty's halves.
-std::array<Image, 2> split_like(const std::array<Image, 2>& beauty, const Pass& pass, const Image& picture,
+std::array<Image, 2> split_like(const std::array<Image, 2>& beauty, const Pass& pass, const Image& mask,
                                 std::size_t& repaired) {
   Image mean = pass.mean;
-  repaired += repair(mean, picture);
+  repaired += repair(mean, mask);
   std::array<Image, 2> halves{mean, mean};
   for (int c = 0; c < 3; ++c)
     for (std::size_t i = 0; i < mean.pixels(); ++i) {
@@ -294,25 +294,25 @@ void append(const std::array<Image, 2>& halves, std::array<Image, 2>& to, int& c
 /// Prefilters the halves of a feature, and flattens them where the prefilter would leave noise that is fitted to the
 /// noise of the beauty.
 std::array<Image, 2> prefiltered(std::array<Image, 2> halves, const Image& variance, const FeatureUse& use,
-                                 const PrefilterParams& params, const Image& picture, Progress& progress) {
-  if (!use.flatten) return prefilter(halves, variance, params, progress, picture);
-  const Image part = noise_in_variation(halves[0], variance, picture);
-  halves = prefilter(halves, variance, params, progress, picture);
-  for (Image& half : halves) half = flattened(std::move(half), part, picture);
+                                 const PrefilterParams& params, const Image& mask, Progress& progress) {
+  if (!use.flatten) return prefilter(halves, variance, params, progress, mask);
+  const Image part = noise_in_variation(halves[0], variance, mask);
+  halves = prefilter(halves, variance, params, progress, mask);
+  for (Image& half : halves) half = flattened(std::move(half), part, mask);
   return halves;
 }
 
 std::array<Image, 2> prepared_feature(Feature feature, const FeatureUse& use, double sky, std::size_t stream,
-                                      const PrefilterParams& prefilter_params, const Image& picture,
-                                      std::size_t& repaired, Progress& progress) {
-  Image variance = feature_half_variance(feature, sky, picture, repaired);
+                                      const PrefilterParams& prefilter_params, const Image& mask, std::size_t& repaired,
+                                      Progress& progress) {
+  Image variance = feature_half_variance(feature, sky, mask, repaired);
   auto halves =
-      halves_of(feature.pass, feature.pass.variance_is_estimated ? Image() : variance, stream, picture, repaired);
+      halves_of(feature.pass, feature.pass.variance_is_estimated ? Image() : variance, stream, mask, repaired);
   if (use.prefilter && !variance.empty()) {
-    repair(feature.pass.mean, picture);
+    repair(feature.pass.mean, mask);
     transform_variance(use, feature.pass.mean, variance);
     for (Image& half : halves) transform(use, half);
-    return prefiltered(std::move(halves), variance, use, prefilter_params, picture, progress);
+    return prefiltered(std::move(halves), variance, use, prefilter_params, mask, progress);
   }
   for (Image& half : halves) transform(use, half);
   return halves;
@@ -337,20 +337,20 @@ void prepare_colors(Frame& frame, const Preparation& preparation, bool with_alph
   const int channels = ColorLayout(static_cast<int>(frame.aovs.size()), alpha).channels();
   for (Image& color : out.pair.color) color = Image(frame.width(), frame.height(), channels);
   int channel = 0;
-  const Image& picture = out.pair.sampled;
-  const auto beauty = halves_of(frame.beauty, out.pair.variance, preparation.stream, picture, out.repaired_pixels,
+  const Image& mask = out.pair.sampled;
+  const auto beauty = halves_of(frame.beauty, out.pair.variance, preparation.stream, mask, out.repaired_pixels,
                                 preparation.noise_correlation);
   append(beauty, out.pair.color, channel);
   frame.beauty.variance = {};
   for (Pass& aov : frame.aovs) {
-    append(aov.has_halves() ? halves_of(aov, {}, 0, picture, out.repaired_pixels)
-                            : split_like(beauty, aov, picture, out.repaired_pixels),
+    append(aov.has_halves() ? halves_of(aov, {}, 0, mask, out.repaired_pixels)
+                            : split_like(beauty, aov, mask, out.repaired_pixels),
            out.pair.color, channel);
     aov.variance = {};
   }
   if (alpha) {
     Pass pass{"alpha", frame.alpha, {}, {}, {}};
-    append(halves_of(pass, {}, 0, picture, out.repaired_pixels), out.pair.color, channel);
+    append(halves_of(pass, {}, 0, mask, out.repaired_pixels), out.pair.color, channel);
   }
 }
 

@@ -33,8 +33,8 @@ struct Preparation {
                                  ///< joined need different ones.
   double noise_correlation = 0;  ///< Of the beauty's noise in pixels next to each other (noise/variance.h).
   std::vector<Decision> decisions;
-  Image picture = {};  ///< Mask of the pixels that hold a picture; the others stay 0 (core/picture.h).
-  Image sampled = {};  ///< Mask of the pixels that are samples of it; the others are hidden.
+  Image rendered = {};  ///< Mask of the pixels that were rendered; the others stay 0 (core/void_pixels.h).
+  Image sampled = {};   ///< Mask of the pixels that are samples of it; the others are hidden.
 };
 
 /// Decides which features take part in the fit and which of them are prefiltered. Features that are not finite,

@@ -6,8 +6,8 @@
 #include "blend/select.h"
 #include "core/gaussian.h"
 #include "core/halves.h"
+#include "core/mask.h"
 #include "core/parallel.h"
-#include "core/picture_mask.h"
 #include "core/real.h"
 #include "core/relmse.h"
 
@@ -26,7 +26,7 @@ struct ChannelErrors {
 };
 
 double noise_of_mean(const HalfPair& pair, const Image& variance, int x, int y, int c) {
-  if (!in_picture(pair.sampled, variance.index(x, y))) return 0;
+  if (!in_mask(pair.sampled, variance.index(x, y))) return 0;
   const double measured = variance.at(x, y, c);
   return measured >= 0 && std::isfinite(measured) ? measured : 0.5 * static_cast<double>(pair.variance.at(x, y, c));
 }
@@ -59,7 +59,7 @@ double mean_of(const Image& image) {
   return sum / static_cast<double>(image.pixels());
 }
 
-ErrorMap make_error_map(const HalfPair& pair, const Image& variance, const Candidate& result, const Image& picture) {
+ErrorMap make_error_map(const HalfPair& pair, const Image& variance, const Candidate& result, const Image& rendered) {
   ErrorMap map;
   map.mse = Image(pair.width(), pair.height(), 3);
   map.relative_mse = Image(pair.width(), pair.height(), 1);
@@ -68,7 +68,7 @@ ErrorMap make_error_map(const HalfPair& pair, const Image& variance, const Candi
     const ChannelErrors channel = errors_of_channel(pair, variance, result, c);
     for_rows(pair.height(), [&](int y) {
       for (int x = 0; x < pair.width(); ++x) {
-        if (!in_picture(picture, map.mse.index(x, y))) continue;
+        if (!in_mask(rendered, map.mse.index(x, y))) continue;
         const double energy = channel.energy.at(x, y, 0), random = channel.variance.at(x, y, 0);
         const double squared_bias = static_cast<double>(result.squared_bias.at(x, y, c)) / energy;
         const double error = std::min(squared_bias + random, static_cast<double>(channel.bound.at(x, y, 0)));

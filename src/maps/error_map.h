@@ -16,9 +16,9 @@ namespace polyrecon {
 /// Variance and noise of single pixels are unreliable and so are averaged by a Gaussian of 2 pixels.
 /// variance: of the mean's noise as measured (HalfPair::variance has a floor), 3 channels. Where it is negative or not
 /// finite, HalfPair::variance is used.
-/// picture: mask of the pixels that hold a picture (core/picture.h); the others have no error.
+/// rendered: mask of the pixels that are not void; the others have no error.
 ErrorMap make_error_map(const HalfPair& pair, const Image& variance, const Candidate& result,
-                        const Image& picture = {});
+                        const Image& rendered = {});
 
 /// The error of the mix, from that of the reconstruction f. For the best share w, the error of the mix is that of f
 /// less (1 - w)^2 (f - prior)^2, by Pythagoras; half of it is subtracted, as the share is not known exactly, and at

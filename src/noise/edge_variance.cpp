@@ -4,11 +4,11 @@
 #include <array>
 #include <cmath>
 
+#include "core/mask.h"
 #include "core/parallel.h"
-#include "core/picture_mask.h"
 #include "core/real.h"
 #include "core/rect.h"
-#include "noise/lattice.h"
+#include "noise/estimate_grid.h"
 
 namespace polyrecon {
 namespace {
@@ -28,18 +28,18 @@ Real convolved(const Real* in, std::ptrdiff_t step) {
   return sum;
 }
 
-/// Whether all pixels under the kernel at a place are in the picture.
-bool all_in_picture(const Image& picture, int x, int y) {
-  if (picture.empty()) return true;
+/// Whether all pixels under the kernel at a place are inside the mask.
+bool all_in_mask(const Image& mask, int x, int y) {
+  if (mask.empty()) return true;
   for (int v = y; v < y + taps; ++v)
     for (int u = x; u < x + taps; ++u)
-      if (!in_picture(picture, picture.index(u, v))) return false;
+      if (!in_mask(mask, mask.index(u, v))) return false;
   return true;
 }
 
 /// The square of the convolution at each place, which covers the pixels (x..x+3, y..y+3); -1 where one of these is not
-/// in the picture.
-Image squared_corner(const Image& y, const Image& picture) {
+/// inside the mask.
+Image squared_corner(const Image& y, const Image& mask) {
   const int width = y.width() - taps + 1, height = y.height() - taps + 1;
   Image along(width, y.height(), y.channels()), out(width, height, y.channels());
   for_rows(along.height(), [&](int v) {
@@ -50,7 +50,7 @@ Image squared_corner(const Image& y, const Image& picture) {
     for (int c = 0; c < y.channels(); ++c)
       for (int x = 0; x < width; ++x) {
         const auto both = static_cast<double>(convolved(along.row(c, v) + x, width));
-        out.at(x, v, c) = all_in_picture(picture, x, v) ? storable(both * both) : Real(-1);
+        out.at(x, v, c) = all_in_mask(mask, x, v) ? storable(both * both) : Real(-1);
       }
   });
   return out;
@@ -71,15 +71,15 @@ Real mean_over(const Image& image, const Rect& area, int c) {
 
 }  // namespace
 
-Image corner_variance(const Image& y, const Image& picture) {
+Image corner_variance(const Image& y, const Image& mask) {
   Image out(y.width(), y.height(), y.channels());
   if (y.width() < taps || y.height() < taps) return out;
-  const Image squares = squared_corner(y, picture);
-  Image means = lattice_of(y);
+  const Image squares = squared_corner(y, mask);
+  Image means = estimate_grid(y);
   for_rows(means.height(), [&](int v) {
     for (int x = 0; x < means.width(); ++x) {
       // The middle of the kernel at place (x, y) is half a pixel beyond pixel (x + 1, y + 1).
-      const int px = x * lattice_stride - 1, py = v * lattice_stride - 1;
+      const int px = x * grid_stride - 1, py = v * grid_stride - 1;
       const Rect area = intersect(grow({px, py, px + 1, py + 1}, mean_radius), squares.bounds());
       for (int c = 0; c < y.channels(); ++c) means.at(x, v, c) = mean_over(squares, area, c);
     }
@@ -87,7 +87,7 @@ Image corner_variance(const Image& y, const Image& picture) {
   const Image medians = medians_around(means);
   for_rows(out.height(), [&](int v) {
     for (int c = 0; c < out.channels(); ++c)
-      for (int x = 0; x < out.width(); ++x) out.at(x, v, c) = medians.at(x / lattice_stride, v / lattice_stride, c);
+      for (int x = 0; x < out.width(); ++x) out.at(x, v, c) = medians.at(x / grid_stride, v / grid_stride, c);
   });
   return out;
 }
@@ -114,8 +114,8 @@ Image two_value_variance(const Image& y, const Image& samples) {
   return out;
 }
 
-Image edge_variance(const Image& y, const Image& samples, const Image& picture) {
-  Image out = corner_variance(y, picture);
+Image edge_variance(const Image& y, const Image& samples, const Image& mask) {
+  Image out = corner_variance(y, mask);
   const Image most = two_value_variance(y, samples);
   for_rows(out.height(), [&](int v) {
     for (int c = 0; c < out.channels(); ++c)

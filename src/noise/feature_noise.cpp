@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "core/gaussian.h"
+#include "core/mask.h"
 #include "core/parallel.h"
-#include "core/picture_mask.h"
 
 namespace polyrecon {
 namespace {
@@ -34,8 +34,8 @@ Real smooth_step(double x) {
 
 }  // namespace
 
-Image noise_in_variation(const Image& feature, const Image& variance, const Image& picture) {
-  Image variation = gaussian_blur(feature, sigma, picture);
+Image noise_in_variation(const Image& feature, const Image& variance, const Image& mask) {
+  Image variation = gaussian_blur(feature, sigma, mask);
   for_rows(feature.height(), [&](int y) {
     for (int c = 0; c < feature.channels(); ++c) {
       const Real* f = feature.row(c, y);
@@ -43,23 +43,23 @@ Image noise_in_variation(const Image& feature, const Image& variance, const Imag
       for (int x = 0; x < feature.width(); ++x) v[x] = (f[x] - v[x]) * (f[x] - v[x]);
     }
   });
-  variation = gaussian_blur(variation, sigma, picture);
-  Image out = gaussian_blur(variance, sigma, picture);
+  variation = gaussian_blur(variation, sigma, mask);
+  Image out = gaussian_blur(variance, sigma, mask);
   const double of_noise = noise_beyond_blur();
   for_rows(out.height(), [&](int y) {
     for (int c = 0; c < out.channels(); ++c)
       for (int x = 0; x < out.width(); ++x) {
         const double noise = of_noise * static_cast<double>(out.at(x, y, c));
         const auto all = static_cast<double>(variation.at(x, y, c));
-        const bool known = all > 0 && in_picture(picture, out.index(x, y));
+        const bool known = all > 0 && in_mask(mask, out.index(x, y));
         out.at(x, y, c) = known ? smooth_step((noise / all - least_part) / (full_part - least_part)) : Real(0);
       }
   });
   return out;
 }
 
-Image flattened(Image image, const Image& part, const Image& picture) {
-  const Image blur = gaussian_blur(image, sigma, picture);
+Image flattened(Image image, const Image& part, const Image& mask) {
+  const Image blur = gaussian_blur(image, sigma, mask);
   for_rows(image.height(), [&](int y) {
     for (int c = 0; c < image.channels(); ++c) {
       const Real *share = part.row(c, y), *smooth = blur.row(c, y);

@@ -9,14 +9,14 @@
 
 #include "core/gaussian.h"
 #include "core/halves.h"
+#include "core/mask.h"
 #include "core/parallel.h"
-#include "core/picture_mask.h"
 #include "core/real.h"
 #include "core/rect.h"
 #include "core/repair.h"
 #include "noise/edge_variance.h"
+#include "noise/estimate_grid.h"
 #include "noise/feature_noise.h"
-#include "noise/lattice.h"
 #include "noise/spike_variance.h"
 #include "regression/least_squares.h"
 
@@ -48,11 +48,11 @@ double degrees_of_freedom(const NestedFactor& factor, const Window& window) {
   return trace;
 }
 
-/// The pixels of an area that are in a window: their places in it, row by row; -1 for pixels outside the picture.
+/// The pixels of an area that are in a window: their places in it, row by row; -1 for pixels outside the mask.
 struct Places {
   Rect area;
   std::array<int, std::size_t{2 * fit_radius + 1} * std::size_t{2 * fit_radius + 1}> place;
-  bool whole = true;  ///< No pixel is outside the picture, so each place is its index.
+  bool whole = true;  ///< No pixel is outside the mask, so each place is its index.
 };
 
 template <typename Visit>
@@ -130,7 +130,7 @@ struct Scratch {
 };
 
 /// Fits constant, features and plane around a centre.
-Places fit_around(const Image& y, const Image& features, const Image& picture, int cx, int cy, Scratch& s) {
+Places fit_around(const Image& y, const Image& features, const Image& mask, int cx, int cy, Scratch& s) {
   const BasisLayout layout(features.channels(), 1);
   Window& window = s.window;
   window.reserve(fit_radius, layout.columns(), y.channels());
@@ -140,7 +140,7 @@ Places fit_around(const Image& y, const Image& features, const Image& picture, i
   auto place = places.place.begin();
   for (int v = places.area.y0; v < places.area.y1; ++v)
     for (int u = places.area.x0; u < places.area.x1; ++u) {
-      *place = in_picture(picture, y.index(u, v)) ? window.count : -1;
+      *place = in_mask(mask, y.index(u, v)) ? window.count : -1;
       if (*place++ < 0) {
         places.whole = false;
         continue;
@@ -156,14 +156,14 @@ Places fit_around(const Image& y, const Image& features, const Image& picture, i
 }
 
 /// Estimates the variance of the noise per channel from the fit around a centre; -1 where the window has too few pixels
-/// for the columns, or its centre is outside the picture.
-void fit_noise(const Image& y, const Image& features, const Image& picture, int cx, int cy, double correlation,
-               Scratch& s, Real* out) {
-  if (!in_picture(picture, y.index(cx, cy))) {
+/// for the columns, or its centre is outside the mask.
+void fit_noise(const Image& y, const Image& features, const Image& mask, int cx, int cy, double correlation, Scratch& s,
+               Real* out) {
+  if (!in_mask(mask, y.index(cx, cy))) {
     std::fill_n(out, y.channels(), Real(-1));
     return;
   }
-  const Places places = fit_around(y, features, picture, cx, cy, s);
+  const Places places = fit_around(y, features, mask, cx, cy, s);
   const double freedom = s.window.count - degrees_of_freedom(s.factor, s.window);
   const double hat = mean_hat_of_neighbours(s.factor, s.window, places);
   for (int c = 0; c < y.channels(); ++c) {
@@ -186,9 +186,9 @@ double mean_product(const std::vector<double>& values, int lag) {
 
 /// Correlation of the residuals with those one and two pixels away around a centre, if the features say that the place
 /// is flat and the beauty is noisy there; else nothing.
-std::optional<std::array<double, 2>> correlations_if_flat(const Image& y, const Image& features, const Image& picture,
+std::optional<std::array<double, 2>> correlations_if_flat(const Image& y, const Image& features, const Image& mask,
                                                           int cx, int cy, Scratch& s) {
-  const Places places = fit_around(y, features, picture, cx, cy, s);
+  const Places places = fit_around(y, features, mask, cx, cy, s);
   if (!places.whole || s.window.count < (2 * fit_radius + 1) * (2 * fit_radius + 1) ||
       features.channels() - s.window.layout.features() < least_flat_features)
     return std::nullopt;
@@ -214,11 +214,11 @@ Image repaired(const Pass& feature) {
 
 /// A feature that explains the beauty, repaired. Where a variation is noise, it would explain the beauty's noise, as
 /// the same samples make both.
-Image explaining(const Pass& feature, const Image& picture) {
+Image explaining(const Pass& feature, const Image& mask) {
   Image mean = repaired(feature);
   if (!feature.variance_is_estimated) return mean;
-  const Image part = noise_in_variation(mean, feature.variance, picture);
-  return flattened(std::move(mean), part, picture);
+  const Image part = noise_in_variation(mean, feature.variance, mask);
+  return flattened(std::move(mean), part, mask);
 }
 
 /// The features that fit into the local model, in the frame's order, with the values that `values` makes of a pass.
@@ -248,20 +248,20 @@ Real beyond_rounding(Real variance, Real value) {
   return variance > rounding * rounding ? variance : 0;
 }
 
-Image variance_from_halves(const Pass& beauty, const Image& picture) {
+Image variance_from_halves(const Pass& beauty, const Image& mask) {
   Image out = beauty.half_a;
   for (int c = 0; c < 3; ++c)
     for (std::size_t i = 0; i < out.pixels(); ++i)
       out.plane(c)[i] = variance_of_mean(beauty.half_a.plane(c)[i], beauty.half_b.plane(c)[i]);
   repair_nonfinite(out, 2, largest_variance(beauty.mean));
-  return gaussian_blur(out, half_difference_sigma, picture);
+  return gaussian_blur(out, half_difference_sigma, mask);
 }
 
 }  // namespace
 
 bool noise_is_measured(const Frame& frame) { return frame.beauty.noise_is_known(); }
 
-double noise_correlation(const Frame& frame, Progress& progress, const Image& picture) {
+double noise_correlation(const Frame& frame, Progress& progress, const Image& mask) {
   Image y = frame.beauty.mean;
   repair_nonfinite(y, 2);
   const Image features = fitting_features(frame, [](const Pass& pass) { return repaired(pass); });
@@ -272,7 +272,7 @@ double noise_correlation(const Frame& frame, Progress& progress, const Image& pi
     Scratch scratch;
     for (int x = 0; x < columns; ++x)
       if (const auto r =
-              correlations_if_flat(y, features, picture, x * flat_stride, static_cast<int>(row) * flat_stride, scratch))
+              correlations_if_flat(y, features, mask, x * flat_stride, static_cast<int>(row) * flat_stride, scratch))
         if (std::abs((*r)[1]) < most_far_correlation) found[row].push_back((*r)[0]);
   });
   std::vector<double> all;
@@ -284,26 +284,26 @@ double noise_correlation(const Frame& frame, Progress& progress, const Image& pi
   return correlation < least_correlation ? 0 : std::min(correlation, most_correlation);
 }
 
-Image estimate_variance(const Image& y, const Image& features, Progress& progress, const Image& picture,
+Image estimate_variance(const Image& y, const Image& features, Progress& progress, const Image& mask,
                         const Image& samples, double correlation) {
-  Image fits = lattice_of(y);
+  Image fits = estimate_grid(y);
   parallel_for(static_cast<std::size_t>(fits.height()), progress, [&](std::size_t row) {
     Scratch scratch;
     std::vector<Real> variance(static_cast<std::size_t>(y.channels()));
     const int v = static_cast<int>(row);
     for (int x = 0; x < fits.width(); ++x) {
-      fit_noise(y, features, picture, x * lattice_stride, v * lattice_stride, correlation, scratch, variance.data());
+      fit_noise(y, features, mask, x * grid_stride, v * grid_stride, correlation, scratch, variance.data());
       for (int c = 0; c < y.channels(); ++c) fits.at(x, v, c) = variance[static_cast<std::size_t>(c)];
     }
   });
   fits = medians_around(fits);
   Image out = spike_variance(y);
-  const Image edges = samples.empty() ? Image() : edge_variance(y, samples, picture);
+  const Image edges = samples.empty() ? Image() : edge_variance(y, samples, mask);
   parallel_for(static_cast<std::size_t>(out.height()), progress, [&](std::size_t row) {
     const int v = static_cast<int>(row);
     for (int c = 0; c < y.channels(); ++c)
       for (int x = 0; x < out.width(); ++x) {
-        const Real value = y.at(x, v, c), fit = fits.at(x / lattice_stride, v / lattice_stride, c);
+        const Real value = y.at(x, v, c), fit = fits.at(x / grid_stride, v / grid_stride, c);
         const Real noise = std::max({fit, out.at(x, v, c), edges.empty() ? Real(0) : edges.at(x, v, c)});
         out.at(x, v, c) = value == 0 ? Real(0) : beyond_rounding(noise, value);
       }
@@ -311,23 +311,23 @@ Image estimate_variance(const Image& y, const Image& features, Progress& progres
   return out;
 }
 
-NoiseVariance noise_variance(const Frame& frame, Progress& progress, const Image& picture, double correlation) {
+NoiseVariance noise_variance(const Frame& frame, Progress& progress, const Image& mask, double correlation) {
   if (!frame.beauty.variance.empty()) return {frame.beauty.variance, "from the file", true};
-  if (frame.beauty.has_halves()) return {variance_from_halves(frame.beauty, picture), "from the half buffers", true};
+  if (frame.beauty.has_halves()) return {variance_from_halves(frame.beauty, mask), "from the half buffers", true};
   Image y = frame.beauty.mean;
   repair_nonfinite(y, 2);
-  const Image features = fitting_features(frame, [&](const Pass& pass) { return explaining(pass, picture); });
-  return {estimate_variance(y, features, progress, picture, frame.sample_count, correlation),
-          "estimated from the image", false};
+  const Image features = fitting_features(frame, [&](const Pass& pass) { return explaining(pass, mask); });
+  return {estimate_variance(y, features, progress, mask, frame.sample_count, correlation), "estimated from the image",
+          false};
 }
 
-void estimate_feature_variance(Frame& frame, Progress& progress, const Image& picture, double correlation) {
+void estimate_feature_variance(Frame& frame, Progress& progress, const Image& mask, double correlation) {
   for (Feature& feature : frame.features) {
     if (!noise_is_estimated(feature.role, feature.pass.noise_is_known())) continue;
     Image mean = feature.pass.mean;
     repair_nonfinite(mean, 2);
     feature.pass.variance =
-        estimate_variance(mean, Image(mean.width(), mean.height(), 0), progress, picture, {}, correlation);
+        estimate_variance(mean, Image(mean.width(), mean.height(), 0), progress, mask, {}, correlation);
     feature.pass.variance_is_estimated = true;
   }
 }

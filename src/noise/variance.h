@@ -23,16 +23,16 @@ bool noise_is_measured(const Frame& frame);
 /// The noise variance of the beauty: the variance in the file; without one the smoothed variance of the half buffers
 /// (variance_of_mean, core/halves.h); without these estimate_variance, with features whose own noise, where it is
 /// estimated, explains nothing (noise/feature_noise.h).
-/// picture: mask of the pixels that take part (core/picture_mask.h), here and below.
+/// mask: the pixels that take part (core/mask.h), here and below.
 /// correlation: of the noise of neighbouring pixels (noise_correlation), here and below.
-NoiseVariance noise_variance(const Frame& frame, Progress& progress, const Image& picture = {}, double correlation = 0);
+NoiseVariance noise_variance(const Frame& frame, Progress& progress, const Image& mask = {}, double correlation = 0);
 
 /// The correlation of the noise of pixels next to each other in a render whose noise is unknown: 0 unless a pixel
 /// filter spreads samples over several pixels (splatting: 0.39 with Mitsuba's Gaussian, 0.25 with a tent). It is read
 /// off windows that are flat, as at least five channels of the features do not vary there, and whose residuals two
 /// pixels apart are not correlated, as those of shadows are. 0 where such windows are few: without features, or in
 /// grass.
-double noise_correlation(const Frame& frame, Progress& progress, const Image& picture = {});
+double noise_correlation(const Frame& frame, Progress& progress, const Image& mask = {});
 
 /// Estimates the noise variance of an image that has none, from the residuals r of local fits (constant, features and
 /// plane over 7 x 7 pixels, around every second pixel). The noise of different pixels is independent, but the texture
@@ -46,12 +46,12 @@ double noise_correlation(const Frame& frame, Progress& progress, const Image& pi
 /// the value is 0, since then no sample found any radiance, and where rounding to half floats explains all of it (a
 /// deviation of at most 2^-11 of the value). y: finite, any channels. features: finite, of y's size, may have no
 /// channels. samples: per pixel, 1 channel; empty where unknown. Returns y's shape, y's unit squared.
-Image estimate_variance(const Image& y, const Image& features, Progress& progress, const Image& picture = {},
+Image estimate_variance(const Image& y, const Image& features, Progress& progress, const Image& mask = {},
                         const Image& samples = {}, double correlation = 0);
 
 /// Sets the variance of the features whose noise is estimated (noise_is_estimated, polyrecon/roles.h). Renderers carry
 /// features through reflections, depth of field and motion blur, which makes them noisy; a model that takes this noise
 /// for detail keeps noise in the beauty.
-void estimate_feature_variance(Frame& frame, Progress& progress, const Image& picture = {}, double correlation = 0);
+void estimate_feature_variance(Frame& frame, Progress& progress, const Image& mask = {}, double correlation = 0);
 
 }  // namespace polyrecon

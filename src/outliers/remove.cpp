@@ -7,8 +7,8 @@
 #include <limits>
 
 #include "core/color_layout.h"
+#include "core/mask.h"
 #include "core/parallel.h"
-#include "core/picture_mask.h"
 #include "core/rect.h"
 
 namespace polyrecon {
@@ -155,7 +155,7 @@ std::ptrdiff_t against_other_half(const HalfPair& pair, std::size_t h, int x, in
 /// Index of the pixel that replaces pixel (x, y) of half h if that is an outlier, else -1.
 std::ptrdiff_t replacement_of(const HalfPair& pair, std::size_t h, int x, int y, const PairNoise& known,
                               const OutlierParams& p) {
-  if (!in_picture(pair.sampled, pair.variance.index(x, y))) return -1;
+  if (!in_mask(pair.sampled, pair.variance.index(x, y))) return -1;
   const std::ptrdiff_t neighbour = against_neighbours(pair, h, x, y, known, p);
   return neighbour >= 0 || !known.independent_halves ? neighbour : against_other_half(pair, h, x, y, known, p);
 }

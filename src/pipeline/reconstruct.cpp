@@ -10,9 +10,9 @@
 #include "core/color_layout.h"
 #include "core/halves.h"
 #include "core/parallel.h"
-#include "core/picture.h"
 #include "core/rect.h"
 #include "core/repair.h"
+#include "core/void_pixels.h"
 #include "core/wrap.h"
 #include "features/prepare.h"
 #include "maps/error_map.h"
@@ -248,12 +248,12 @@ Result reconstruct(Frame& frame, const std::vector<TimedNeighbour>& neighbours, 
   Candidate solved = fit_polynomials(frame, pair, params, max_bytes, phases, report);
 
   // Nothing was rendered there, and nothing comes out.
-  const Image& picture = halves.survey.preparation.picture;
-  empty_void(picture, pair, solved);
+  const Image& rendered = halves.survey.preparation.rendered;
+  empty_void(rendered, pair, solved);
 
   // The estimate of the error that is left, and the prior where its error is smaller.
   result.error = phases.run(
-      "error map", 1, [&](Progress&) { return make_error_map(pair, halves.survey.noise.variance, solved, picture); });
+      "error map", 1, [&](Progress&) { return make_error_map(pair, halves.survey.noise.variance, solved, rendered); });
   result.order = solved.order;
   Image ours;  // all layers without the prior, which the colour layers add up to
   if (!prior.pass.mean.empty()) {

@@ -7,8 +7,8 @@
 #include "blend/select.h"
 #include "core/gaussian.h"
 #include "core/halves.h"
+#include "core/mask.h"
 #include "core/parallel.h"
-#include "core/picture_mask.h"
 #include "core/relmse.h"
 #include "core/tiles.h"
 
@@ -26,7 +26,7 @@ bool noise_matters(const HalfPair& pair, std::size_t i, Real enough) {
   return false;
 }
 
-/// Marks the pixels of the picture that have noise and so are fitted. A pixel has none if its halves are equal and its
+/// Marks the samples that have noise and so are fitted. A pixel has none if its halves are equal and its
 /// variance is 0, or if its noise bound is 0, which no fit keeps within.
 std::vector<unsigned char> noisy_pixels(const HalfPair& pair, const Params& params) {
   std::vector<unsigned char> noisy(pair.variance.pixels(), params.steps.decide ? 0 : 1);
@@ -38,7 +38,7 @@ std::vector<unsigned char> noisy_pixels(const HalfPair& pair, const Params& para
   if (!pair.bound.empty() && params.steps.decide)
     for (std::size_t i = 0; i < noisy.size(); ++i) noisy[i] = noisy[i] && pair.bound.plane(0)[i] > 0;
   if (!pair.sampled.empty())
-    for (std::size_t i = 0; i < noisy.size(); ++i) noisy[i] = noisy[i] && in_picture(pair.sampled, i);
+    for (std::size_t i = 0; i < noisy.size(); ++i) noisy[i] = noisy[i] && in_mask(pair.sampled, i);
   if (params.enough > 0)
     for (std::size_t i = 0; i < noisy.size(); ++i)
       noisy[i] = noisy[i] && noise_matters(pair, i, static_cast<Real>(params.enough));
@@ -94,14 +94,14 @@ Candidate unfitted(const HalfPair& pair) {
 }
 
 /// Noise variance of the halves of a stage's result, from their difference.
-Image residual_variance(const Candidate& candidate, const Image& picture) {
+Image residual_variance(const Candidate& candidate, const Image& mask) {
   Image out(candidate.half[0].width(), candidate.half[0].height(), 3);
   for (int c = 0; c < 3; ++c)
     for (std::size_t i = 0; i < out.pixels(); ++i) {
       const Real difference = candidate.half[0].plane(c)[i] - candidate.half[1].plane(c)[i];
       out.plane(c)[i] = difference * difference;
     }
-  return gaussian_blur(out, residual_sigma, picture);
+  return gaussian_blur(out, residual_sigma, mask);
 }
 
 Candidate stage_of_tile(const HalfPair& pair, const Candidate* before, const Params& params, FitCounters& counters,

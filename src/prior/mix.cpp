@@ -6,8 +6,8 @@
 #include "core/color_layout.h"
 #include "core/gaussian.h"
 #include "core/halves.h"
+#include "core/mask.h"
 #include "core/parallel.h"
-#include "core/picture_mask.h"
 #include "core/real.h"
 
 namespace polyrecon {
@@ -56,7 +56,7 @@ Image term_weights(const Image& y, const Image& p, double epsilon, const Image& 
       for (int x = 0; x < p.width(); ++x) {
         const double value = p.at(x, row, c), noise = v.at(x, row, 0);
         weights.at(x, row, c) =
-            in_picture(sampled, p.index(x, row)) ? storable(1 / (value * value + epsilon) / (noise + floor)) : Real(0);
+            in_mask(sampled, p.index(x, row)) ? storable(1 / (value * value + epsilon) / (noise + floor)) : Real(0);
       }
   });
   return weights;

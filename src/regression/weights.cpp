@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "core/fast_math.h"
-#include "core/picture_mask.h"
+#include "core/mask.h"
 #include "core/rect.h"
 #include "core/simd.h"
 
@@ -63,13 +63,13 @@ POLYRECON_SIMD double sum_of(const Real* values, int n) {
 }  // namespace
 
 void PatchDistances::load(const Image& guide, const Image& variance, const Rect& block, int window_radius,
-                          const PatchParams& patch, const Image* picture) {
+                          const PatchParams& patch, const Image* mask) {
   const int patch_radius = patch.radius;
   radius_ = window_radius;
   patch_radius_ = patch_radius;
   most_ = patch.most_around;
   bounds_ = guide.bounds();
-  picture_ = picture && !picture->empty() ? picture : nullptr;
+  mask_ = mask && !mask->empty() ? mask : nullptr;
   loaded_ = grow(block, window_radius + patch_radius);
   loaded_planes_.resize(planes * loaded_.area());
   Real* out[planes];
@@ -77,7 +77,7 @@ void PatchDistances::load(const Image& guide, const Image& variance, const Rect&
   for (int y = loaded_.y0; y < loaded_.y1; ++y)
     for (int x = loaded_.x0; x < loaded_.x1; ++x) {
       int u = std::clamp(x, 0, bounds_.x1 - 1), v = std::clamp(y, 0, bounds_.y1 - 1);
-      if (picture_ && !in_picture(*picture_, picture_->index(u, v))) nearest_in_picture(u, v);
+      if (mask_ && !in_mask(*mask_, mask_->index(u, v))) nearest_in_mask(u, v);
       Real noise = 0, square = 0;
       for (int c = 0; c < 3; ++c) {
         const Real color = guide.at(u, v, c);
@@ -162,7 +162,7 @@ void PatchDistances::window_of(int center_x, int center_y, const std::vector<Rea
   if (center_x != column_) begin_column(center_x);
   sum_patches(center_y);
   const Rect inside = intersect(grow({center_x, center_y, center_x + 1, center_y + 1}, radius_), bounds_);
-  if (picture_) leave_void(inside, center_x, center_y);
+  if (mask_) leave_void(inside, center_x, center_y);
   const std::size_t near = find_near(inside, center_x, center_y, limits.back());
   const auto patch_area = static_cast<Real>((2 * patch_radius_ + 1) * (2 * patch_radius_ + 1));
   std::size_t count = 0;
@@ -183,13 +183,13 @@ void PatchDistances::window_of(int center_x, int center_y, const std::vector<Rea
   window.count = static_cast<int>(count);
 }
 
-void PatchDistances::nearest_in_picture(int& x, int& y) const {
+void PatchDistances::nearest_in_mask(int& x, int& y) const {
   const Rect around = intersect(grow({x, y, x + 1, y + 1}, patch_radius_), bounds_);
   int least = std::numeric_limits<int>::max(), found_x = x, found_y = y;
   for (int v = around.y0; v < around.y1; ++v)
     for (int u = around.x0; u < around.x1; ++u) {
       const int distance = (u - x) * (u - x) + (v - y) * (v - y);
-      if (distance >= least || !in_picture(*picture_, picture_->index(u, v))) continue;
+      if (distance >= least || !in_mask(*mask_, mask_->index(u, v))) continue;
       least = distance;
       found_x = u;
       found_y = v;
@@ -202,7 +202,7 @@ void PatchDistances::leave_void(const Rect& inside, int center_x, int center_y) 
   for (int y = inside.y0; y < inside.y1; ++y) {
     Real* row = distance_.data() + static_cast<std::ptrdiff_t>(y - center_y + radius_) * pitch_ + radius_ - center_x;
     for (int x = inside.x0; x < inside.x1; ++x)
-      if (!in_picture(*picture_, picture_->index(x, y))) row[x] = std::numeric_limits<Real>::infinity();
+      if (!in_mask(*mask_, mask_->index(x, y))) row[x] = std::numeric_limits<Real>::infinity();
   }
 }
 

@@ -17,7 +17,7 @@ constexpr Real cut_exponent = 7;
 /// between a centre and every pixel of its window:
 ///     mean over the patch of  (|a - b|^2 - (va + min(va, vb))) / (va + vb + eps (|a|^2 + |b|^2))
 /// with colours a, b and their noise variances va, vb summed over RGB. The distance of two pixels of the same true
-/// colour is about 0, whatever the noise. Patches repeat the pixels at the border of the image, and of the picture in
+/// colour is about 0, whatever the noise. Patches repeat the pixels at the border of the image, and of the mask in
 /// it. The term of a pixel other than the middle one is limited to PatchParams::most_around, so that one lamp in the
 /// corner of a patch does not make the patch unlike all others.
 ///
@@ -26,10 +26,10 @@ constexpr Real cut_exponent = 7;
 class PatchDistances {
  public:
   /// guide: 3 channels of the half that is not fitted. variance: noise variance of that half. block: contains all
-  /// centres that window_of will be called with. picture: mask of the pixels that may be in a window
-  /// (core/picture_mask.h), which has to outlive the calls of window_of; null: all may.
+  /// centres that window_of will be called with. mask: the pixels that may be in a window
+  /// (core/mask.h), which has to outlive the calls of window_of; null: all may.
   void load(const Image& guide, const Image& variance, const Rect& block, int window_radius, const PatchParams& patch,
-            const Image* picture = nullptr);
+            const Image* mask = nullptr);
 
   /// Lists the pixels of the window around a centre (image coordinates inside the block) whose distance is below the
   /// last limit, together with the distance (negative ones as 0). Limits rise. The pixels below the first limit come
@@ -53,9 +53,9 @@ class PatchDistances {
   RowOfPixels pixels_of(int y, int px) const;  ///< For image row y, which is in strip_, and column px of the patch.
   const Real* row_sums(int y);     ///< The terms of all pixels of the window, summed over the patch's row y.
   void sum_patches(int center_y);  ///< Fills distance_ with sums over whole patches.
-  /// Moves to the nearest pixel of the picture within a patch's radius, if there is one.
-  void nearest_in_picture(int& x, int& y) const;
-  /// Makes the distance of all pixels of `inside` that are not in the picture infinite.
+  /// Moves to the nearest pixel inside the mask within a patch's radius, if there is one.
+  void nearest_in_mask(int& x, int& y) const;
+  /// Makes the distance of all pixels of `inside` that are outside the mask infinite.
   void leave_void(const Rect& inside, int center_x, int center_y);
   int window_samples() const;        ///< From the first pixel of a window to its last, in rows of pitch_ samples.
   std::size_t slot_of(int y) const;  ///< Index of patch row y in sums_ and summed_, which are circular.
@@ -66,7 +66,7 @@ class PatchDistances {
   int radius_ = 0, patch_radius_ = 0, pitch_ = 0;
   Real most_ = 0;                    ///< PatchParams::most_around.
   Rect bounds_;                      ///< Of the image.
-  const Image* picture_ = nullptr;   ///< Null where all pixels are in the picture.
+  const Image* mask_ = nullptr;      ///< Null where all pixels are inside.
   Rect loaded_;                      ///< Of loaded_planes_; extends beyond the image.
   std::vector<Real> loaded_planes_;  ///< planes x loaded_, border pixels repeated.
 

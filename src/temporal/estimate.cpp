@@ -5,23 +5,23 @@
 #include <cstdlib>
 #include <utility>
 
+#include "core/mask.h"
 #include "core/parallel.h"
-#include "core/picture_mask.h"
 #include "temporal/neighbour.h"
 
 namespace polyrecon {
 namespace {
 
-/// Whether a pixel is seen in the neighbour and holds a picture there.
-unsigned char sees_picture(const Places& places, int x, int y) {
-  const Image& picture = places.frame->pair.sampled;
+/// Whether a pixel is seen in the neighbour and is a sample there.
+unsigned char sees_sample(const Places& places, int x, int y) {
+  const Image& mask = places.frame->pair.sampled;
   const unsigned char seen = places.seen[places.position.index(x, y)];
-  if (!seen || picture.empty()) return seen;
+  if (!seen || mask.empty()) return seen;
   const auto nearest = [](Real position, int size) {
     return std::clamp(static_cast<int>(std::lround(position)), 0, size - 1);
   };
-  return in_picture(picture, picture.index(nearest(places.position.at(x, y, 0), picture.width()),
-                                           nearest(places.position.at(x, y, 1), picture.height())));
+  return in_mask(mask, mask.index(nearest(places.position.at(x, y, 0), mask.width()),
+                                  nearest(places.position.at(x, y, 1), mask.height())));
 }
 
 Estimate estimate_from(const Places& places, const Rect& area) {
@@ -34,7 +34,7 @@ Estimate estimate_from(const Places& places, const Rect& area) {
     if (const Image& image = places.frame->geometry.surface[s]; !image.empty())
       out.surface[s] = sample_at(image, places, area, true);
   for (int y = area.y0; y < area.y1; ++y)
-    for (int x = area.x0; x < area.x1; ++x) out.valid.push_back(sees_picture(places, x, y));
+    for (int x = area.x0; x < area.x1; ++x) out.valid.push_back(sees_sample(places, x, y));
   return out;
 }
 

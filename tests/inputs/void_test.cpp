@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "core/crop_frame.h"
-#include "core/picture.h"
-#include "core/picture_mask.h"
+#include "core/mask.h"
+#include "core/void_pixels.h"
 #include "pipeline/memory.h"
 #include "support/reconstruction.h"
 #include "support/scene.h"
@@ -40,13 +40,13 @@ test::Scene cut_to(const Rect& region, int width, int height) {
   return scene;
 }
 
-/// The pixels of the picture as a rectangle; the whole frame where the mask is empty.
-Rect picture_box(const Frame& frame) {
-  const Image picture = picture_of(frame);
+/// The rendered pixels as a rectangle; the whole frame where the mask is empty.
+Rect rendered_box(const Frame& frame) {
+  const Image rendered = rendered_mask(frame);
   Rect box{frame.width(), frame.height(), 0, 0};
   for (int y = 0; y < frame.height(); ++y)
     for (int x = 0; x < frame.width(); ++x)
-      if (in_picture(picture, frame.beauty.mean.index(x, y)))
+      if (in_mask(rendered, frame.beauty.mean.index(x, y)))
         box = {std::min(box.x0, x), std::min(box.y0, y), std::max(box.x1, x + 1), std::max(box.y1, y + 1)};
   return box;
 }
@@ -55,29 +55,29 @@ const Rect region{10, 8, 58, 40};
 
 TEST(Void, IsWhereBeautyAlphaAndFeaturesAreZero) {
   const test::Scene scene = cut_to(region, 72, 50);
-  EXPECT_EQ(picture_box(scene.frame), region);
+  EXPECT_EQ(rendered_box(scene.frame), region);
   Frame frame = scene.frame;
   frame.alpha = {};  // the features tell
-  EXPECT_EQ(picture_box(frame), region);
+  EXPECT_EQ(rendered_box(frame), region);
   frame = scene.frame;
   frame.features.clear();  // the alpha tells
-  EXPECT_EQ(picture_box(frame), region);
+  EXPECT_EQ(rendered_box(frame), region);
   frame.alpha = {};  // nothing tells black from nothing
-  EXPECT_EQ(picture_box(frame), frame.beauty.mean.bounds());
+  EXPECT_EQ(rendered_box(frame), frame.beauty.mean.bounds());
 }
 
 TEST(Void, IsNotWhereAnyPassShowsSomething) {
   const test::Scene scene = cut_to(region, 72, 50);
   Frame frame = scene.frame;
   frame.features[0].pass.mean.at(2, 3, 1) = Real(0.1);
-  EXPECT_EQ(picture_box(frame), (Rect{2, 3, 58, 40}));
+  EXPECT_EQ(rendered_box(frame), (Rect{2, 3, 58, 40}));
   frame = scene.frame;
   frame.alpha.at(68, 46, 0) = Real(0.01);
-  EXPECT_EQ(picture_box(frame), (Rect{10, 8, 69, 47}));
+  EXPECT_EQ(rendered_box(frame), (Rect{10, 8, 69, 47}));
   frame = scene.frame;
   frame.aovs.push_back({"Glow", Image(72, 50, 3), {}, {}, {}});
   frame.aovs[0].mean.at(5, 45, 2) = 1;
-  EXPECT_EQ(picture_box(frame), (Rect{5, 8, 58, 46}));
+  EXPECT_EQ(rendered_box(frame), (Rect{5, 8, 58, 46}));
 }
 
 TEST(Void, MayHoldTheSkysDepthFullVisibilityAndValuesThatAreNotFinite) {
@@ -90,7 +90,7 @@ TEST(Void, MayHoldTheSkysDepthFullVisibilityAndValuesThatAreNotFinite) {
       frame.features[2].pass.mean.at(x, y, 0) = Real(1e10);
       frame.beauty.mean.at(x, y, 0) = nan;
     }
-  EXPECT_EQ(picture_box(frame), region);
+  EXPECT_EQ(rendered_box(frame), region);
   EXPECT_TRUE(test::all_finite(test::run(frame).beauty));
 }
 
@@ -106,7 +106,7 @@ TEST(Void, IsWhereEachFeatureHoldsItsEmptyValue) {
       Image mean =
           test::image_of(72, 50, info.channels, [&](int x, int y, int) { return region.contains(x, y) ? 0.3 : value; });
       frame.features = {{info.role, {info.name, std::move(mean), {}, {}, {}}}};
-      EXPECT_EQ(picture_of(frame).empty(), !empty) << info.name << " " << value;
+      EXPECT_EQ(rendered_mask(frame).empty(), !empty) << info.name << " " << value;
     }
   }
   EXPECT_EQ(info_of(Role::Depth).empty, EmptyValue::ZeroOrSky);
@@ -116,7 +116,7 @@ TEST(Void, IsWhereEachFeatureHoldsItsEmptyValue) {
 /// A frame in which nothing is visible, or everything, is an ordinary one.
 TEST(Void, IsNotTheWholeFrame) {
   test::Scene scene = cut_to({}, 40, 30);
-  EXPECT_TRUE(picture_of(scene.frame).empty());
+  EXPECT_TRUE(rendered_mask(scene.frame).empty());
   const Result result = test::run(scene.frame);
   EXPECT_EQ(test::max_magnitude(result.beauty), 0);
 }
@@ -135,12 +135,12 @@ TEST(Void, IsNotWhatSamplesMissedByChance) {
         for (int c = 0; c < 3; ++c) frame.beauty.mean.at(x, y, c) = 1;
         frame.alpha.at(x, y, 0) = Real(0.1);
       }
-  const Image picture = picture_of(frame);
-  ASSERT_FALSE(picture.empty());
-  EXPECT_FALSE(in_picture(picture, picture.index(1, 1)));
+  const Image rendered = rendered_mask(frame);
+  ASSERT_FALSE(rendered.empty());
+  EXPECT_FALSE(in_mask(rendered, rendered.index(1, 1)));
   std::size_t inside = 0;
   for (int y = volume.y0; y < volume.y1; ++y)
-    for (int x = volume.x0; x < volume.x1; ++x) inside += in_picture(picture, picture.index(x, y));
+    for (int x = volume.x0; x < volume.x1; ++x) inside += in_mask(rendered, rendered.index(x, y));
   EXPECT_EQ(inside, volume.area());
 }
 
@@ -149,20 +149,20 @@ TEST(Void, IsNoLonePixel) {
   scene.frame.features.clear();
   scene.frame.alpha.at(30, 20, 0) = 0;
   for (int c = 0; c < 3; ++c) scene.frame.beauty.mean.at(30, 20, c) = 0;
-  const Image picture = picture_of(scene.frame);
-  EXPECT_TRUE(in_picture(picture, picture.index(30, 20)));
-  EXPECT_FALSE(in_picture(picture, picture.index(9, 20)));
+  const Image rendered = rendered_mask(scene.frame);
+  EXPECT_TRUE(in_mask(rendered, rendered.index(30, 20)));
+  EXPECT_FALSE(in_mask(rendered, rendered.index(9, 20)));
 }
 
-/// At a hard border the picture was cut off, at a soft one it ends.
+/// At a hard border the scene was cut off, at a soft one it ends.
 TEST(Void, IsASampleOfThePictureAtSoftBordersOnly) {
   test::Scene scene = cut_to(region, 72, 50);
-  const Image picture = picture_of(scene.frame);
-  EXPECT_TRUE(test::same_bits(sampled_of(picture, scene.frame), picture));
+  const Image rendered = rendered_mask(scene.frame);
+  EXPECT_TRUE(test::same_bits(sampled_mask(rendered, scene.frame), rendered));
   for (int y = region.y0; y < region.y1; ++y) scene.frame.alpha.at(region.x0, y, 0) = Real(0.5);
-  const Image sampled = sampled_of(picture, scene.frame);
-  EXPECT_TRUE(in_picture(sampled, sampled.index(0, 20)));    // left of a silhouette
-  EXPECT_FALSE(in_picture(sampled, sampled.index(60, 20)));  // right of a cut
+  const Image sampled = sampled_mask(rendered, scene.frame);
+  EXPECT_TRUE(in_mask(sampled, sampled.index(0, 20)));    // left of a silhouette
+  EXPECT_FALSE(in_mask(sampled, sampled.index(60, 20)));  // right of a cut
 }
 
 TEST(Void, StaysZeroAndTheRimOfARegionIsAsGoodAsThatOfACrop) {

@@ -1,12 +1,12 @@
-#include "core/picture.h"
+#include "core/void_pixels.h"
 
 #include <algorithm>
 #include <limits>
 #include <utility>
 #include <vector>
 
+#include "core/mask.h"
 #include "core/parallel.h"
-#include "core/picture_mask.h"
 #include "core/rect.h"
 #include "core/repair.h"
 
@@ -128,54 +128,54 @@ void leave_mixtures(const Rect& bounds, Mask& mask) {
   });
 }
 
-void hide_void(const Image& picture, Pass& pass) {
+void hide_void(const Image& rendered, Pass& pass) {
   for (Image* image : {&pass.mean, &pass.variance, &pass.half_a, &pass.half_b})
-    *image = outside_set_to(std::numeric_limits<Real>::quiet_NaN(), picture, std::move(*image));
+    *image = outside_set_to(std::numeric_limits<Real>::quiet_NaN(), rendered, std::move(*image));
 }
 
 }  // namespace
 
-Image picture_of(const Frame& frame) {
+Image rendered_mask(const Frame& frame) {
   Mask empty = empty_pixels(frame);
   if (std::find(empty.begin(), empty.end(), 1) == empty.end()) return {};
   leave_mixtures(frame.beauty.mean.bounds(), empty);
   empty = without_lone_pixels(frame.beauty.mean.bounds(), empty);
   const auto voids = static_cast<std::size_t>(std::count(empty.begin(), empty.end(), 1));
   if (voids == 0 || voids == empty.size()) return {};
-  Image picture(frame.width(), frame.height(), 1);
-  std::transform(empty.begin(), empty.end(), picture.plane(0), [](unsigned char e) { return e ? Real(0) : Real(1); });
-  return picture;
+  Image rendered(frame.width(), frame.height(), 1);
+  std::transform(empty.begin(), empty.end(), rendered.plane(0), [](unsigned char e) { return e ? Real(0) : Real(1); });
+  return rendered;
 }
 
-Image sampled_of(const Image& picture, const Frame& frame) {
-  if (picture.empty()) return {};
-  const Rect bounds = picture.bounds();
-  const Counts voids(bounds, [&](int x, int y) { return !in_picture(picture, picture.index(x, y)); });
+Image sampled_mask(const Image& rendered, const Frame& frame) {
+  if (rendered.empty()) return {};
+  const Rect bounds = rendered.bounds();
+  const Counts voids(bounds, [&](int x, int y) { return !in_mask(rendered, rendered.index(x, y)); });
   const Counts soft(bounds, [&](int x, int y) {
-    const std::size_t i = picture.index(x, y);
+    const std::size_t i = rendered.index(x, y);
     const bool opaque = !frame.alpha.empty() && frame.alpha.plane(0)[i] >= opaque_from;
-    return in_picture(picture, i) && !opaque && voids.around(x, y, 1) > 0;
+    return in_mask(rendered, i) && !opaque && voids.around(x, y, 1) > 0;
   });
-  Image sampled = picture;
+  Image sampled = rendered;
   for_rows(bounds.y1, [&](int y) {
     for (int x = 0; x < bounds.x1; ++x)
       if (soft.around(x, y, window_radius) > 0) sampled.at(x, y, 0) = 1;
   });
-  return picture_pixels(sampled, sampled.pixels()) == sampled.pixels() ? Image() : sampled;
+  return mask_pixels(sampled, sampled.pixels()) == sampled.pixels() ? Image() : sampled;
 }
 
-void hide_void(const Image& picture, Frame& frame) {
-  if (picture.empty()) return;
-  hide_void(picture, frame.beauty);
-  for (Pass& aov : frame.aovs) hide_void(picture, aov);
-  for (Feature& feature : frame.features) hide_void(picture, feature.pass);
+void hide_void(const Image& rendered, Frame& frame) {
+  if (rendered.empty()) return;
+  hide_void(rendered, frame.beauty);
+  for (Pass& aov : frame.aovs) hide_void(rendered, aov);
+  for (Feature& feature : frame.features) hide_void(rendered, feature.pass);
 }
 
-void empty_void(const Image& picture, HalfPair& pair, Candidate& result) {
-  if (picture.empty()) return;
+void empty_void(const Image& rendered, HalfPair& pair, Candidate& result) {
+  if (rendered.empty()) return;
   for (Image* image : {&pair.color[0], &pair.color[1], &pair.variance, &result.half[0], &result.half[1],
                        &result.squared_bias, &result.variance, &result.order})
-    *image = outside_set_to(0, picture, std::move(*image));
+    *image = outside_set_to(0, rendered, std::move(*image));
 }
 
 }  // namespace polyrecon

@@ -1,4 +1,4 @@
-#include "core/picture_mask.h"
+#include "core/mask.h"
 
 #include <algorithm>
 
@@ -19,15 +19,15 @@ void for_samples(Image& image, const Change& change) {
 
 }  // namespace
 
-std::size_t picture_pixels(const Image& picture, std::size_t all) {
-  if (picture.empty()) return all;
-  return static_cast<std::size_t>(std::count(picture.plane(0), picture.plane(0) + picture.pixels(), Real(1)));
+std::size_t mask_pixels(const Image& mask, std::size_t all) {
+  if (mask.empty()) return all;
+  return static_cast<std::size_t>(std::count(mask.plane(0), mask.plane(0) + mask.pixels(), Real(1)));
 }
 
-Image outside_set_to(Real value, const Image& picture, Image image) {
-  if (picture.empty()) return image;
+Image outside_set_to(Real value, const Image& mask, Image image) {
+  if (mask.empty()) return image;
   for_samples(image, [&](Real& sample, std::size_t i) {
-    if (!in_picture(picture, i)) sample = value;
+    if (!in_mask(mask, i)) sample = value;
   });
   return image;
 }
