@@ -79,8 +79,8 @@ struct NamedQuality {
 inline constexpr std::array<NamedQuality, 3> qualities{
     {{Quality::Draft, "draft"}, {Quality::Standard, "standard"}, {Quality::Best, "best"}}};
 
-/// Parts of the method that can be switched off to measure their effect (docs/results/accuracy.md).
-struct Parts {
+/// Components of the method that can be switched off to measure their effect (docs/results/accuracy.md).
+struct Components {
   bool cross_filter = true;      ///< A half is fitted with weights and features of the other half.
   bool shrinkage = true;         ///< Each column enters a fit by the factor of least estimated error, not whole.
   bool variance_floor = true;    ///< The variance of a pixel is at least what its neighbourhood suggests.
@@ -112,7 +112,7 @@ struct Params {
   SelectParams selection;
   double enough = 0;  ///< Pixels keep the input if their noise variance / (value^2 + 0.01) is at most this; >= 0.
   Steps steps;
-  Parts parts;
+  Components components;
   TemporalParams temporal;
   DenoiserParams denoiser;
   bool reconstruct_alpha = false;  ///< Whether alpha is reconstructed with the beauty's windows; if not, it is kept.

@@ -26,10 +26,10 @@
 namespace polyrecon {
 namespace {
 
-/// All groups but "parts": users do not choose between its settings.
+/// All groups but "ablation": users do not choose between its settings.
 std::vector<std::string> trade_groups() {
   std::vector<std::string> groups = setting_groups();
-  groups.erase(std::remove(groups.begin(), groups.end(), "parts"), groups.end());
+  groups.erase(std::remove(groups.begin(), groups.end(), "ablation"), groups.end());
   return groups;
 }
 
@@ -151,7 +151,7 @@ void setup_sweep(CLI::App& app, Command& chosen) {
       ->take_all()
       ->type_name("NAME=FILE:SECONDS");
   sub->add_option("--vary", o->groups,
-                  "Parameters to vary; default: all but parts. There are " +
+                  "Parameters to vary; default: all but ablation. There are " +
                       fmt::format("{}", fmt::join(setting_groups(), ", ")))
       ->delimiter(',')
       ->check(CLI::IsMember(setting_groups()).description(""))
@@ -162,8 +162,9 @@ void setup_sweep(CLI::App& app, Command& chosen) {
   add_memory_limit(*sub, o->max_memory);
   sub->add_flag("-q,--quiet", o->quiet, "Print nothing but errors");
   sub->footer(
-      "Short runs are repeated, up to three times and two seconds; the median counts. The group \"parts\" disables one "
-      "part\n"
+      "Short runs are repeated, up to three times and two seconds; the median counts. The group \"ablation\" disables "
+      "one "
+      "component\n"
       "of the method at a time.\n"
       "Examples:\n"
       "  polyrecon sweep -i render.exr --reference ref.exr -o report.html --csv figures.csv\n"

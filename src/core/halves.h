@@ -38,7 +38,7 @@ double half_noise(const Image& mean, const Image& half_a, const Image& half_b);
 bool contradict(const Image& mean, const Image& half_a, const Image& half_b);
 
 /// Share of the energy that rounding, lossy compression and the clamping of fireflies may move between a mean and its
-/// halves. Differences up to it are restored (Parts::restore_totals).
+/// halves. Differences up to it are restored (Components::restore_totals).
 inline constexpr double contradicting_energy = 0.05;
 
 }  // namespace polyrecon

@@ -17,7 +17,7 @@ Params params_for(HalvesFor purpose, const Frame& frame, Params params) {
   if (purpose != HalvesFor::Neighbour) return params;
   params.steps.features.clear();
   params.steps.prefilter = params.steps.prefilter && !noise_is_measured(frame);
-  params.parts.noise_bound = false;
+  params.components.noise_bound = false;
   return params;
 }
 
@@ -41,13 +41,13 @@ NoisyHalves make_noisy_halves(Frame& frame, HalvesFor purpose, std::uint64_t str
   HalfPair& pair = out.prepared.pair;
   // The bound is that of the measured variance, before outliers are removed: where an outlier is removed from one half,
   // the other half may still be wrong by this much. An estimated variance is not exact enough for single pixels.
-  if (params.parts.noise_bound && noise.measured) pair.bound = noise_bound(pair.variance);
+  if (params.components.noise_bound && noise.measured) pair.bound = noise_bound(pair.variance);
   out.outliers = phases.run("fireflies", rows_of(frame) * 2, [&](Progress& progress) {
     const PairNoise known{out.prepared.independent_halves, noise.measured};
     return params.steps.fireflies ? remove_outliers(pair, known, params.outliers, progress) : std::vector<Outlier>();
   });
   // After the removal, so that the variance of an outlier does not spread to its neighbours.
-  if (params.parts.variance_floor) pair.variance = floor_variance(pair.variance);
+  if (params.components.variance_floor) pair.variance = floor_variance(pair.variance);
   return out;
 }
 

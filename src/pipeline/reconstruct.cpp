@@ -126,10 +126,10 @@ Image restore(const Frame& frame, const NoisyHalves& halves, const Candidate& so
               Report& report) {
   const HalfPair& pair = halves.prepared.pair;
   Image out = average(pair, solved);
-  if (params.parts.raise_undershoot)
+  if (params.components.raise_undershoot)
     report.pixels_raised_to_input = raise_undershoot(mean_of_halves(pair.color, out.channels()), out);
   restore_energy(halves.outliers, pair.variance, max_restored_gain, out);
-  if (params.parts.restore_totals)
+  if (params.components.restore_totals)
     report.restored_gain = restore_totals(color_totals(frame), pair.variance, max_restored_gain, max_total_gain, out);
   return out;
 }

@@ -108,7 +108,7 @@ Candidate stage_of_tile(const HalfPair& pair, const Candidate* before, const Par
                         Progress& progress) {
   const auto noisy = noisy_pixels(pair, params);
   std::vector<Candidate> candidates;
-  const bool cross_filter = params.parts.cross_filter;
+  const bool cross_filter = params.components.cross_filter;
   const std::size_t guides_a = cross_filter ? 1 : 0;
   const Guide raw{{&pair.color[guides_a], &pair.color[1 - guides_a]}, &pair.variance};
   const FitParams raw_fit = before ? fit_params(params, params.later_bandwidths) : first_fit_params(params);
@@ -131,7 +131,7 @@ Candidate stage_of_tile(const HalfPair& pair, const Candidate* before, const Par
 
 FitParams fit_params(const Params& params, const std::vector<Real>& bandwidths) {
   return {params.radius,    params.stride,          params.patch,    bandwidths,
-          params.max_order, params.order_tolerance, params.coverage, params.parts.shrinkage};
+          params.max_order, params.order_tolerance, params.coverage, params.components.shrinkage};
 }
 
 FitParams first_fit_params(const Params& params) {

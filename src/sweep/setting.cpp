@@ -87,12 +87,13 @@ void add_inputs(const Frame& frame, Settings& list) {
   if (!frame.prior.mean.empty()) list.vary("prior", "without prior", [](Setting& s) { s.without_prior = true; });
 }
 
-/// The ablation of docs/results/accuracy.md: each setting disables one part of the method. Parts that a number disables
-/// are in the other groups: stages 1, levels 1, order 0, coverage 0, no guided windows, features, halves, prior.
-void add_parts(const Frame& frame, Settings& list) {
-  const auto without = [&](const char* name, const auto& change) { list.vary("parts", name, change); };
-  without("weights from the same half", [](Setting& s) { s.params.parts.cross_filter = false; });
-  without("no shrinkage", [](Setting& s) { s.params.parts.shrinkage = false; });
+/// The ablation of docs/results/accuracy.md: each setting disables one component of the method. Components that a
+/// number disables are in the other groups: stages 1, levels 1, order 0, coverage 0, no guided windows, features,
+/// halves, prior.
+void add_ablation(const Frame& frame, Settings& list) {
+  const auto without = [&](const char* name, const auto& change) { list.vary("ablation", name, change); };
+  without("weights from the same half", [](Setting& s) { s.params.components.cross_filter = false; });
+  without("no shrinkage", [](Setting& s) { s.params.components.shrinkage = false; });
   without("no patch weights", [](Setting& s) {
     s.params.first_bandwidths = s.params.later_bandwidths = {Real(1e6)};  // all pixels of a window weigh the same
     s.params.guided_bandwidths.clear();
@@ -100,12 +101,12 @@ void add_parts(const Frame& frame, Settings& list) {
   without("choice by wide regions", [](Setting& s) { s.params.selection.risk_sigma = 20; });
   without("one stage, one level", [](Setting& s) { s.params.stages = s.params.levels = 1; });
   without("no firefly removal", [](Setting& s) { s.params.steps.fireflies = false; });
-  without("no variance floor", [](Setting& s) { s.params.parts.variance_floor = false; });
+  without("no variance floor", [](Setting& s) { s.params.components.variance_floor = false; });
   if (std::any_of(frame.features.begin(), frame.features.end(), may_be_prefiltered))
     without("no feature prefilter", [](Setting& s) { s.params.steps.prefilter = false; });
-  without("no noise bound", [](Setting& s) { s.params.parts.noise_bound = false; });
-  without("no raising of undershoot", [](Setting& s) { s.params.parts.raise_undershoot = false; });
-  without("totals not restored", [](Setting& s) { s.params.parts.restore_totals = false; });
+  without("no noise bound", [](Setting& s) { s.params.components.noise_bound = false; });
+  without("no raising of undershoot", [](Setting& s) { s.params.components.raise_undershoot = false; });
+  without("totals not restored", [](Setting& s) { s.params.components.restore_totals = false; });
   without("order by least error alone", [](Setting& s) { s.params.order_tolerance = 0; });
   without("all steps", [](Setting& s) { s.params.steps.decide = false; });
 }
@@ -113,9 +114,9 @@ void add_parts(const Frame& frame, Settings& list) {
 }  // namespace
 
 const std::vector<std::string>& setting_groups() {
-  static const std::vector<std::string> groups{"quality",  "presets", "stages",   "levels", "stride",
-                                               "radius",   "order",   "coverage", "patch",  "bandwidths",
-                                               "features", "halves",  "prior",    "parts"};
+  static const std::vector<std::string> groups{"quality",  "presets", "stages",   "levels",  "stride",
+                                               "radius",   "order",   "coverage", "patch",   "bandwidths",
+                                               "features", "halves",  "prior",    "ablation"};
   return groups;
 }
 
@@ -126,7 +127,7 @@ std::vector<Setting> settings_for(const Frame& frame, const std::vector<std::str
   add_numbers(frame, list);
   add_bandwidths(list);
   add_inputs(frame, list);
-  add_parts(frame, list);
+  add_ablation(frame, list);
   for (const Preset& preset : presets())
     if (preset.name != "standard") list.add({preset.name, "presets", preset.params});
   std::vector<Setting> settings{{"standard", "quality", params_for(Quality::Standard)}};

@@ -17,8 +17,8 @@ struct Setting {
   bool without_prior = false;   ///< Ignore the file's denoised layer.
 };
 
-/// Names of the groups: settings that trade time for accuracy, and "parts", where each setting disables one part of
-/// the method.
+/// Names of the groups: settings that trade time for accuracy, and "ablation", where each setting disables one
+/// component of the method.
 const std::vector<std::string>& setting_groups();
 
 /// The settings of the named groups that can change the result of this frame, each once. Quality::Standard comes

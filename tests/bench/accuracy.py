@@ -65,7 +65,7 @@ def sweep(options, sample):
         command = [options.polyrecon, "sweep", "-i", ROOT / "samples" / f"{sample}_16.exr", "--reference"]
         command += [ROOT / "samples" / f"{SAMPLES[sample]}_ref.exr", "-o", options.out / f"{sample}.html"]
         groups = (
-            "quality,presets,stages,levels,stride,radius,order,coverage,patch,bandwidths,features,halves,prior,parts"
+            "quality,presets,stages,levels,stride,radius,order,coverage,patch,bandwidths,features,halves,prior,ablation"
         )
         command += ["--csv", table, "--vary", groups, "--quiet"]
         subprocess.run([str(word) for word in command], check=True)

@@ -148,7 +148,7 @@ MatrixXd fit_of(Weighed& w, NestedFactor& factor) {
     channels[static_cast<std::size_t>(c)].noise_energy = weight.dot(v.col(c));
   }
   const OrderChoice choice =
-      select_order(channels, w.window.layout, w.weight_sum, true, params.order_tolerance, params.parts.shrinkage);
+      select_order(channels, w.window.layout, w.weight_sum, true, params.order_tolerance, params.components.shrinkage);
   MatrixXd coefficients(factor.columns, 3);
   for (int c = 0; c < 3; ++c)
     for (int a = 0; a < factor.columns; ++a) coefficients(a, c) = choice.factor[static_cast<std::size_t>(a)] * z[c][a];

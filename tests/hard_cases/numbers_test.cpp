@@ -95,7 +95,7 @@ TEST(Case16, OneBadPixelIsFiniteAndStaysLocal) {
   params.stages = 1;
   params.levels = 1;
   params.radius = 2;
-  params.parts.restore_totals = false;
+  params.components.restore_totals = false;
   const int halo = stage_halo(params) + 2 + 9;
   Scene scene = make_scene(96, 32, 0.2, 10);
   scene.frame.aovs = {{"Layer", test::times(scene.frame.beauty.mean, 0.5), {}, {}, {}}};
@@ -594,7 +594,7 @@ TEST(Case26, AGlintStaysInItsPlace) {
     return worst;
   };
   Params unbound;
-  unbound.parts.noise_bound = false;
+  unbound.components.noise_bound = false;
   const double without = spread(unbound), with = spread(Params{});
   EXPECT_LT(with, 0.02);  // five standard deviations of the noisiest pixel
   EXPECT_LT(with, without / 3) << without;

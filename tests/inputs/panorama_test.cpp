@@ -72,7 +72,7 @@ TEST(Panorama, TheResultTurnsWithTheFrame) {
                        &other.features[0].pass.mean})
     *image = turned(*image, width / 2);
   Params params = test::quick();
-  params.parts.restore_totals = false;  // totals include the repeated columns
+  params.components.restore_totals = false;  // totals include the repeated columns
   const Result a = test::run(scene.frame, params), b = test::run(other, params);
   EXPECT_LT(test::max_difference(turned(a.beauty, width / 2), b.beauty), 1e-5);
   EXPECT_LT(test::max_difference(turned(a.error.relative_mse, width / 2), b.error.relative_mse), 1e-5);
