@@ -39,9 +39,9 @@ struct SampleMap {
 /// docs/lab/2026-11-26-where-samples-go.md.
 inline constexpr double convergence_rate = 0.75;
 
-/// Distributes extra samples where they reduce the relative MSE most (section 3 of the report), until the budget is
-/// spent or the target reached. A sample helps every pixel whose window contains it. V_i is the part that the noise of
-/// pixel i has in the error: with v = relative_variance, u = relative_noise and a Gaussian K, sum_i K_ij = 1,
+/// Distributes extra samples where they reduce the relative MSE most (Delta(eps_i) in the paper), until the
+/// budget is spent or the target reached. A sample helps every pixel whose window contains it. V_i is the part that the
+/// noise of pixel i has in the error: with v = relative_variance, u = relative_noise and a Gaussian K, sum_i K_ij = 1,
 ///
 ///     V_i = sqrt(sum_j K_ij v_j * sum_j K_ij u_j),   or sum_j K_ij v_j if relative_noise is empty.
 ///

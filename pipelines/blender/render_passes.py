@@ -64,7 +64,7 @@ def render_parts(options, renderer, frame, output, passes, polyrecon, progress):
     each = options.spp // options.parts
     parts = [passes / f"part_{k}.exr" for k in range(options.parts)]
     for k, part in enumerate(parts):
-        progress.update("pass", frame=frame, samples=k * each, done=k / options.parts)
+        progress.update("part", frame=frame, samples=k * each, done=k / options.parts)
         renderer.uniform(k * each, each, part)
     summary = polyrecon.run("merge", *parts, "-o", output)
     renderer.complete_last(output)

@@ -1,6 +1,8 @@
 """The pages of docs/reference have a row for each key that the program and the drivers print, with its type, and each
 row's key is printed in one of the runs made here."""
 
+import contextlib
+import io
 import json
 import os
 import pathlib
@@ -118,6 +120,13 @@ class Keys(unittest.TestCase):
         words = ["-i", self.folder / "shot.#.exr", "-o", self.folder / "clean.#.exr", "--quality", "draft"]
         lines = run("denoise", *words, "--frames", "1-2", "--progress", "json").stderr.splitlines()
         self.check("progress.md", *map(json.loads, lines))
+
+    def test_progress_of_the_loop(self):
+        lines = io.StringIO()
+        with contextlib.redirect_stderr(lines):
+            loop(self.folder / "samples", Budget(samples=24), frame=7, style="json")
+            loop(self.folder / "seconds", Budget(seconds=20), max_rounds=1, style="json")
+        self.check("driver_progress.md", *map(json.loads, lines.getvalue().splitlines()))
 
     def test_journal_of_the_loop(self):
         """Of a loop whose renderer fails in the first round, and of one that runs to its end."""

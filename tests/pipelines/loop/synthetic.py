@@ -55,7 +55,19 @@ class SyntheticRenderer(Renderer):
         exr.write(target, part)
 
 
-def loop(folder, budget, resume=False, seed=1, quality="draft", renderer=None, max_rounds=8, scene=None, **size):
+def loop(
+    folder,
+    budget,
+    resume=False,
+    seed=1,
+    quality="draft",
+    renderer=None,
+    max_rounds=8,
+    scene=None,
+    frame=None,
+    style="none",
+    **size,
+):
     folder = pathlib.Path(folder)
     settings = adaptive.Settings(
         folder / "out.exr",
@@ -65,9 +77,10 @@ def loop(folder, budget, resume=False, seed=1, quality="draft", renderer=None, m
         quality=quality,
         max_rounds=max_rounds,
         scene=str(scene) if scene else None,
+        frame=frame,
     )
     renderer = renderer or SyntheticRenderer(seed=seed, **size)
-    return renderer, adaptive.run(renderer, Polyrecon(), settings, Progress("none"))
+    return renderer, adaptive.run(renderer, Polyrecon(), settings, Progress(style))
 
 
 def main(words):
