@@ -50,7 +50,7 @@ struct PartInfo {
   std::string obstacle() const;
 };
 
-/// Tells whether a file is still the one that was looked at.
+/// Identifies a file, to find out whether it is still the one that was read.
 struct FileStamp {
   std::uint64_t device = 0, inode = 0, bytes = 0;
   std::int64_t modified = 0, changed = 0;  ///< Times of the contents and of the inode, nanoseconds.

@@ -27,7 +27,7 @@ struct Layer {
   Companion companion = Companion::Mean;
   std::string of;   ///< For companions: name of the layer with the mean.
   std::string why;  ///< How role and companion were found, as a phrase.
-  int rank = 0;     ///< Of several layers with one role in one view layer, the one of lowest rank is used.
+  int rank = 0;     ///< The lowest wins among layers with one role in one view layer.
 };
 
 /// The companion in words: "variance of the mean", "half A".
@@ -50,7 +50,7 @@ struct RoleChoice {
   std::string why;    ///< How role and companion were found, as a phrase.
 };
 
-/// Where a frame came from: the files, their layers, and which of them are in use.
+/// The source of a frame: the files, their layers, and which of them are in use.
 struct FrameSource {
   std::string path;
   std::vector<FileInfo> files;      ///< [0] is the file at path; the others hold passes of the same frame.

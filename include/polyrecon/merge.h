@@ -20,7 +20,7 @@ struct MergeOptions {
   ReadLimits limits;
 };
 
-/// What a merge wrote, by names of layers.
+/// The layers that a merge wrote, by name.
 struct MergeResult {
   int files = 0;                     ///< Renders merged.
   double samples = 0;                ///< Mean samples per pixel of the result; 0 if unknown.

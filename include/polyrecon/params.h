@@ -25,7 +25,7 @@ struct PrefilterParams {
   double bandwidth = 0.5;
 };
 
-/// What makes a pixel an outlier (a firefly), equation (10).
+/// The conditions under which a pixel is an outlier (a firefly), equation (10).
 struct OutlierParams {
   int neighbourhood = 2;  ///< Radius of the neighbourhood that the pixel is compared with.
   double height = 3;      ///< Least height above the median, in units of (upper end of the neighbourhood - median).
@@ -53,7 +53,7 @@ struct TemporalParams {
   double max_weight = 4;  ///< Largest weight of a neighbour's pixel; the frame's pixel has weight 1.
 };
 
-/// What another denoiser in this process is run on.
+/// The input of another denoiser in this process.
 struct DenoiserParams {
   int mean_runs = 2;               ///< Times that the mean is denoised, next to the halves: 0..4.
   bool prefilter_features = true;  ///< Whether it prefilters the features itself; if not, it gets those of the fits.

@@ -16,7 +16,7 @@ struct ReadResult {
   FrameSource source;
   /// Layers of ReadOptions::aovs that reach beyond the beauty's data window, so that they are no part of it. They are
   /// not in the frame; ReadOptions::own_windows reads each.
-  std::vector<std::string> beside_beauty;
+  std::vector<std::string> outside_beauty;
   std::vector<std::string> notes;  ///< Messages of one line: what was dropped, assumed or unusual.
 };
 

@@ -1,4 +1,4 @@
-// What is read of a file, and how.
+// Options of reading a file.
 #pragma once
 
 #include <functional>
@@ -12,7 +12,7 @@
 
 namespace polyrecon {
 
-/// What the variance layers of the input hold. Frames have the variance of the mean of a pixel's n samples.
+/// The kind of the input's variance layers. Frames have the variance of the mean of a pixel's n samples.
 enum class VarianceKind {
   Auto,         ///< Depends on the renderer, which is recognised by the layer's name.
   Mean,         ///< Variance of the mean.
@@ -40,7 +40,7 @@ struct RoleMapping {
 /// half-a, half-b (of the beauty), albedo-variance, normal-half-a, ... Throws Error{Usage}.
 RoleMapping parse_mapping(const std::string& text);
 
-/// What is read of a file, and how.
+/// Options of reading a file.
 struct ReadOptions {
   std::vector<RoleMapping> map;   ///< Roles that the user gives; all others are found by name.
   std::vector<std::string> aovs;  ///< Layers for Frame::aovs: whole names, or names within the view layer.

@@ -21,7 +21,7 @@ struct Result {
   Image alpha;              ///< 1 channel; empty if the frame has none.
   ErrorMap error;           ///< Estimated error of beauty.
   Image order;              ///< 1 channel: mean of the orders k, equation (7), of the windows that cover a pixel.
-  Report report;            ///< What was done, counted and measured.
+  Report report;            ///< The work, counted and measured.
 };
 
 /// Reconstructs one frame by the method of Moon et al. 2016. To save memory it takes features, halves and variances out

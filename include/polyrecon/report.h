@@ -1,4 +1,4 @@
-// What a reconstruction did: decisions, counts and times.
+// The report of a reconstruction: decisions, counts and times.
 #pragma once
 
 #include <array>
@@ -30,7 +30,7 @@ struct PhaseTime {
 /// The phase that fits polynomials, which takes nearly all of the time.
 inline constexpr const char* fit_phase = "polynomials";
 
-/// What a reconstruction did. Apart from estimates that are called so, everything is counted or measured.
+/// The report of a reconstruction. Apart from estimates that are called so, everything is counted or measured.
 struct Report {
   int width = 0, height = 0;      ///< Pixels.
   std::vector<PhaseTime> phases;  ///< In order.

@@ -1,4 +1,4 @@
-// The roles that layers play, and what the program knows of each.
+// The roles that layers play, and their properties.
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@
 
 namespace polyrecon {
 
-/// What a layer is to the method. The order is that of features in a Frame and of every list that people read.
+/// The use of a layer in the method. The order is that of features in a Frame and of every list that people read.
 /// Color: a further colour pass that can be reconstructed (--aov). Other: data that is only passed through.
 enum class Role {
   Beauty,
@@ -32,7 +32,7 @@ constexpr std::size_t role_count = static_cast<std::size_t>(Role::Other) + 1;
 
 constexpr std::size_t index_of(Role role) { return static_cast<std::size_t>(role); }
 
-/// What the values of a layer are. Renders of one frame are merged accordingly.
+/// The kind of a layer's values. Renders of one frame are merged accordingly.
 enum class Values {
   Radiance,  ///< Linear colour; averaged.
   Average,   ///< Another mean over the samples of a pixel; averaged.
@@ -46,14 +46,14 @@ enum class FeatureTransform {
   BoundedDepth  ///< z / (z + median of z): bounded, so that distances of the sky fit too.
 };
 
-/// What a layer holds in pixels where nothing was rendered, or where rays hit nothing.
+/// The value of a layer in pixels where nothing was rendered, or where rays hit nothing.
 enum class EmptyValue {
   Zero,
-  ZeroOrOne,  ///< Nothing occludes anything: a 1 does not tell what was rendered from what was not.
+  ZeroOrOne,  ///< Nothing occludes anything: a 1 does not show whether anything was rendered.
   ZeroOrSky   ///< Distances of the sky: Frame::sky_depth or more, 1e10 or +Inf.
 };
 
-/// What a pass tells about the surface that a pixel sees. Renderers commonly write a pass of each kind.
+/// The property of a surface that a pass holds. Renderers commonly write a pass for each.
 enum class Surface {
   Color,
   Direction,  ///< Like Distance, it differs from an empty background, so that it shows silhouettes.
@@ -76,7 +76,7 @@ class ChannelCounts {
   unsigned bits_ = 0;  ///< Bit n is set where n channels are allowed; 0: any number.
 };
 
-/// What the program knows of a role.
+/// The properties of a role.
 struct RoleInfo {
   Role role;
   const char* name;              ///< As typed in --map and --steps and printed by `inspect`.

@@ -9,7 +9,7 @@
 
 namespace polyrecon {
 
-/// What limits the extra samples. Exactly one of budget and target is positive.
+/// The limit of the extra samples. Exactly one of budget and target is positive.
 struct SampleMapParams {
   double budget = 0;           ///< Mean extra samples per pixel; with a cost image, in samples of mean cost.
   double target = 0;           ///< Mean relative MSE to reach with the fewest samples (or the least cost).
@@ -21,7 +21,7 @@ struct SampleMapParams {
 /// Throws Error{Usage} naming the first value out of its range.
 void validate(const SampleMapParams& params);
 
-/// Where the next samples go, and the error that is expected with them.
+/// The places of the next samples, and the error that is expected with them.
 struct SampleMap {
   Image samples;                       ///< 1 channel: extra samples dn of each pixel, 0 .. max_samples, not rounded.
   Image importance;                    ///< 1 channel: samples divided by their maximum, 0 .. 1.

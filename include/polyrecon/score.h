@@ -10,8 +10,8 @@ namespace polyrecon {
 /// The distance of an image x from a reference r.
 struct Score {
   double relative_mse = 0;  ///< Mean over pixels and channels of ((x - r)^2 - Var(r)) / (r^2 + 0.01).
-  double trimmed = 0;   ///< The same without the worst 0.1 % of the pixels, to tell fireflies from blur. NaN if there
-                        ///< is only one pixel.
+  double trimmed = 0;   ///< The same without the worst 0.1 % of the pixels, to distinguish fireflies from blur. NaN if
+                        ///< there is only one pixel.
   double energy = 0;    ///< mean(x) / mean(r) - 1; NaN if the reference is black.
   std::size_t bad = 0;  ///< Pixels with a sample that is not finite; such samples count as 0 in all figures.
 };

@@ -3,7 +3,7 @@
 
 namespace polyrecon {
 
-/// What the frames before and after a frame need of it; made by prepare_neighbour (polyrecon/reconstruct.h).
+/// A frame as those before and after it need it; made by prepare_neighbour (polyrecon/reconstruct.h).
 struct Neighbour;
 
 /// A neighbour in time.

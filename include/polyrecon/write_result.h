@@ -27,7 +27,7 @@ struct Provenance {
   double estimated_relative_mse = -1;  ///< Negative: unknown, not written.
 };
 
-/// What is written in addition to the replaced layers.
+/// Contents in addition to the replaced layers.
 struct WriteOptions {
   bool keep_noisy = false;  ///< Keep the replaced samples as the layer `<Layer> Noisy`.
   Provenance provenance;

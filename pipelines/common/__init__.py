@@ -1,1 +1,1 @@
-"""What all drivers share: files, child processes, errors, frame names, the program."""
+"""Code that all drivers share: files, child processes, errors, frame names, the program."""

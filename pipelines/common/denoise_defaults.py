@@ -1,4 +1,4 @@
-"""What drivers know about options of `polyrecon denoise`. A test, tests/docs/test_command_line.py, compares the two."""
+"""Options of `polyrecon denoise` that drivers know. A test, tests/docs/test_command_line.py, compares the two."""
 
 QUALITIES = ("draft", "standard", "best")  # --quality, from fast to accurate
 DEFAULT_QUALITY = "standard"

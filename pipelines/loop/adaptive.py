@@ -51,9 +51,9 @@ class Settings:
     frame: Optional[int] = None  # None: the scene's current frame
     first_pass: int = 8  # Samples per pixel
     max_rounds: int = 8
-    quality: str = DEFAULT_QUALITY  # Of the last reconstruction
+    quality: str = DEFAULT_QUALITY  # That of the last reconstruction
     resume: bool = False
-    identity: dict = dataclasses.field(default_factory=dict)  # Of the scene: see journal.State
+    identity: dict = dataclasses.field(default_factory=dict)  # Digests of the scene: see journal.State
     scene: Optional[str] = None  # Path of the input that is compared where the renderer lists none
 
 
@@ -89,7 +89,7 @@ class _Loop:
             self.state.rounds.pop()  # The loop ended there. Today's budget may be larger, so it is decided again.
         self.rendering = PartRendering(renderer, self.folder, self.journal, self.announce)
         self.why_ended = ""
-        self.decision_seconds = None  # Of the last decision, or as estimated; None: unknown
+        self.decision_seconds = None  # Measured at the last decision, or estimated; None: unknown
 
     def run(self):
         audit = self.renderer.begin(self.settings.frame)

@@ -45,13 +45,13 @@ class Budget:
 
 @dataclasses.dataclass(frozen=True)
 class Spent:
-    """What a frame took so far, and what its next steps are expected to take."""
+    """Samples and seconds that a frame took so far, and that its next steps are expected to take."""
 
     samples: float  # Per pixel, mean of the frame
     cost_weighted_samples: float  # The same, counted in samples of average cost
-    seconds: float  # Of everything
-    seconds_per_sample: float  # Of the next samples, for one sample of average cost in every pixel
-    decision_seconds: float  # Of a decision: both reconstructions and the sample maps
+    seconds: float  # In all
+    seconds_per_sample: float  # Expected for one more sample of average cost in every pixel
+    decision_seconds: float  # For a decision: both reconstructions and the sample maps
     result_seconds: float  # That the result still needs
     error: float = math.nan  # Estimated mean relative MSE of the result
 

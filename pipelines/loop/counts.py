@@ -1,4 +1,4 @@
-"""From a sample map to whole counts that a renderer can take in few, coherent passes, and what a sample costs where."""
+"""Rounding of a sample map to counts that a renderer can take in few, coherent steps, and the cost of a sample."""
 
 import dataclasses
 from typing import Optional
@@ -25,7 +25,7 @@ MAX_COST_RATIO = 16  # Costs are kept within this factor of their mean.
 
 @dataclasses.dataclass(frozen=True)
 class Taken:
-    """What a half has taken so far, sums over its parts. Arrays (height, width)."""
+    """The samples and seconds of a half so far, sums over its parts. Arrays (height, width)."""
 
     counts: np.ndarray  # Samples of each pixel
     seconds: Optional[np.ndarray]  # Render time of these samples in any unit; None: the renderer does not measure it.
@@ -79,7 +79,7 @@ def gaussian_blur(image, sigma):
 
 
 def weight_of_samples(variance, noise):
-    """What the noise of each pixel does to the result, in any unit: the weight of `polyrecon samplemap`, the geometric
+    """The effect of each pixel's noise on the result, in any unit: the weight of `polyrecon samplemap`, the geometric
     mean of the result's relative variance and the input's relative noise."""
     spread = [gaussian_blur(np.maximum(np.nan_to_num(values.astype(float)), 0), WINDOW) for values in (variance, noise)]
     return np.sqrt(spread[0] * spread[1])

@@ -1,4 +1,5 @@
-"""What a round takes: pure functions of the state and of maps in memory. They run nothing and write no file."""
+"""Decisions about the samples of a round: pure functions of the state and of maps in memory. They run nothing and write
+no file."""
 
 import numpy as np
 

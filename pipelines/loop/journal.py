@@ -28,12 +28,12 @@ class Part:
     cost_weighted_samples: float  # The same, counted in samples of average cost
     seconds: float
     masked: bool  # The requested counts differ between pixels.
-    sha256: str  # Of the file
+    sha256: str  # Digest of the file
 
 
 @dataclasses.dataclass(frozen=True)
 class Round:
-    """What was known when the samples of round + 1 were decided."""
+    """The knowledge by which the samples of round + 1 were decided."""
 
     round: int
     samples: float  # Per pixel, taken so far
@@ -48,11 +48,11 @@ class RoundPlan:
     """A round that is being rendered. The counts of its pixels are in the files counts_a and counts_b of the round."""
 
     round: int
-    first_samples: dict[str, int]  # Of each half: where its counts begin in the sequence
+    first_samples: dict[str, int]  # For each half: where its counts begin in the sequence
     parts: int  # Number of parts that each half's counts are divided into
     parts_before: int  # Parts of each half that the round has already
     cost_weighted_samples: float  # Per pixel, both halves together
-    counts_sha256: dict[str, str]  # Of the file with each half's counts
+    counts_sha256: dict[str, str]  # Digest of the file with each half's counts
 
 
 @dataclasses.dataclass
@@ -156,7 +156,7 @@ def _decode_state(path):
 
 
 def _check_state(state):
-    """What types alone cannot say. The loop divides by some of these numbers."""
+    """Checks that types alone cannot make. The loop divides by some of these numbers."""
     if state.first_pass_parts < len(HALVES) or state.first_pass_parts % len(HALVES):
         raise InvalidFileError("first_pass_parts is not a positive multiple of 2")
     for index, part in enumerate(state.parts):

@@ -1,4 +1,4 @@
-"""What the loop needs from a renderer. A new renderer is one file with a subclass of Renderer.
+"""The interface between the loop and a renderer. A new renderer is one file with a subclass of Renderer.
 
 Terms:
   sequence  The samples of a pixel, numbered from 0. Sample s of a pixel is the same one in every pass, and the loop
@@ -38,7 +38,7 @@ class Switch:
 
 @dataclasses.dataclass
 class Audit:
-    """What a frame is, and how it is rendered."""
+    """Describes and renders one frame."""
 
     width: int
     height: int

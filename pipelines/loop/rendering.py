@@ -114,7 +114,7 @@ class PartRendering:
         return counts // plan.parts
 
     def _check(self, part, taken):
-        """What the journal says about a part must be what its file says."""
+        """Raises an error unless the file of a part holds the samples that the journal states."""
         if not np.isclose(part.samples, taken.counts.mean()) or part.first_sample + taken.counts.max() > (
             self.state.next_sample
         ):
@@ -134,7 +134,7 @@ class PartRendering:
 
 
 def read_taken(part):
-    """What the file of a part says about its samples."""
+    """The samples of a part, read from its file."""
     channels = exr.read(part, lambda name: name.endswith((SAMPLE_COUNT, RENDER_SECONDS)))
     counts, seconds = (
         next((values for name, values in channels.items() if name.endswith(wanted)), None)

@@ -74,7 +74,7 @@ def _error_text(error):
 
 
 def _files_of(number, passes):
-    """What was known after a round, and the samples that followed."""
+    """The knowledge after a round, and the samples that followed."""
     following = passes.in_round(number + 1, "samples")
     files = [passes.in_round(number, name) for name in ("noisy", "clean", "error")]
     return [*files, following] if following.exists() else files

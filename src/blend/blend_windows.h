@@ -16,21 +16,21 @@ namespace polyrecon {
 /// Settings of fit_and_blend. fit_params and first_fit_params (pipeline/stage.h) derive them from Params, which has the
 /// defaults.
 struct FitParams {
-  int radius = 0;                ///< Of the window Omega_c, pixels.
+  int radius = 0;                ///< Radius of the window Omega_c, pixels.
   int stride = 0;                ///< Distance of the centres of the first lattice, pixels.
   PatchParams patch;             ///< Patches by whose distance the pixels of a window are weighted.
   std::vector<Real> bandwidths;  ///< h of the kernel K_h, rising; one blended image each.
   int max_order = 0;             ///< Highest Taylor order that select_order may choose, 0..4.
   double order_tolerance = 0;    ///< See select_order.
-  double coverage = 0;           ///< Where the kernel weights sum to less, centres of finer lattices are added.
+  double coverage = 0;           ///< Centres of finer lattices are added at pixels whose kernel weights sum to less.
   bool shrinkage = true;         ///< See select_order.
 };
 
 /// The inputs of fit_and_blend; all images have one size.
 struct FitSource {
   const Image* response = nullptr;        ///< Beauty and AOVs of the half that is fitted.
-  const Image* noise_variance = nullptr;  ///< Of the beauty of that half, 3 channels.
-  const Image* features = nullptr;        ///< Of the other half.
+  const Image* noise_variance = nullptr;  ///< Noise variance of the beauty of that half, 3 channels.
+  const Image* features = nullptr;        ///< Those of the other half.
   const Image* guide = nullptr;           ///< Colours that patches are compared in: the other half's or the previous
                                           ///< stage's, 3 channels.
   const Image* guide_variance = nullptr;  ///< Noise variance of guide.
@@ -53,8 +53,8 @@ struct FitSource {
 /// which would draw an edge.
 struct BlendedFit {
   Image value;         ///< Channels as in FitSource::response.
-  Image squared_bias;  ///< Of value, from the windows' bias (5), 3 channels; radiance squared.
-  Image variance;      ///< Of the windows, equation (6), blended like the value, 3 channels; radiance squared.
+  Image squared_bias;  ///< Squared bias of value, from the windows' (5), 3 channels; radiance squared.
+  Image variance;      ///< Variance (6) of the windows, blended like the value, 3 channels; radiance squared.
   Image order;         ///< Taylor order k, blended, 1 channel.
 };
 

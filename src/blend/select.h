@@ -21,7 +21,7 @@ int select_halo(const SelectParams& params);
 /// is an unbiased estimate of the relative squared error of (f_A + f_B) / 2, but for the noise of A and B, which is the
 /// same for all candidates. The risk is averaged over risk_sigma. The share of a candidate is
 ///     exp(-z^2 / 2) / s,   z = D / SE,
-/// where D is its risk minus that of the best candidate, SE is the standard error of D (so z tells how likely the
+/// where D is its risk minus that of the best candidate, SE is the standard error of D (so z says how likely the
 /// difference is chance), and s is the standard deviation of the candidate's noise, from the variance of its windows
 /// averaged over risk_sigma. So of candidates that cannot be distinguished by their risk, those with less noise count
 /// for more. Candidates without a variance have s = 1. Where several candidates are about equally good, their mean is

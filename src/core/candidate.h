@@ -9,11 +9,11 @@
 namespace polyrecon {
 
 /// One way to reconstruct the frame. The two halves are fitted separately: each is made from data that the other half,
-/// which judges it, does not share.
+/// which validates it, does not share.
 struct Candidate {
   std::array<Image, 2> half;  ///< Channels as in HalfPair::color.
   Image squared_bias;         ///< As the windows estimate it (5), 3 channels; empty if the candidate has none.
-  Image variance;             ///< Of the windows, equation (6), 3 channels; empty if the candidate has none.
+  Image variance;             ///< Variance (6) of the windows, 3 channels; empty if the candidate has none.
   Image order;                ///< Taylor order, 1 channel.
 };
 

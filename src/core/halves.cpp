@@ -12,7 +12,7 @@
 namespace polyrecon {
 namespace {
 
-// Of w from that of equal halves. Files of half floats round A, B and their mean.
+// Deviation of w from that of equal halves. Files of half floats round A, B and their mean.
 constexpr double rounding = 0.01;
 constexpr double largest_share = 0.98;  // Beyond it the mean is of one half alone, or of neither.
 constexpr double exactly = 1e-4;        // share of the squares that the fit of w may leave

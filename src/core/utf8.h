@@ -7,7 +7,7 @@ namespace polyrecon {
 
 /// A character of a text.
 struct CodePoint {
-  char32_t code = 0;  ///< Where the bytes are not UTF-8: the value of the first one.
+  char32_t code = 0;  ///< The value of the first byte if the bytes are not UTF-8.
   std::size_t bytes = 1;
   bool valid = false;
 };

@@ -43,7 +43,7 @@ bool is_nothing(const Feature& feature, double sky, std::size_t i) {
   return true;
 }
 
-/// The pixels in which all passes are 0; empty where no pass can tell.
+/// The pixels in which all passes are 0; empty if no pass shows it.
 Mask empty_pixels(const Frame& frame) {
   const bool telling = std::any_of(frame.features.begin(), frame.features.end(),
                                    [](const Feature& f) { return info_of(f.role).empty != EmptyValue::ZeroOrOne; });

@@ -11,9 +11,9 @@ namespace polyrecon {
 /// A pixel is void where nothing was rendered: beauty, colour layers and alpha are 0, and so are the features (a depth
 /// may be that of the sky, a visibility 1). Examples are the surroundings of a render region, transparent film, and the
 /// gaps between the islands of a light map. A value that is not finite counts as 0 where alpha is 0. Without an alpha
-/// or a feature to tell, no pixel is void: black is then a colour.
+/// or a feature, no pixel is void: black is then a colour.
 ///
-/// Where void pixels and others are mixed like salt and pepper, as in a thin volume, the void ones are samples that
+/// If void pixels and others are mixed like salt and pepper, as in a thin volume, the void ones are samples that
 /// found nothing, and they do not count as void.
 Image rendered_mask(const Frame& frame);
 

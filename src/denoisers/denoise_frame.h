@@ -10,11 +10,11 @@
 
 namespace polyrecon {
 
-/// What a denoiser works on: a frame without values that are not finite.
+/// The input of a denoiser: a frame without values that are not finite.
 struct DenoiserInput {
   std::array<Image, 2> halves;       ///< The beauty, 3 channels, linear radiance.
   bool independent_halves = true;    ///< Their noise is independent, so one can validate what is made of the other.
-  DenoiserFeatures features;         ///< Of the mean.
+  DenoiserFeatures features;         ///< Features of the mean.
   bool noise_free_features = false;  ///< The features are prefiltered already.
 };
 

@@ -9,7 +9,7 @@
 
 namespace polyrecon {
 
-/// What the options of the command line say about denoisers.
+/// Options of the command line about denoisers.
 struct DenoiserOptions {
   OidnOptions oidn;
 

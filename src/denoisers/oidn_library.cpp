@@ -124,7 +124,7 @@ std::string file_of(const std::string& path) {
   return fs::is_directory(path) ? (fs::path(path) / library_file).string() : path;
 }
 
-/// Where a symbol of the library was loaded from.
+/// The file that a symbol of the library was loaded from.
 std::string path_of(void* symbol, const std::string& requested) {
   Dl_info info{};
   return ::dladdr(symbol, &info) != 0 && info.dli_fname ? info.dli_fname : requested;
@@ -146,7 +146,7 @@ Image unpacked(const std::vector<float>& values, int width, int height) {
   return out;
 }
 
-/// What the library's callback needs. It must not throw through the library.
+/// The data of the library's callback, which must not throw through the library.
 struct Monitor {
   const std::function<bool(double)>& advance;
   double done = 0;

@@ -31,7 +31,7 @@ struct Preparation {
   double epsilon = 1;            ///< HalfPair::epsilon: (0.3 x mean brightness)^2, so that exposure does not matter.
   std::uint64_t stream = 0;      ///< Random stream of the first of streams_per_frame splits, at most. Frames that are
                                  ///< joined need different ones.
-  double noise_correlation = 0;  ///< Of the beauty's noise in pixels next to each other (noise/variance.h).
+  double noise_correlation = 0;  ///< That of the beauty's noise in adjacent pixels (noise/variance.h).
   std::vector<Decision> decisions;
   Image rendered = {};  ///< Mask of the pixels that were rendered; the others stay 0 (core/void_pixels.h).
   Image sampled = {};   ///< Mask of the pixels that are samples of it; the others are hidden.
@@ -46,7 +46,7 @@ Preparation choose_features(const Frame& frame, const Steps& steps = {}, const I
 /// Throws Error{CheckFailed} if the beauty has no finite pixel.
 void require_usable(const Frame& frame);
 
-/// What the fit works on.
+/// The input of the fit.
 struct Prepared {
   HalfPair pair;
   bool independent_halves = true;   ///< False if the halves were split from one image.

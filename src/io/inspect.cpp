@@ -138,7 +138,7 @@ std::string beauty_pass(const FrameSource& source) {
   return {};
 }
 
-/// What denoise has to do without, but for roles that the renderer has no name for.
+/// The roles that denoise has to do without, except those that the renderer has no name for.
 std::vector<std::string> missing_roles(const Inspection& found) {
   const std::string beauty = beauty_pass(found.source);
   std::vector<std::string> missing;

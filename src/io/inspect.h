@@ -17,7 +17,7 @@ struct LayerStatistics {
   double minimum = 0, maximum = 0, mean = 0;        ///< Over the finite samples.
 };
 
-/// What a file holds.
+/// The contents of a file.
 struct Inspection {
   FrameSource source;
   std::vector<LayerStatistics> statistics;  ///< By file and part; layers of unreadable parts are left out.

@@ -117,7 +117,7 @@ class PartReader {
   std::map<std::pair<int, int>, std::vector<Wanted>> parts_;
 };
 
-/// What a variance layer holds: by its name, unless the user says so.
+/// The contents of a variance layer: by its name, unless the user says so.
 Companion kind_of(const Layer& layer, VarianceKind by_user) {
   switch (by_user) {
     case VarianceKind::Mean:
@@ -157,7 +157,7 @@ class FrameBuilder {
   FrameBuilder(LayerChoice choice, const ReadOptions& options)
       : options_(options), passes_(std::move(choice.passes)), reader_(result_.source, options.limits) {
     result_.source = std::move(choice.source);
-    result_.beside_beauty = std::move(choice.beside_beauty);
+    result_.outside_beauty = std::move(choice.outside_beauty);
     result_.notes = std::move(choice.notes);
   }
 
@@ -302,7 +302,7 @@ class FrameBuilder {
     return {};
   }
 
-  /// Tells of a variance that the picture contradicts: neighbouring pixels would differ by more than they do.
+  /// Notes a variance that the picture contradicts: neighbouring pixels would differ by more than they do.
   void note_too_large_variance(const WantedPass& wanted, const Pass& pass) {
     const double excess = wanted.choice.role == Role::Beauty ? variance_excess(pass.mean, pass.variance) : 0;
     if (excess > most_variance_excess)

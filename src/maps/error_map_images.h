@@ -10,7 +10,7 @@ namespace polyrecon {
 /// One of the images of an ErrorMap, and its channels in the file that --error-map writes.
 struct ErrorMapImage {
   Image ErrorMap::*image;
-  std::array<const char*, 3> names;  ///< Of the channels; nullptr beyond the last.
+  std::array<const char*, 3> names;  ///< Names of the channels; nullptr beyond the last.
   bool may_be_missing = false;       ///< In the file: earlier versions did not write it.
 
   constexpr std::size_t channels() const {

@@ -228,7 +228,7 @@ Plane error_of_noise(const ErrorParts& parts, const Window& window, Progress& pr
   Plane V = window.spread(parts.variance, progress);
   Plane both = window.spread(parts.noise, progress);
   for (std::size_t i = 0; i < both.v.size(); ++i) both.v[i] = std::sqrt(both.v[i]) * std::sqrt(V.v[i]);
-  // Where the noise is unknown, or zero although there is an error, V is that of the variance alone.
+  // V is that of the variance alone if the noise is unknown, or zero although there is an error.
   return sum_pixels(both, [&](std::size_t i) { return both.v[i]; }) > 0 ? both : V;
 }
 
@@ -282,7 +282,7 @@ SampleMap make_sample_map(const ErrorMap& error, const Image& sample_count, cons
   const ErrorParts parts = split_error(error);
   map.unknown_pixels = parts.unknown;
   if (params.target > 0 && parts.unknown == error.relative_mse.pixels())
-    throw Error(ExitCode::BadInput, "no pixel of the error map is finite: a target cannot be judged, give a budget");
+    throw Error(ExitCode::BadInput, "no pixel of the error map is finite: a target cannot be checked, give a budget");
 
   const Window window(width, height, params.radius, progress);
   Filling f{Plane(width, height), counts_or(sample_count, params.assumed_samples, width, height),

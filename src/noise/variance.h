@@ -9,7 +9,7 @@
 namespace polyrecon {
 
 struct NoiseVariance {
-  Image variance;        ///< Of the beauty's mean, 3 channels, radiance squared.
+  Image variance;        ///< Variance of the beauty's mean, 3 channels, radiance squared.
   std::string source;    ///< "from the file", "from the half buffers" or "estimated from the image".
   bool measured = true;  ///< False for an estimate from the image, which is right for regions, not for single pixels.
 };

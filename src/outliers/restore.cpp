@@ -67,8 +67,8 @@ struct Sharing {
 
 /// Sums over the pixels below and above a limit.
 struct LimitedSums {
-  double squares;  ///< Of kappa v^2 over the positive values up to the limit.
-  double above;    ///< Of kappa v over the values above the limit.
+  double squares;  ///< Sum of kappa v^2 over the positive values up to the limit.
+  double above;    ///< Sum of kappa v over the values above the limit.
 };
 
 LimitedSums limited_sums(const Image& image, const Image& kappa, int channel, double limit) {

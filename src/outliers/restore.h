@@ -11,7 +11,7 @@ namespace polyrecon {
 /// Returns the energy that remove_outliers took, equations (10) and (11), so that the sum of every channel is that of
 /// the input to the rounding of double. The gain of a pixel is proportional to its brightness,
 ///     yhat(i) += e_o kappa yhat(i)^2 / sum over Omega_o of kappa yhat^2.
-/// Of all ways to add e_o, this has the least relative squared error, sum (d / yhat)^2 / kappa
+/// This has the least relative squared error of all ways to add e_o, sum (d / yhat)^2 / kappa
 /// (docs/lab/2026-11-28-fireflies.md).
 ///
 /// kappa = min(1, sigma / (max_gain yhat)), with sigma the standard deviation of the input's noise, is smaller for
@@ -19,7 +19,7 @@ namespace polyrecon {
 /// until the root mean square of the gain, weighted by kappa, is at most max_gain: the energy stays as close to o as it
 /// can without being visible. Where no pixel of Omega_o is positive and noisy, the energy returns to o itself.
 ///
-/// Where Omega_o is the whole image, no pixel changes by more than a half: the brightest ones, which would, change by a
+/// If Omega_o is the whole image, no pixel changes by more than a half: the brightest ones, which would, change by a
 /// half, and the rest is shared out by squares among the others, which is the least relative squared error under this
 /// bound. Where the bound cannot be kept, all pixels gain the same factor. A colour of which no pixel takes part stays
 /// unchanged.

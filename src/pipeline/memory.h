@@ -30,7 +30,7 @@ int channels_ahead(const FrameShape& shape, const Params& params);
 struct MemoryNeeds {
   std::size_t prepare = 0;   ///< While the passes are read and prepared.
   std::size_t denoiser = 0;  ///< While a denoiser makes the prior, with the least that it works with; 0: none does.
-  std::size_t held = 0;      ///< From the first fit on, without the tile in work.
+  std::size_t held = 0;      ///< Held from the first fit on, without the tile in work.
   std::size_t tile = 0;      ///< For the smallest tile that a stage can work on.
 
   std::size_t least() const { return std::max({prepare, denoiser, held + tile}); }

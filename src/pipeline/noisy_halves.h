@@ -14,7 +14,7 @@
 
 namespace polyrecon {
 
-/// What the halves of a frame are made for.
+/// The use of the halves of a frame.
 enum class HalvesFor {
   Fit,                ///< The frame is fitted by itself.
   FitWithNeighbours,  ///< The frame is fitted once its neighbours in time have joined it.

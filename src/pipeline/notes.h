@@ -13,7 +13,7 @@
 #include "polyrecon/report.h"
 #include "temporal/join.h"
 
-// What the steps of a reconstruction enter into its report.
+// The entries that the steps of a reconstruction make in its report.
 namespace polyrecon {
 
 /// The size and energy of the frame.

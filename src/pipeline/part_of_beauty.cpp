@@ -43,14 +43,14 @@ bool is_part_of_beauty(const Frame& frame, const Pass& layer) {
   return static_cast<double>(outside) <= most_outside * static_cast<double>(frame.beauty.mean.pixels());
 }
 
-std::vector<std::string> layers_beside_beauty(const Frame& frame) {
+std::vector<std::string> layers_outside_beauty(const Frame& frame) {
   std::vector<std::string> names;
   for (const Pass& layer : frame.aovs)
     if (!is_part_of_beauty(frame, layer)) names.push_back(layer.name);
   return names;
 }
 
-std::string note_of_layer_beside_beauty(const std::string& name) {
+std::string note_of_layer_outside_beauty(const std::string& name) {
   return name +
          " gets windows of its own: it is noisy where the beauty has no noise, so it is no part of it; without " +
          "--aov it stays as it is, --map beauty=LAYER denoises another layer in a run of its own";

@@ -13,9 +13,9 @@ namespace polyrecon {
 bool is_part_of_beauty(const Frame& frame, const Pass& layer);
 
 /// The names of the frame's further layers that are no part of the beauty.
-std::vector<std::string> layers_beside_beauty(const Frame& frame);
+std::vector<std::string> layers_outside_beauty(const Frame& frame);
 
-/// What the user is told of such a layer.
-std::string note_of_layer_beside_beauty(const std::string& name);
+/// The note about such a layer for the user.
+std::string note_of_layer_outside_beauty(const std::string& name);
 
 }  // namespace polyrecon

@@ -8,9 +8,9 @@
 
 namespace polyrecon {
 
-/// What is known of a frame before any work on its pixels.
+/// The knowledge about a frame before any work on its pixels.
 struct Survey {
-  NoiseVariance noise;      ///< Of the beauty.
+  NoiseVariance noise;      ///< That of the beauty.
   Preparation preparation;  ///< The features that take part, and which steps run.
 };
 

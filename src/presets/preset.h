@@ -20,7 +20,7 @@ std::array<Preset, preset_count> presets();
 
 /// Time and error of a preset, as factors of those of Quality::Standard.
 struct PresetFigures {
-  double seconds = 1;  ///< Of the reconstruction.
+  double seconds = 1;  ///< Time of the reconstruction.
   double error = 1;    ///< relMSE
 };
 

@@ -10,7 +10,7 @@
 
 namespace polyrecon {
 
-/// What a trial run on a part of a frame predicts for the whole frame. The run uses the preset "draft, stages 2".
+/// Predictions of a trial run on some tiles of a frame for the whole frame. The run uses the preset "draft, stages 2".
 struct Pilot {
   double seconds = 0;       ///< Predicted time of that preset on the whole frame.
   double relative_mse = 0;  ///< Mean of its error map.

@@ -13,7 +13,7 @@ namespace polyrecon {
 /// The fit of any prefix of columns is yhat = sum_a z_a q_a with z_a = sum_i w_i q_a(i) y(i), and the projection matrix
 /// of equations (5) and (6) is H_ij = sum_a q_a(i) q_a(j) w_j. H itself is never formed.
 ///
-/// Where columns depend on each other, the fit is that of a generalised ridge regression (Hoerl and Kennard 1970),
+/// If columns depend on each other, the fit is that of a generalised ridge regression (Hoerl and Kennard 1970),
 ///     R^T R = X^T W X + diag(D),   D_a = limit_a^2 / rest_a,
 /// where rest_a is the squared length of column a's remainder after the projection onto the columns before it, and
 /// limit_a is the squared length at which a column counts for half (DependenceLimits). A column with rest_a much larger

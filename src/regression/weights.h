@@ -57,7 +57,7 @@ class PatchDistances {
   void nearest_in_mask(int& x, int& y) const;
   /// Makes the distance of all pixels of `inside` that are outside the mask infinite.
   void leave_void(const Rect& inside, int center_x, int center_y);
-  int window_samples() const;        ///< From the first pixel of a window to its last, in rows of pitch_ samples.
+  int window_samples() const;        ///< Samples from the first pixel of a window to its last, in rows of pitch_.
   std::size_t slot_of(int y) const;  ///< Index of patch row y in sums_ and summed_, which are circular.
   /// Lists the pixels of `inside` whose distance is below limit in near_, as 64 y + x from the window's corner, and
   /// returns their number. Branch-free compaction: every pixel is written, and the cursor advances only past near ones.
@@ -65,9 +65,9 @@ class PatchDistances {
 
   int radius_ = 0, patch_radius_ = 0, pitch_ = 0;
   Real most_ = 0;                    ///< PatchParams::most_around.
-  Rect bounds_;                      ///< Of the image.
+  Rect bounds_;                      ///< Bounds of the image.
   const Image* mask_ = nullptr;      ///< Null where all pixels are inside.
-  Rect loaded_;                      ///< Of loaded_planes_; extends beyond the image.
+  Rect loaded_;                      ///< Area of loaded_planes_; extends beyond the image.
   std::vector<Real> loaded_planes_;  ///< planes x loaded_, border pixels repeated.
 
   // Shared by the windows of one column of centres.

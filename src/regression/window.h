@@ -19,7 +19,7 @@ inline constexpr double least_variation = 2e-4;
 struct Window {
   static constexpr int lanes = 16;  ///< Columns are padded to a multiple of this, for vector instructions.
 
-  BasisLayout layout{0, 0};  ///< Of the design's columns.
+  BasisLayout layout{0, 0};  ///< Layout of the design's columns.
 
   int count = 0;   ///< Pixels in the window.
   int padded = 0;  ///< count rounded up to a multiple of lanes.

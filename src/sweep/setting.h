@@ -11,7 +11,7 @@ namespace polyrecon {
 /// One way to reconstruct a frame, as a sweep runs it.
 struct Setting {
   std::string name;   ///< "stride 2"; unique within a sweep.
-  std::string group;  ///< What is varied: one of setting_groups().
+  std::string group;  ///< The group that is varied: one of setting_groups().
   Params params;
   bool without_halves = false;  ///< Ignore the file's half buffers; halves are then split from the mean.
   bool without_prior = false;   ///< Ignore the file's denoised layer.

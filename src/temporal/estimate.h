@@ -15,7 +15,7 @@ constexpr double least_variance = 1e-30;  // A variance up to it counts as none.
 /// An estimate of the current frame from other frames; zero where it is not valid.
 struct Estimate {
   std::array<Image, 2> color;
-  Image variance;  ///< Of one half, 3 channels.
+  Image variance;  ///< Noise variance of one half, 3 channels.
   std::array<Image, surfaces> surface;
   std::vector<unsigned char> valid;  ///< One byte per pixel.
 };

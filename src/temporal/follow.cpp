@@ -22,7 +22,7 @@ bool inside(double x, double y, const Image& image) {
 /// the two motion channels, 0 for the frame before and 2 for the one after.
 void step(const Geometry& here, const Geometry& there, const Image& image, int channel, Places& places) {
   const Image &from = here.motion, &to = there.motion;
-  // From an image's coordinates to those of the other one.
+  // Offset from an image's coordinates to those of the other one.
   const double shift_x = here.window.x0 - there.window.x0, shift_y = here.window.y0 - there.window.y0;
   for_rows(places.position.height(), [&](int y) {
     for (int x = 0; x < places.position.width(); ++x) {

@@ -7,9 +7,9 @@
 
 namespace polyrecon {
 
-/// Where the point that each pixel shows is in a neighbouring frame.
+/// The place in a neighbouring frame of the point that each pixel shows.
 struct Places {
-  int offset = 0;  ///< Of the neighbouring frame, in frames.
+  int offset = 0;  ///< Distance of the neighbouring frame, in frames.
   const Neighbour* frame = nullptr;
   Image position;                   ///< 2 channels: column and row in that frame's image, in pixels, fractional.
   std::vector<unsigned char> seen;  ///< Per pixel, 0 where the point is hidden in that frame or outside of it.

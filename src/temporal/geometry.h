@@ -9,12 +9,13 @@
 
 namespace polyrecon {
 
-/// Kinds of passes that tell which surface a pixel sees.
+/// Kinds of passes that show which surface a pixel sees.
 constexpr std::size_t surfaces = static_cast<std::size_t>(Surface::None);
 
 constexpr std::size_t index_of(Surface surface) { return static_cast<std::size_t>(surface); }
 
-/// What tells where the points of a frame are in another frame, and whether a pixel shows the same surface there.
+/// Motion, which says where the points of a frame are in another frame, and surfaces, which say whether a pixel shows
+/// the same one there.
 struct Geometry {
   Rect window;                          ///< As Frame::data_window.
   Image motion;                         ///< As Frame::motion.

@@ -96,10 +96,10 @@ CornerSums corner_sums(const HalfPair& pair, const Estimate& estimate, const Rec
   return sums;
 }
 
-/// What two frames have in common in a block.
+/// The similarity of two frames in a block.
 struct Common {
-  double rho;   ///< Of all that they show.
-  double rest;  ///< What they do not have in common, in units of the noise.
+  double rho;   ///< Correlation of all that they show.
+  double rest;  ///< Difference between them, in units of the noise.
 };
 
 Common common(const CornerSums& sums) {
@@ -129,7 +129,7 @@ Image common_blocks(const HalfPair& pair, const Places& neighbour) {
   return out;
 }
 
-/// What both frames show is noise only as far as the noise of the current one goes: a texture is in both, too.
+/// Detail that both frames show is noise only as far as the noise of the current one goes: a texture is in both, too.
 bool repeats(const Image& blocks, int column, int row) {
   const Real count = blocks.at(column, row, 2);
   return blocks.at(column, row, 0) > least_repeated * count && blocks.at(column, row, 1) < most_of_noise * count;

@@ -9,7 +9,7 @@
 namespace polyrecon {
 
 /// Takes a neighbour for unseen where it repeats a good part of the noise of the current frame, as all or some of the
-/// samples of both have one seed. Returns the share of the noisy pixels that this concerns. It is told from the corner
+/// samples of both have one seed. Returns the share of the noisy pixels that this concerns. It is read off the corner
 /// of the spectrum, [1 -3 3 -1] along x and y, where pixel filters leave little of the picture: with the means m and n
 /// of both frames there, rho = sum m n / sqrt(sum m^2 sum n^2) is 0 for independent noise, whatever its variance and
 /// the exposure of the frames.

@@ -115,7 +115,7 @@ def make_frame(sample, width, height, path):
 
 
 def pixel_hash(path):
-    """Of every channel as stored, so that two pictures with one hash are equal to the bit."""
+    """A hash of every channel as stored, so that two pictures with one hash are equal to the bit."""
     found = hashlib.sha256()
     source = oiio.ImageInput.open(str(path))
     spec = source.spec()

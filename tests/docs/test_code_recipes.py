@@ -79,7 +79,7 @@ def commands(build):
 
 
 def errors_of(path, root, known):
-    """What the compiler says of a file below root, with the options of the build."""
+    """The compiler's messages about a file below root, with the options of the build."""
     like = path if path in known else next(file for file, folder in LIKE if path.startswith(folder))
     words, kept = shlex.split(known[like]), []
     while words:

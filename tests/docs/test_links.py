@@ -24,7 +24,7 @@ def links(text):
 
 
 def fault_of_link(page, target):
-    """What is wrong with a link of a page, or None."""
+    """The fault of a link of a page, or None."""
     if re.match(r"[a-z][a-z+.-]*:", target):
         return None  # of another site, which no test should depend on
     path, _, anchor = urllib.parse.unquote(target).partition("#")

@@ -129,7 +129,7 @@ class Keys(unittest.TestCase):
         self.check("driver_progress.md", *map(json.loads, lines.getvalue().splitlines()))
 
     def test_journal_of_the_loop(self):
-        """Of a loop whose renderer fails in the first round, and of one that runs to its end."""
+        """Journals of a loop whose renderer fails in the first round, and of one that runs to its end."""
         with self.assertRaises(DriverError):
             loop(self.folder / "stopped", Budget(samples=24), renderer=StoppingRenderer())
         loop(self.folder / "finished", Budget(samples=24))

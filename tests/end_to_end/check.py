@@ -1,4 +1,4 @@
-"""What the end-to-end cases share: running the program, reading EXR files with OpenImageIO, scoring, asserting.
+"""Functions of all end-to-end cases: running the program, reading EXR files with OpenImageIO, scoring and asserting.
 
 A case prints one line per assertion: "ok WHAT" or "FAILED WHAT: FOUND". `expected` holds what it must print, so a case
 that ends early fails too.

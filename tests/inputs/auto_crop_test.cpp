@@ -66,7 +66,7 @@ TEST(AutoCrop, LayersWithinTheBoxOfTheBeautyAreReadWithIt) {
   ASSERT_THAT(read.frame.aovs, SizeIs(1));
   EXPECT_EQ(static_cast<double>(read.frame.aovs[0].mean.at(2, 1, 0)), pattern(40)(2, 3));
   EXPECT_EQ(read.frame.aovs[0].mean.at(2, 0, 0), 0);
-  EXPECT_THAT(read.beside_beauty, IsEmpty());
+  EXPECT_THAT(read.outside_beauty, IsEmpty());
 }
 
 /// Beyond its box the beauty is 0, so a layer that is not is no part of it; and the beauty may be a crop.
@@ -78,7 +78,7 @@ TEST(AutoCrop, ALayerThatReachesBeyondTheBeautyIsReadByItself) {
   const ReadResult read = read_frame(path, options);
   EXPECT_EQ(read.frame.data_window, (Rect{0, 2, 12, 9}));
   EXPECT_THAT(read.frame.aovs, IsEmpty());
-  EXPECT_THAT(read.beside_beauty, ::testing::ElementsAre("diffuse"));
+  EXPECT_THAT(read.outside_beauty, ::testing::ElementsAre("diffuse"));
   EXPECT_THAT(read.notes, ::testing::ElementsAre(HasSubstr("diffuse gets windows of its own")));
   options.aovs.clear();
   options.own_windows = "diffuse";

@@ -216,7 +216,7 @@ TEST(JoinNeighbours, SharedNoiseIsFoundInSplitHalves) {
     }
     const HalfPair before = s.pair;
     const JoinCounts counts = s.join();
-    const double border = part < 1 ? 24.0 / width : 0;  // it is told in blocks of 16 pixels and those around them
+    const double border = part < 1 ? 24.0 / width : 0;  // it is found in blocks of 16 pixels and those around them
     EXPECT_NEAR(counts.shared_noise, part, border);
     for (int y = 0; y < height; ++y)
       for (int x = 0; x < static_cast<int>(part * width) - 24; ++x)

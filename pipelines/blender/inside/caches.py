@@ -1,4 +1,5 @@
-"""Where simulations of a file write (runs inside Blender). The driver lets Blender write into its own folder alone."""
+"""The folders that simulations of a file write to (runs inside Blender). The driver lets Blender write into its own
+folder alone."""
 
 import os
 

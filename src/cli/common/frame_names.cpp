@@ -83,7 +83,7 @@ FrameRange parse_range(const std::string& all, const std::string& piece) {
 /// A place for a frame's number: #, ## ..., or C's format %d, which may have one digit that sets the length.
 struct Place {
   std::size_t begin = 0, length = 0;
-  int width = 1;  ///< Of the number.
+  int width = 1;  ///< Digits of the number.
 };
 
 /// The first place from `begin` on; its length is 0 where there is none.

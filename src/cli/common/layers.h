@@ -36,7 +36,7 @@ Image read_layer(const LayeredFile& file, const Layer& layer);
 /// A layer that is_color, as RGB: grey is repeated, a picture in CIE XYZ is converted.
 Image read_radiance(const LayeredFile& file, const Layer& layer);
 
-/// The variance of a layer's mean as far as its file tells it.
+/// The variance of a layer's mean, if its file holds it.
 struct KnownVariance {
   Image variance;    ///< Empty where it is unknown.
   std::string note;  ///< Why a layer with it is not used; empty otherwise.

@@ -11,7 +11,7 @@ constexpr std::size_t default_memory = std::size_t{4} << 30;
 /// Adds --max-memory for a command that calls limit_memory.
 void add_memory_limit(CLI::App& app, std::size_t& bytes);
 
-/// From now on, allocations that would bring the process beyond so many bytes fail with std::bad_alloc. Stacks of
+/// After this call, allocations that would bring the process beyond so many bytes fail with std::bad_alloc. Stacks of
 /// threads do not count. `denoise` plans its memory instead (pipeline/memory.h).
 void limit_memory(std::size_t bytes);
 

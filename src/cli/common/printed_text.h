@@ -6,8 +6,8 @@
 #include <string>
 #include <utility>
 
-// What the program prints. Names in files may hold any bytes; they cannot begin a line of their own on a terminal, move
-// its cursor, or make JSON that nobody can read.
+// Text that the program prints. Names in files may hold any bytes; they cannot begin a line of their own on a terminal,
+// move its cursor, or make JSON that nobody can read.
 namespace polyrecon {
 
 /// The text on one line: control characters, and bytes that are not UTF-8, are written as escapes such as \x1b.

@@ -10,7 +10,7 @@ namespace polyrecon {
 /// Adds --steps, and its former name --effects as a hidden alias.
 void add_steps_option(OptionSet& set, std::string& text);
 
-/// What --steps chose.
+/// The choice of --steps.
 struct StepsChoice {
   Steps steps;
   bool levels = true, stages = true;  ///< False: only one level, only one stage.

@@ -25,7 +25,7 @@ void print(bool quiet, const std::string& text) {
   std::fflush(stdout);
 }
 
-/// Where neighbours repeat the noise of a frame.
+/// The note on neighbours that repeat the noise of a frame.
 void note_shared_noise(const Report& report, std::vector<std::string>& notes) {
   if (report.neighbour_shared_noise < least_shared_noise) return;
   notes.push_back(
@@ -65,7 +65,7 @@ void keep_name(Pass& pass) {
 
 /// Takes the layers that are no part of the beauty out of the frame. Returns their names.
 std::vector<std::string> take_own_windows(Frame& frame) {
-  std::vector<std::string> names = layers_beside_beauty(frame);
+  std::vector<std::string> names = layers_outside_beauty(frame);
   frame.aovs.erase(
       std::remove_if(frame.aovs.begin(), frame.aovs.end(),
                      [&](const Pass& aov) { return std::find(names.begin(), names.end(), aov.name) != names.end(); }),
@@ -81,10 +81,10 @@ void FileRun::list_others(LoadedFrame& loaded) {
     for (const LayerView& place : loaded.in.source.pictures)
       if (!(place == loaded.picture.place)) add({place, {}});
   }
-  for (const std::string& layer : loaded.in.beside_beauty) add({loaded.picture.place, layer});
+  for (const std::string& layer : loaded.in.outside_beauty) add({loaded.picture.place, layer});
   for (const std::string& layer : take_own_windows(loaded.in.frame)) {
     add({loaded.picture.place, layer});
-    loaded.in.notes.push_back(note_of_layer_beside_beauty(layer));
+    loaded.in.notes.push_back(note_of_layer_outside_beauty(layer));
   }
 }
 

@@ -23,7 +23,7 @@ bool has_attribute(const FileInfo& file, const std::string& attribute, const std
   return found && found->value == value;
 }
 
-/// Of all files with its passes; of the one that is named where they cannot be found.
+/// The identity of all files with its passes, or of the named one if they cannot be found.
 std::string neighbour_identity(const Job& job, const NeighbourFile& neighbour) {
   try {
     return identity_of(read_frame_header(neighbour.path, read_options_for(job, neighbour.frame)).source);

@@ -20,8 +20,8 @@ struct FrameLimits {
   double seconds = 0;       ///< For a whole frame, reading and writing included.
   double relative_mse = 0;  ///< Largest mean relative MSE.
 
-  /// What is left after so many seconds. Where none are left it is a millisecond, which still selects the fastest
-  /// settings.
+  /// The limits that are left after so many seconds. If none are left it is a millisecond, which still selects the
+  /// fastest settings.
   FrameLimits after(double spent) const;
 };
 
@@ -31,9 +31,9 @@ struct Job {
   std::vector<FrameFiles> frames;
   bool is_sequence = false;  ///< Then a frame that fails does not end the run.
   ReadOptions read;
-  Params params;  ///< Where a pilot chooses the settings: those of standard quality.
+  Params params;  ///< If a pilot chooses the settings: those of standard quality.
   std::optional<FrameLimits> limits;
-  std::vector<Params> presets;  ///< What a pilot chooses from, in the order of presets(); empty without limits.
+  std::vector<Params> presets;  ///< Settings that a pilot chooses from, as presets(); empty without limits.
   std::optional<SampleMapOptions> sample_map;
   MakeDenoiser make_denoiser = nullptr;  ///< Null: the prior is a layer of the file, if it has one.
   DenoiserOptions denoiser_options;
@@ -65,8 +65,8 @@ SampleMapOptions sample_map_for(const Job& job, const FrameFiles& files);
 /// Notes on files that options name without a number, if one of them is used for this frame of a sequence.
 std::vector<std::string> fixed_file_notes(const Job& job, const FrameSource& source);
 
-/// What the result of a frame depends on in addition to its input, as options of the command line. The result and the
-/// report contain it; --skip-existing compares it.
+/// The settings that the result of a frame depends on in addition to its input, as options of the command line. The
+/// result and the report contain it; --skip-existing compares it.
 std::string settings_of(const Job& job, const FrameFiles& files);
 
 }  // namespace polyrecon

@@ -30,7 +30,7 @@ ReadOptions with_picture(ReadOptions options, const PictureChoice& picture);
 struct LoadedNeighbour {
   int offset = 0;
   std::shared_ptr<const Neighbour> frame;  ///< Empty where the file could not be read.
-  std::string identity;                    ///< Of the bytes that it was read from, or that could not be read.
+  std::string identity;                    ///< Identity of the bytes that it was read from, or that could not be read.
 };
 
 /// A picture in memory, with the frames that help it.
@@ -39,16 +39,16 @@ struct LoadedFrame {
   double read_seconds = 0;
   std::vector<LoadedNeighbour> neighbours;
   PictureChoice picture;
-  std::string identity;  ///< Of the bytes of all files that `in` was read from; see io/files/file_identity.h.
+  std::string identity;  ///< Identity of all files that `in` was read from; see io/files/file_identity.h.
 
-  /// What stands behind it for the neighbours.
+  /// The suffix of the identity for the neighbours.
   std::string neighbours_identity() const;
 };
 
 /// The identity of all files of a frame.
 std::string identity_of(const FrameSource& source);
 
-/// What stands for a neighbour in time behind the identity of a frame.
+/// The suffix for a neighbour in time behind the identity of a frame.
 std::string neighbour_text(int offset, const std::string& identity);
 
 /// Throws Error{BadInput} where a file changes while it is read, and as read_frame does.

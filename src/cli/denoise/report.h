@@ -18,12 +18,12 @@ struct RunReport {
   PictureChoice picture;
   std::string title;  ///< Name of the picture where the file has several.
   std::string version, input, output, settings;
-  std::vector<std::string> notes;  ///< From reading, writing and the sample map.
-  double seconds = 0;              ///< From the start to the last file written.
+  std::vector<std::string> notes;  ///< Notes from reading, writing and the sample map.
+  double seconds = 0;              ///< Time from the start to the last file written.
   double read_seconds = 0, write_seconds = 0;
-  std::size_t peak_memory = 0;  ///< Of the process, in bytes.
+  std::size_t peak_memory = 0;  ///< Peak of the process, in bytes.
   Report reconstruction;
-  std::optional<ChosenSettings> chosen;  ///< Where --time-budget or --target chose the settings.
+  std::optional<ChosenSettings> chosen;  ///< Set if --time-budget or --target chose the settings.
 };
 
 /// Peak resident memory of this process in bytes.

@@ -59,8 +59,8 @@ void run(const InspectOptions& o) {
   require_readable(o.input);
   InspectReport report{inspect(o.input, o.read), {}, find_denoisers(o.denoiser)};
   if (report.file.frame) try {
-      for (const std::string& layer : layers_beside_beauty(*report.file.frame))
-        report.file.notes.push_back(note_of_layer_beside_beauty(layer));
+      for (const std::string& layer : layers_outside_beauty(*report.file.frame))
+        report.file.notes.push_back(note_of_layer_outside_beauty(layer));
       report.steps = decide_steps(*report.file.frame);
     } catch (const Error& problem) {
       if (problem.code() != ExitCode::CheckFailed) throw;

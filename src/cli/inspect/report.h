@@ -17,10 +17,10 @@ struct FoundDenoiser {
   std::string problem;  ///< Why it cannot be used.
 };
 
-/// What `inspect` tells about a file.
+/// The findings of `inspect` about a file.
 struct InspectReport {
   Inspection file;
-  std::vector<Decision> steps;             ///< What denoise would decide; empty for a file without beauty.
+  std::vector<Decision> steps;             ///< Decisions that denoise would take; empty for a file without beauty.
   std::vector<FoundDenoiser> denoisers{};  ///< Those that --prior takes by name.
 };
 

@@ -36,10 +36,10 @@ struct NativeBand {
 
 std::size_t size_of(Imf::PixelType type);
 
-/// Of each channel 64 bits that tell its samples from others.
+/// A hash of 64 bits of each channel's samples.
 std::vector<std::size_t> hashes_of(const NativeBand& band);
 
-/// Of 9, for all that is written: zlib takes a fifth less time than at the usual 4, files grow by 4 %.
+/// The level, of 9, for all that is written: zlib takes a fifth less time than at the usual 4, files grow by 4 %.
 constexpr int zip_level = 2;
 
 constexpr int band_lines = 256;  ///< A multiple of the lines in a chunk, whatever the compression.

@@ -138,7 +138,7 @@ struct ChunkLayout {
 
 constexpr std::size_t longest_chunk_header = 44;
 
-/// What is wrong with a chunk; empty where all its bytes are there.
+/// The fault of a chunk; empty if all its bytes are there.
 std::string fault_of(const FileBytes& file, std::uint64_t offset, const ChunkLayout& layout, std::size_t part) {
   std::array<unsigned char, longest_chunk_header> raw{};
   if (offset > file.size() || file.size() - offset < layout.packed() || !file.read(offset, raw.data(), layout.packed()))

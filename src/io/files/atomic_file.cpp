@@ -29,7 +29,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view temporary_mark = ".polyrecon-";
-constexpr std::size_t longest_stem = 200;     ///< Of 255 bytes that a name may have.
+constexpr std::size_t longest_stem = 200;     ///< A name may have 255 bytes.
 constexpr std::chrono::minutes stale_age{1};  ///< Younger ones may belong to a run that has not locked its file yet.
 
 [[noreturn]] void fail(const std::string& target, const std::string& doing, int error) {
@@ -92,7 +92,7 @@ class Temporary {
 
   void flush() {
     if (::fsync(descriptor_) != 0) fail(target_, "flushing it to disk", errno);
-    // Some network file systems tell of a full disk only when a descriptor is closed; the lock keeps the other one.
+    // Some network file systems report a full disk only when a descriptor is closed; the lock keeps the other one.
     const int copy = ::dup(descriptor_);
     if (copy < 0 || ::close(copy) != 0) fail(target_, "closing it", errno);
   }

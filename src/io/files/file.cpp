@@ -51,7 +51,7 @@ std::uint64_t size_of_existing(const std::string& path) {
 /// A linear format that renderers write.
 struct PlainFormat {
   std::string_view extension, name;
-  std::array<std::string_view, 4> beginnings;  ///< Of its files.
+  std::array<std::string_view, 4> beginnings;  ///< First bytes of its files.
 };
 
 constexpr std::array<std::string_view, 4> tiff_beginnings{{{"II*\0", 4}, {"MM\0*", 4}, {"II+\0", 4}, {"MM\0+", 4}}};

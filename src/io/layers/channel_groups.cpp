@@ -206,7 +206,7 @@ class PartChannels {
 /// A layer while its channels are collected.
 struct Group {
   Layer layer;
-  std::vector<std::string> words;  ///< What each channel is called within the layer.
+  std::vector<std::string> words;  ///< Name of each channel within the layer.
 };
 
 /// Puts R G B, then X Y Z in front and takes the alpha channel of such a layer out of it.

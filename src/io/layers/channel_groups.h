@@ -33,7 +33,7 @@ inline bool is_bare_name(const std::string& pass) {
 /// views has "left" and "right" where several names contain one of them.
 std::vector<Layer> group_channels(const FileInfo& file);
 
-/// What a channel is called within its layer: "R" of "diffuse.R" and of "AlbedoR".
+/// The name of a channel within its layer: "R" of "diffuse.R" and of "AlbedoR".
 std::string word_of(const Layer& layer, const std::string& channel);
 
 /// Whether the channels are those of a colour: R, G, B in any spelling.

@@ -210,8 +210,8 @@ bool is_xyz(const Layer& layer) {
                     [](const std::string& channel, const char* letter) { return channel_suffix(channel) == letter; });
 }
 
-/// What a second moment of `nested` holds of the beauty: nested has alpha like a picture in RGB, or it is the nested
-/// integrator itself, whose picture is kept in CIE XYZ whatever the film. Nothing for other layers.
+/// The companion of the beauty that a second moment of `nested` is: nested has alpha like a picture in RGB, or it is
+/// the nested integrator itself, whose picture is kept in CIE XYZ whatever the film. Nothing for other layers.
 std::optional<Companion> moment_of_beauty(const Layer& beauty, const Layer& nested, const Layer& moment) {
   const bool of_rgb = nested.role == Role::Color && !nested.alpha.empty() && !moment.alpha.empty();
   if (of_rgb && !is_bare_film(beauty)) return Companion::SecondMoment;

@@ -236,7 +236,7 @@ void apply_map(LayerChoice& choice, const ReadOptions& options) {
       Layer& layer = source.layers[static_cast<std::size_t>(index)];
       require_fitting(source, layer, mapping);
       layer.role = mapping.role;
-      // What kind of variance a layer holds is known from its name, not from --map.
+      // The kind of variance that a layer holds is known from its name, not from --map.
       if (mapping.companion != Companion::VarianceOfMean || !is_variance(layer.companion))
         layer.companion = mapping.companion;
       layer.rank = rank_by_hand;
@@ -441,7 +441,7 @@ void choose_aovs(LayerChoice& choice, const ReadOptions& options) {
       choice.passes.push_back(pass);
       continue;
     }
-    choice.beside_beauty.push_back(layer.name);
+    choice.outside_beauty.push_back(layer.name);
     choice.notes.push_back(fmt::format(
         "{} gets windows of its own: its data window reaches beyond the beauty's, so it is no part of it", layer.name));
   }

@@ -14,11 +14,11 @@ struct PassChoice {
   int mean = -1, variance = -1, half_a = -1, half_b = -1;
 };
 
-/// What is read of a file.
+/// The layers that are read of a file.
 struct LayerChoice {
   FrameSource source;
-  std::vector<PassChoice> passes;          ///< In the order of the roles, beauty first; the AOVs follow.
-  std::vector<std::string> beside_beauty;  ///< As ReadResult::beside_beauty.
+  std::vector<PassChoice> passes;           ///< In the order of the roles, beauty first; the AOVs follow.
+  std::vector<std::string> outside_beauty;  ///< As ReadResult::outside_beauty.
   std::vector<std::string> notes;
 };
 

@@ -59,8 +59,8 @@ struct NameParts {
   std::string before, pass, after;
 };
 
-/// Where the numbers of frame and version at the end of a name begin; its length where there are none. Each number may
-/// have a separator, a v and a minus sign before it, in this order.
+/// The position at which the numbers of frame and version at the end of a name begin; its length if there are none.
+/// Each number may have a separator, a v and a minus sign before it, in this order.
 std::size_t numbers_at_end(const std::string& name) {
   const auto stands_before = [&](std::size_t at, const char* any_of) {
     return at > 0 && std::strchr(any_of, name[at - 1]) != nullptr;
@@ -86,7 +86,7 @@ NameParts parts_of(const std::string& path) {
   return parts;
 }
 
-/// What stands between the two ends of the text; empty where it has no such ends, or nothing between them.
+/// The text between its two ends; empty if it has no such ends, or nothing between them.
 std::string between(const std::string& before, const std::string& text, const std::string& after) {
   const std::size_t ends = before.size() + after.size();
   if (text.size() <= ends || text.compare(0, before.size(), before) != 0 ||

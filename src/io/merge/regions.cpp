@@ -15,8 +15,9 @@ namespace {
 /// A render is looked at closely if it is black in this share of the pixels of a line that others show.
 constexpr double suspicious_share = 1.0 / 32;
 
-/// Pixels that others show beyond a side of a box, by which a render that is black there by chance is told from one
-/// that ends there: the chance of none where 16 are expected is below 2 % even if pixels are lit four at a time.
+/// Pixels that others show beyond a side of a box, by which a render that is black there by chance is distinguished
+/// from one that ends there: the chance of none where 16 are expected is below 2 % even if pixels are lit four at a
+/// time.
 constexpr double beyond_chance = 16;
 
 using Row = std::vector<char>;  ///< For each pixel of a line of the beauty's part whether it is not black.
@@ -108,7 +109,7 @@ std::vector<std::size_t> groups_of(const std::vector<Rect>& boxes) {
   return group;
 }
 
-/// What the other renders of a group have in the area between one side of a box and that of the group.
+/// The samples of the other renders of a group in the area between one side of a box and that of the group.
 struct Beyond {
   Rect area;
   std::size_t shown = 0, lit = 0;  ///< Pixels of all other renders together, and those that are not black.

@@ -9,12 +9,12 @@
 
 namespace polyrecon {
 
-/// Where one render may have samples, and the layer that shows where it has.
+/// The area in which one render may have samples, and the layer that shows where it has.
 struct ShownPart {
   Rect window;                        ///< The data windows of all its parts together.
-  const FileInfo* file = nullptr;     ///< Of the beauty.
-  int part = 0;                       ///< Of the beauty.
-  std::vector<std::string> channels;  ///< Of the beauty, with its alpha.
+  const FileInfo* file = nullptr;     ///< File of the beauty.
+  int part = 0;                       ///< Part of the beauty.
+  std::vector<std::string> channels;  ///< Channels of the beauty, with its alpha.
 };
 
 /// The pixels that one render has samples for.

@@ -25,10 +25,10 @@ const PartInfo& part_of(const Render& render, const Layer& layer);
 /// Throws Error{BadInput}: the render does not fit the first one.
 [[noreturn]] void misfit(const Render& render, const Render& first, const std::string& what);
 
-/// What becomes of a layer.
+/// The treatment of a layer.
 enum class Fate { Merged, Kept, Dropped };
 
-/// What becomes of a layer that all renders have.
+/// The treatment of a layer that all renders have.
 Fate fate_of(const Render& first, const Layer& layer);
 
 /// The channels of a layer, its alpha last.

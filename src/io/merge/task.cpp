@@ -58,7 +58,7 @@ void choose_window(MergeTask& task, MergeResult& report) {
 Fate fate(const MergeTask& task, std::size_t l) {
   const Layer& layer = task.first().layers[l];
   if (task.renders[1].absent[l]) return Fate::Kept;
-  // Where each region has one render, its variance and halves describe the picture.
+  // If each region has one render, its variance and halves describe the picture.
   const bool joined = task.joins && layer.companion != Companion::Mean && info_of(layer.role).values != Values::Count;
   return joined ? Fate::Merged : fate_of(task.first(), layer);
 }

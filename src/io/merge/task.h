@@ -16,11 +16,11 @@ struct Slot {
   std::size_t layer, channel;
 };
 
-/// What is merged and how, decided before the pictures are read.
+/// The plan of a merge, decided before the pictures are read.
 struct MergeTask {
   std::vector<Render> renders;
   double samples = 0;        ///< Samples of each render; 0: as the files say.
-  Rect window;               ///< Of the result: all regions.
+  Rect window;               ///< Window of the result: all regions.
   bool has_regions = false;  ///< Some renders have samples of a part of the frame only.
   bool joins = false;        ///< Too much of the picture has one render only: no variance or halves are made.
   std::vector<std::size_t> merged, kept;           ///< Indices of layers.

@@ -23,8 +23,8 @@ struct LogRange {
   double low = 0, high = 0;
 };
 
-/// From the 1st to the 99.9th percentile of the positive finite values, but at most four powers of ten below the upper
-/// end; {0, 0} where there is none.
+/// The range from the 1st to the 99.9th percentile of the positive finite values, but at most four powers of ten below
+/// the upper end; {0, 0} where there is none.
 LogRange log_range(const Image& values);
 
 }  // namespace polyrecon

@@ -12,7 +12,7 @@ namespace polyrecon {
 struct Panel {
   Image rgb;            ///< 3 channels, display-encoded, 0..1.
   std::string caption;  ///< One line; cut where it is wider than the panel.
-  LogRange range;       ///< Of a false-colour picture: draws a legend. {0, 0}: none.
+  LogRange range;       ///< Range of a false-colour picture, for its legend. {0, 0}: none.
 };
 
 /// The panels side by side on a dark ground, each with its caption (and legend) in a strip below; a single panel

@@ -11,7 +11,7 @@
 
 namespace polyrecon {
 
-/// What the renderers' names say of one pass.
+/// The class of a pass by the renderers' names.
 struct PassClass {
   Role role = Role::Other;
   int rank = 0;
@@ -62,7 +62,7 @@ double sky_depth();
 /// Whether the pass holds the depth of each pixel's first sample, for compositing. Averages of it are wrong at edges.
 bool is_compositing_depth(const std::string& pass);
 
-/// The attributes with the samples per pixel by which a file tells that the first one lies at the pixel's centre.
+/// The attributes with the samples per pixel which show that the first one lies at the pixel's centre.
 std::vector<std::string> attributes_of_central_samples(const std::string& view_layer);
 
 /// Factors that turn the channels of a motion pass into Frame::motion. A pass that no renderer is known to use is taken
@@ -78,10 +78,10 @@ bool is_written_so(const std::string& pass);
 /// Whether the name is that of a companion of the beauty: "variance".
 bool is_beauty_companion(const std::string& pass);
 
-/// What stands behind the names of beauties that a denoiser has left: "_denoised".
+/// Endings behind the names of beauties that a denoiser has left: "_denoised".
 std::vector<std::string> denoised_endings();
 
-/// What stands behind the name of a pass in that of a companion: "Variance".
+/// Endings behind the name of a pass in that of a companion: "Variance".
 std::vector<std::string> companion_endings();
 
 }  // namespace polyrecon

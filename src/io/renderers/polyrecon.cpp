@@ -4,7 +4,7 @@
 
 namespace polyrecon {
 
-/// What `polyrecon merge`, `polyrecon denoise` and the drivers in pipelines/ write.
+/// Names that `polyrecon merge`, `polyrecon denoise` and the drivers in pipelines/ write.
 Renderer polyrecon_itself() {
   Renderer r;
   r.name = "polyrecon";

@@ -8,8 +8,8 @@ constexpr const char* variance_suffix = " Variance";  ///< The companions that `
 constexpr const char* half_a_suffix = " A";
 constexpr const char* half_b_suffix = " B";
 constexpr const char* sample_count_pass = "Sample Count";
-constexpr const char* shared_samples_attribute = "polyrecon/sharedSamples";  ///< What `merge` noted of them.
+constexpr const char* shared_samples_attribute = "polyrecon/sharedSamples";  ///< Note of `merge` about them.
 constexpr const char* samples_attribute = "polyrecon/{}/samples";            ///< "{}" stands for the view layer.
-constexpr const char* settings_attribute = "polyrecon/settings";             ///< Of a result of `denoise`.
+constexpr const char* settings_attribute = "polyrecon/settings";             ///< Settings of a result of `denoise`.
 
 }  // namespace polyrecon

@@ -20,7 +20,7 @@ struct PassName {
   std::string name;  ///< As the renderer writes it; names are compared without case, blanks, '_', '-' and brackets.
   Role role;
   int rank;                  ///< Among layers of one role in one view layer the one of the lowest rank is used.
-  std::size_t channels = 0;  ///< Of a layer with this name; 0: all that the role allows.
+  std::size_t channels = 0;  ///< Channels of a layer with this name; 0: all that the role allows.
 };
 
 /// A word that names of features contain, without capitals.
@@ -70,7 +70,7 @@ struct Renderer {
   std::string versions;  ///< Which versions or outputs the names belong to, for the documentation; may be empty.
 
   std::vector<PassName> passes;
-  std::vector<PassName> letters;           ///< Of layers of one channel with a name that the user gives. Case matters.
+  std::vector<PassName> letters;  ///< Letters of layers of one channel with a name that the user gives. Case matters.
   std::vector<FeatureWord> feature_words;  ///< For passes that no renderer is known to write; the first word decides.
   std::vector<std::string> data_prefixes;  ///< Passes whose names begin so hold data even if they look like colours.
   std::vector<CompanionAffix> affixes;

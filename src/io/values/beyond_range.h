@@ -10,11 +10,11 @@ namespace polyrecon {
 
 constexpr float largest_half = 65504;
 
-/// What samples beyond the range of a channel are taken for.
+/// The meaning of samples beyond the range of a channel.
 enum class BeyondRange {
   AsStored,
   LargestHalf,  ///< Half floats hold radiance above largest_half as +Inf.
-  Sky           ///< Where rays hit nothing, renderers write depths of 1e10, of the largest float, or +Inf.
+  Sky           ///< Depths of rays that hit nothing: renderers write 1e10, the largest float, or +Inf.
 };
 
 /// layer: a layer of the part, which is used in this role. channel: one of the layer's, whole name.

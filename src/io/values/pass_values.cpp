@@ -77,7 +77,7 @@ void from_moment_of_xyz(Image& values, const Image& mean, const SampleCounts& co
 
 /// Sums of relative variances over pairs of pixels.
 struct PairSums {
-  double told = 0, shown = 0;
+  double stated = 0, shown = 0;
 };
 
 PairSums pairs_of_row(const Image& mean, const Image& variance, int c, int y) {
@@ -85,10 +85,10 @@ PairSums pairs_of_row(const Image& mean, const Image& variance, int c, int y) {
   PairSums sums;
   for (int x = 0; x + 1 < mean.width(); ++x) {
     const double a = static_cast<double>(m[x]), b = static_cast<double>(m[x + 1]),
-                 told = (static_cast<double>(v[x]) + static_cast<double>(v[x + 1])) / 2, shown = (a - b) * (a - b) / 2,
-                 scale = relmse_denominator((a + b) / 2);
-    if (!std::isfinite(told / scale) || !std::isfinite(shown / scale)) continue;
-    sums.told += told / scale;
+                 stated = (static_cast<double>(v[x]) + static_cast<double>(v[x + 1])) / 2,
+                 shown = (a - b) * (a - b) / 2, scale = relmse_denominator((a + b) / 2);
+    if (!std::isfinite(stated / scale) || !std::isfinite(shown / scale)) continue;
+    sums.stated += stated / scale;
     sums.shown += shown / scale;
   }
   return sums;
@@ -130,16 +130,16 @@ double variance_excess(const Image& mean, const Image& variance) {
   for_rows(mean.height(), [&](int y) {
     for (int c = 0; c < mean.channels(); ++c) {
       const PairSums row = pairs_of_row(mean, variance, c, y);
-      rows[static_cast<std::size_t>(y)].told += row.told;
+      rows[static_cast<std::size_t>(y)].stated += row.stated;
       rows[static_cast<std::size_t>(y)].shown += row.shown;
     }
   });
   PairSums all;
   for (const PairSums& row : rows) {
-    all.told += row.told;
+    all.stated += row.stated;
     all.shown += row.shown;
   }
-  return all.shown > 0 ? all.told / all.shown : 0;
+  return all.shown > 0 ? all.stated / all.shown : 0;
 }
 
 bool to_sample_counts(Image& values, const std::string& pass, double everywhere) {

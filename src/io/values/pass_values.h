@@ -1,4 +1,5 @@
-// From the values of layers to those of a Pass: numbers of channels, samples per pixel, variances of the mean.
+// Conversions from the values of layers to those of a Pass: numbers of channels, samples per pixel, variances of the
+// mean.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-"""Where the drivers and the Blender extension, which is installed without them, look for the program."""
+"""The drivers and the Blender extension, which is installed without them, look for the program in the same places."""
 
 import importlib.util
 import os

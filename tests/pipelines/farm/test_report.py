@@ -1,4 +1,4 @@
-"""What the report makes of records and messages that someone else wrote."""
+"""The report about records and messages that someone else wrote."""
 
 import contextlib
 import io

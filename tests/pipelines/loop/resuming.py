@@ -34,7 +34,7 @@ def _passes(output):
 
 
 def _parts(output):
-    """What the journal says of the finished parts, but for their times and the digests of files that hold times."""
+    """The finished parts by the journal, but for their times and the digests of files that hold times."""
     parts = json.loads((_passes(output) / "journal.json").read_text())["parts"]
     return [[part[key] for key in ("file", "first_sample", "samples", "masked")] for part in parts]
 

@@ -308,7 +308,7 @@ class Resuming(Folder):
         self.assertEqual(before, {name: (self.folder / name).read_bytes() for name in before})
 
     def test_a_scene_that_changed_is_not_continued(self):
-        """Of a renderer that lists no inputs, the scene's file is compared."""
+        """If a renderer lists no inputs, the scene's file is compared."""
         scene = self.folder / "scene"
         scene.write_text("one")
         loop(self.folder, Budget(samples=8), renderer=NoInputs(), scene=scene)

@@ -15,7 +15,7 @@ class FirstPass(unittest.TestCase):
         return options
 
     def refused(self, *words):
-        """What is said of words that end with exit code 2."""
+        """The message about words that end with exit code 2."""
         errors = io.StringIO()
         with contextlib.redirect_stderr(errors), self.assertRaises(SystemExit) as caught:
             self.parse(*words)

@@ -4,7 +4,7 @@ import numpy as np
 
 from pipelines.loop.pass_list import masked_passes, rectangular_passes
 
-COSTS = 100_000, 2.5  # Of a masked pass and of each pixel of its box
+COSTS = 100_000, 2.5  # Cost of a masked step and of each pixel of its box
 
 
 def taken(counts, overhead):
