@@ -60,13 +60,13 @@ PHASES = [
     ),
 ]
 
-# What stands at the frame around a phase.
+# Labels of the frames around phases.
 FRAMES = {
     "survey": "survey_frame, src/pipeline; inspect runs it too",
     "fit": "repeated for each level and stage: run_stage, src/pipeline",
 }
 
-# What enters a phase from beside.
+# Inputs of a phase from the side.
 INPUTS = {"join": ("Neighbour", "frames before and after, by the same steps from survey to prepare: prepare_neighbour")}
 
 STYLE = """

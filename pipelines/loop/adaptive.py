@@ -3,7 +3,7 @@ samples; the result.
 
 The picture is unbiased. Every pixel has two halves of samples, A and B. Where A's next samples go is decided from B's
 samples alone, and the other way round, and the picture is (mean of A + mean of B) / 2. If one set of samples were both
-judged and refined, a pixel that is bright by chance would draw the samples that dilute it, and the picture would be
+measured and refined, a pixel that is bright by chance would draw the samples that dilute it, and the picture would be
 too dark (docs/guide/adaptive.md)."""
 
 import dataclasses

@@ -58,7 +58,7 @@ class Spent:
 
 def uniform_share(budget, spent):
     """Samples per pixel that follow the first pass uniformly, for a budget of seconds. The first decision then knows
-    more than the few samples of the first pass would tell. Where no decision pays after that, the samples take all
+    more than the few samples of the first pass would show. Where no decision pays after that, the samples take all
     seconds that are left. Not above 0: none."""
     after = max(spent.seconds, UNIFORM_SHARE * budget.seconds)
     if reason_to_stop(budget, dataclasses.replace(spent, seconds=after)):
