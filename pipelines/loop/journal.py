@@ -18,7 +18,7 @@ HALVES = ("a", "b")
 
 @dataclasses.dataclass(frozen=True)
 class Part:
-    """One pass over the whole frame, in a file of its own."""
+    """One render pass over the whole frame, in a file of its own."""
 
     file: str  # Name in the folder of passes
     half: str  # "a" or "b"

@@ -1,4 +1,4 @@
-"""The passes that render the counts of a part, for renderers that render masks or rectangles with one count each.
+"""The render passes for the counts of a part, for renderers that render masks or rectangles with one count each.
 
 Fixed costs are in samples of a pixel: how many samples take as long."""
 

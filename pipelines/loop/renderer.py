@@ -4,7 +4,7 @@ Terms:
   sequence  The samples of a pixel, numbered from 0. Sample s of a pixel is the same one in every pass, and the loop
             never requests a number twice. A renderer that has only a seed takes `first` for it. Different seeds must
             give independent samples, and so must two rectangles of one part, which have the same seed.
-  part      One EXR file with one pass over the whole frame, in any layout that `polyrecon merge` reads. All parts of a
+  part      One EXR file with samples of the whole frame, in any layout that `polyrecon merge` reads. All parts of a
             frame have the same layers; the first part may have more, which are kept as they are. Every part has these
             channels, after the prefix of the view layer if there is one (`ViewLayer.Sample Count.X`):
               Sample Count.X    How many samples each pixel is the mean of. Where it is 0, the pixel's other values are
