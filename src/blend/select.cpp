@@ -194,7 +194,7 @@ Candidate select(const HalfPair& pair, const Image& brightness, const std::vecto
 std::size_t select_channels(std::size_t candidates, std::size_t color_channels) {
   constexpr std::size_t risks = 2, share = 1;  // per candidate: raw and smoothed
   constexpr std::size_t inverse_brightness = 3, best = 2, total_share = 1;
-  // Moments with both passes of their blur, and the likelihood made of them; gone before the result is allocated.
+  // Moments with both directions of their blur, and the likelihood made of them; gone before the result is allocated.
   constexpr std::size_t moments = std::size_t{3} * 2, likelihood = 1;
   return candidates * (risks + share) + inverse_brightness + best + total_share +
          std::max(moments + likelihood, candidate_channels(color_channels));

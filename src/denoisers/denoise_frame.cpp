@@ -12,7 +12,7 @@ namespace {
 
 constexpr int rgb = ColorLayout::primaries;
 
-/// Ways to turn an image over.
+/// Ways to mirror an image.
 enum Turn : unsigned { AsItIs = 0, LeftRight = 1, UpDown = 2, Both = 3 };
 constexpr std::array<Turn, 2> half_turns{LeftRight, UpDown};
 constexpr std::array<Turn, 4> mean_turns{AsItIs, Both, LeftRight, UpDown};

@@ -224,7 +224,7 @@ OidnLibrary::OidnLibrary(const OidnOptions& options) {
       loaded_ = std::move(loaded);
       return;
     }
-    // The system's library is the only place that may not exist: what it lacks explains nothing.
+    // The system's library is the only place that may not exist: its absence explains nothing.
     if (reason.empty() || file != library_file) reason = loaded->path.empty() ? problem : loaded->path + ": " + problem;
   }
   if (!named.empty())

@@ -9,7 +9,7 @@
 namespace polyrecon {
 namespace {
 
-/// Escapes text for roff, in which "\" and "-" have a meaning, and a dot or a quote at the begin of a line.
+/// Escapes text for roff, in which "\" and "-" have a meaning, and a dot or a quote at the beginning of a line.
 std::string escape(const std::string& text) {
   std::string out;
   for (const char c : text) {

@@ -24,8 +24,8 @@ namespace {
 
 constexpr double allocator = 1.08;  // unused memory between images of unequal sizes; tests/bench/scaling.py: up to 6 %
 
-// A denoiser: what a library needs in addition to its images under its least memory limit, its code and
-// weights included (Open Image Denoise 2.5: 350 MB for 1920 x 1080 and more), and the images of one run.
+// Memory of a denoiser's library under its least limit, in addition to the images of a run: its code and weights
+// included (Open Image Denoise 2.5: 350 MB for 1920 x 1080 and more).
 constexpr std::size_t least_denoiser_bytes = std::size_t{384} << 20;
 constexpr std::size_t rgb = ColorLayout::primaries;
 constexpr std::size_t denoiser_features_channels = 2 * rgb;  // albedo and normal
@@ -96,7 +96,7 @@ void add_denoiser(FrameShape& shape) {
 }
 
 int neighbours_channels(const FrameShape& shape, int neighbours, const Params& params) {
-  // The frame's own geometry and its noise are held until the neighbours have joined.
+  // The geometry of the frame itself and its noise are held until the neighbours have joined.
   const std::size_t own = neighbours > 0 ? geometry_channels() + surfaces : 0;
   return static_cast<int>(
       static_cast<std::size_t>(neighbours) * neighbour_channels(count(reconstructed_channels(shape, params))) + own);

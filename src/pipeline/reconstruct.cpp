@@ -39,7 +39,7 @@ namespace {
 constexpr double gross_excess = 2;           // times the noise bound: ten standard deviations
 constexpr double max_restored_gain = 0.001;  // a tenth of the least visible step in brightness (Weber)
 constexpr double max_total_gain = 0.05;      // above what is lost because weights favour ordinary pixels
-constexpr double most_energy_change = 0.5;   // share of the input's; what fireflies and signs may cost is less
+constexpr double most_energy_change = 0.5;   // share of the input's; fireflies and negative values cost less
 
 /// The parameters for a frame: an estimated noise variance needs other patches than a measured one.
 Params params_for_frame(const Frame& frame, Params params) {
@@ -72,7 +72,7 @@ Candidate fit_polynomials(const Frame& frame, const HalfPair& pair, const Params
 }
 
 /// Ends changes at gross_excess times the noise bound, in all layers alike so that those that add up to the beauty
-/// still do: where every window contradicts a pixel grossly, they only take turns in being wrong.
+/// still do: if every window contradicts a pixel grossly, none of them is right there.
 void end_gross_changes(const HalfPair& pair, Image& image) {
   if (pair.bound.empty()) return;
   const auto input = [&](int c, std::size_t i) {
@@ -247,7 +247,7 @@ Result reconstruct(Frame& frame, const std::vector<TimedNeighbour>& neighbours, 
   // Polynomials around every centre, of the order with the least estimated error, blended (equations 3 to 9).
   Candidate solved = fit_polynomials(frame, pair, params, max_bytes, phases, report);
 
-  // Nothing was rendered there, and nothing comes out.
+  // Void pixels stay empty.
   const Image& rendered = halves.survey.preparation.rendered;
   empty_void(rendered, pair, solved);
 

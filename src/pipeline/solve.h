@@ -10,7 +10,7 @@
 
 namespace polyrecon {
 
-/// The polynomials of a pair: all stages on all levels of resolution (sections 2.1 and 2.2 of the method). Works in
+/// The polynomials of a pair: all stages on all levels of resolution (equations 5 to 9). Works in
 /// tiles, so that the memory in addition to the pair, its coarser levels and two results stays within max_bytes.
 Candidate solve(const HalfPair& pair, const Params& params, std::size_t max_bytes, FitCounters& counters,
                 Progress& progress);

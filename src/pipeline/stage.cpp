@@ -26,8 +26,8 @@ bool noise_matters(const HalfPair& pair, std::size_t i, Real enough) {
   return false;
 }
 
-/// Marks the samples that have noise and so are fitted. A pixel has none if its halves are equal and its
-/// variance is 0, or if its noise bound is 0, which no fit keeps within.
+/// Marks the samples that have noise and so are fitted. A pixel has none if its halves are equal and its variance is 0,
+/// or if its noise bound is 0, which no fit keeps within.
 std::vector<unsigned char> noisy_pixels(const HalfPair& pair, const Params& params) {
   std::vector<unsigned char> noisy(pair.variance.pixels(), params.steps.decide ? 0 : 1);
   for (int c = 0; c < pair.color[0].channels(); ++c) {

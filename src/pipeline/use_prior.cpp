@@ -23,7 +23,7 @@ namespace {
 constexpr int rgb = ColorLayout::primaries;
 constexpr double most_noise_in_prior = 0.9;  // above it the prior is the input, which would validate itself
 // The mean of a prior against that of its halves in the picture that is mixed in. Both are of the same samples; the
-// mean has seen more of them at once.
+// mean is denoised with more of them at once.
 constexpr Real mean_share = Real(2) / 3;
 constexpr std::uint64_t validation_stream = std::uint64_t{1} << 40;  // apart from those of frames and their neighbours
 

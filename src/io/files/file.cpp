@@ -60,8 +60,8 @@ constexpr std::array<PlainFormat, 4> plain_formats{{{".pfm", "pnm", {"PF", "Pf"}
                                                     {".tif", "tiff", tiff_beginnings},
                                                     {".tiff", "tiff", tiff_beginnings}}};
 
-/// The format that the name stands for. Throws where there is none, and where the file begins as another format: what
-/// is not needed is refused, since each decoder has holes of its own.
+/// The format that the name stands for. Throws where there is none, and where the file begins as another format: a
+/// format that is not needed is refused, since each decoder has faults of its own.
 std::string plain_format_of(const std::string& path) {
   std::string extension = std::filesystem::path(path).extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),

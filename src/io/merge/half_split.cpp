@@ -28,7 +28,7 @@ std::vector<bool> split_renders(const std::vector<double>& samples) {
   std::iota(longest_first.begin(), longest_first.end(), std::size_t{0});
   std::stable_sort(longest_first.begin(), longest_first.end(),
                    [&](std::size_t i, std::size_t k) { return samples[i] > samples[k]; });
-  double balance = 0;  // samples of A less those of B
+  double balance = 0;  // samples of A minus those of B
   for (const std::size_t k : longest_first) {
     half_b[k] = balance > 0;
     balance += half_b[k] ? -samples[k] : samples[k];
