@@ -2,38 +2,40 @@
 """Renders a .blend file with Cycles, takes samples where the reconstruction needs them, and writes the clean picture.
 
 examples:
-  adaptive.py shot.blend -o shot.exr --budget-spp 64
-  adaptive.py shot.blend -o 'out/shot_####.exr' --frames 1-10 --budget-seconds 120 --quality best
-  adaptive.py shot.blend -o shot.exr --target 0.002 --bpy
-  adaptive.py shot.blend -o shot.exr --budget-spp 128 --resume    # continues after an interruption, or with more budget
+  %(prog)s shot.blend -o shot.exr --budget-spp 64
+  %(prog)s shot.blend -o 'out/shot_####.exr' --frames 1-10 --budget-seconds 120 --quality best
+  %(prog)s shot.blend -o shot.exr --target 0.002 --with-prior --error-map error.exr --report shot.html
+  %(prog)s shot.blend -o shot.exr --budget-spp 64 --keep-passes
+  %(prog)s shot.blend -o shot.exr --budget-spp 128 --keep-passes --resume    # more samples; also after an interruption
 
-The file is not changed and none of its scripts is run. Passes, merged picture, error map, sample maps, journal and
-report.html stay in --passes-dir."""
+The .blend file is not changed and none of its scripts is run."""
 
-import argparse
 import pathlib
 import sys
 
 if not __package__:  # run as a script from a checkout
     sys.path[0] = str(pathlib.Path(__file__).resolve().parents[2])
+    sys.dont_write_bytecode = True  # A checkout stays as it is.
     __package__ = "pipelines.blender"
 
-from ..common.errors import run_main
-from ..loop import command
-from .options import add_common, renderer_of
+from ..common.modules import RENDERING, required
+
+with required("polyrecon-blender", RENDERING):
+    from ..common.arguments import Parser
+    from ..common.errors import run_main
+    from ..loop import command
+    from .options import add_common, renderer_of
 
 
 def arguments(words):
-    parser = argparse.ArgumentParser(
-        prog="polyrecon-blender", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
+    parser = Parser("polyrecon-blender", description=__doc__)
     add_common(parser)
-    command.add_loop_arguments(parser, 8, "uniform samples of the first pass: 4 or a multiple of 8 (8)")
+    command.add_loop_arguments(parser, 8, "uniform samples of the first pass: 4 or a multiple of 8")
     parser.add_argument(
         "--method",
         choices=("auto", "osl", "regions"),
         default="auto",
-        help="way of extra samples: osl, a camera with a mask (Blender 5), or regions, rectangles (auto)",
+        help="way of extra samples: osl, a camera with a mask (Blender 5), or regions, rectangles",
     )
     options = parser.parse_args(words)
     if options.first_pass != 4 and (options.first_pass < 8 or options.first_pass % 8):

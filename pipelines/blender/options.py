@@ -16,12 +16,7 @@ def add_common(parser):
         "--visibility",
         choices=("shadow", "ambient-occlusion", "none"),
         default="none",
-        help="pass that is the feature `visibility` (none)",
-    )
-    parser.add_argument(
-        "--with-prior",
-        action="store_true",
-        help="also denoise each half with Cycles' denoiser and store the results as the layers Prior A and Prior B",
+        help="pass that is the feature `visibility`",
     )
     blender = parser.add_mutually_exclusive_group()
     blender.add_argument("--blender", metavar="PATH", help="Blender (default: $BLENDER, else `blender`)")
@@ -36,4 +31,4 @@ def renderer_of(options, method="auto"):
     if not options.scene.is_file():
         raise DriverError(ExitCode.MISSING, f"{options.scene}: no such file")
     visibility = None if options.visibility == "none" else options.visibility
-    return BlenderRenderer(options.scene, options.blender, method, visibility, options.pass_timeout, options.with_prior)
+    return BlenderRenderer(options.scene, options.blender, method, visibility, options.pass_timeout)

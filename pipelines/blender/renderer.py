@@ -8,10 +8,11 @@ import numpy as np
 
 from ..common import exr
 from ..common.errors import DriverError, ExitCode
+from ..common.outputs import COMPRESSIONS
 from ..common.scene_inputs import SceneInputs
 from ..loop.pass_list import masked_passes, rectangular_passes
 from ..loop.renderer import RENDER_SECONDS, SAMPLE_COUNT, Audit, Renderer, Switch
-from . import masks, prior
+from . import masks
 from .session import BlenderSession
 
 PART_LAYERS = {
@@ -38,15 +39,12 @@ class BlenderRenderer(Renderer):
 
     method       The way of extra samples: 'osl' (a camera with a mask, Blender 5 or later), 'regions' (rectangles), or
                  'auto'.
-    visibility   The pass for that feature: 'shadow', 'ambient-occlusion' or None.
-    with_prior   Whether complete_last adds priors (prior.py)."""
+    visibility   The pass for that feature: 'shadow', 'ambient-occlusion' or None."""
 
-    def __init__(self, scene, blender=None, method="auto", visibility=None, timeout=3600.0, with_prior=False):
+    def __init__(self, scene, blender=None, method="auto", visibility=None, timeout=3600.0):
         self.scene = pathlib.Path(scene).absolute()
         self.method = method
         self.visibility = visibility
-        self.with_prior = with_prior
-        self.complete_last_over_decision = prior.SECONDS_OVER_DECISION if with_prior else 0.0
         self.session = BlenderSession(blender, timeout)
         self.inputs = SceneInputs()
         self.overhead_seconds = OVERHEAD_SECONDS
@@ -59,8 +57,6 @@ class BlenderRenderer(Renderer):
         self.name = f"Blender {self.opened['version']}"
         if self.method == "osl" and not self.masked:
             raise DriverError(ExitCode.USAGE, f"--method osl: {self.opened['no_mask_camera']}")
-        if self.with_prior and not self.opened["has_denoiser"]:
-            raise DriverError(ExitCode.USAGE, f"--with-prior: {self.name} was built without OpenImageDenoise")
         return self._audit()
 
     @property
@@ -89,12 +85,10 @@ class BlenderRenderer(Renderer):
         passes = {"Combined": "the picture", "Denoising Albedo, Normal, Depth": "features"}
         if self.visibility:
             passes[self.visibility] = "feature: visibility"
-        if self.with_prior:
-            passes["Prior A, B"] = "each half, denoised by Cycles' denoiser"
         if found["user_passes"]:
             passes[", ".join(found["user_passes"])] = "switched on in the file; rendered once, in the first part"
         effects = (f"{name}: {_effect_text(value)}" for name, value in found["effects"].items())
-        notes = ["effects: " + ", ".join(effects)]
+        notes = []
         if found["effects"]["scripted drivers"]:
             notes.append(
                 "Python drivers of the file are not run; the properties that they drive keep their saved values"
@@ -110,9 +104,26 @@ class BlenderRenderer(Renderer):
             switches=switches,
             passes=passes,
             notes=notes,
+            details=["effects: " + ", ".join(effects)],
             method=method,
             inputs=self.input_digests,
+            features=["albedo", "normal", "depth", *(["visibility"] if self.visibility else [])],
+            working=[f"{found['view_layer']}.{name}" for name in self._working_layers()],
+            float_colours=found["output"]["float"],
+            compression=found["output"]["compression"] if found["output"]["compression"] in COMPRESSIONS else "zip",
         )
+
+    def _working_layers(self):
+        """The layers of the parts that the file does not ask for. The first part alone knows a sample count of its own,
+        which says nothing about the frame."""
+        wanted = set()
+        if self.opened["denoising_data"]:
+            wanted |= {name for name in PART_LAYERS if name.startswith("Denoising")}
+        if "use_pass_shadow" in self.opened["user_passes"]:
+            wanted.add("Shadow")
+        if "use_pass_ambient_occlusion" in self.opened["user_passes"]:
+            wanted |= {"Ambient Occlusion", "AO"}
+        return sorted((PART_LAYERS - {"Combined"} - wanted) | {"Debug Sample Count"})
 
     def uniform(self, first, samples, target):
         user_passes = first == 0 and bool(self.opened["user_passes"])
@@ -141,10 +152,6 @@ class BlenderRenderer(Renderer):
             taken[y0:y1, x0:x1] += render_pass.samples * inside
         means = {name: whole if _is_time(name) else whole / np.maximum(taken, 1) for name, whole in sums.items()}
         self._write(target, means, taken)
-
-    def complete_last(self, merged):
-        if self.with_prior:
-            prior.add(merged, self.opened["view_layer"], self.session)
 
     def _render_ahead(self, first, passes):
         """Yields each pass with its channels. While the caller processes one, the next is rendered. An error or an

@@ -1,22 +1,53 @@
 """The command line options of every driver of a renderer, and the loop over the frames that they name."""
 
+import dataclasses
 import pathlib
+from typing import Optional
 
+from . import outputs
+from .arguments import add_program, add_verbosity
 from .errors import DriverError, ExitCode
 from .frame_names import frame_path, is_pattern, parse_ranges
 from .polyrecon_cli import Polyrecon
 from .progress import STYLES, Progress
+from .terminal import print_lines
+
+# The options that name files to write, and their endings. Not every driver has all of them.
+OUTPUTS = {"output": ".exr", "error_map": ".exr", "report": ".html"}
+
+
+@dataclasses.dataclass(frozen=True)
+class Frame:
+    """The files of one frame."""
+
+    number: Optional[int]  # None: the scene's current frame
+    passes: pathlib.Path  # Folder of its passes
+    output: pathlib.Path
+    error_map: Optional[pathlib.Path] = None
+    report: Optional[pathlib.Path] = None
+
+    @property
+    def outputs(self):
+        """The files that the user named."""
+        return [path for name in OUTPUTS if (path := getattr(self, name))]
+
+
+def add_output_arguments(parser):
+    """Adds the options for the picture and for what is printed."""
+    parser.add_argument(
+        "-o", "--output", required=True, metavar="OUT.exr", help="EXR file to write; #### or %%04d stands for the frame"
+    )
+    parser.add_argument("--overwrite", action="store_true", help="replace files that exist already")
+    add_verbosity(parser)
 
 
 def add_frame_arguments(parser):
     """Adds the options for output, frames and progress."""
-    parser.add_argument(
-        "-o", "--output", required=True, metavar="OUT.exr", help="EXR file to write; #### or %%04d stands for the frame"
-    )
+    add_output_arguments(parser)
     frames = parser.add_mutually_exclusive_group()
-    frames.add_argument("--frame", type=int, help="frame to render (default: the scene's current frame)")
-    frames.add_argument("--frames", help="frames to render: 1-10,20-40x2")
-    parser.add_argument("--polyrecon", metavar="PATH", help="the program (default: $POLYRECON, else `polyrecon`)")
+    frames.add_argument("--frame", type=int, metavar="N", help="frame to render (default: the scene's current frame)")
+    frames.add_argument("--frames", metavar="RANGES", help="frames to render: 1-10,20-40x2")
+    add_program(parser)
     parser.add_argument(
         "--passes-dir",
         type=pathlib.Path,
@@ -24,34 +55,61 @@ def add_frame_arguments(parser):
         help="folder for passes and other intermediate files (default: OUT.passes)",
     )
     parser.add_argument(
-        "--progress", choices=STYLES, default="auto", help="json: one JSON object a line on standard error"
+        "--progress",
+        choices=STYLES,
+        default="auto",
+        help="auto: a bar on a terminal, else a line a minute; json: one JSON object a line on standard error",
     )
-    parser.add_argument("-q", "--quiet", action="store_true", help="print nothing but errors")
 
 
-def each_frame(options, renderer, work):
-    """Calls work(frame, output, passes, polyrecon, progress) for every frame of the options, then closes the renderer.
+class Notes:
+    """Prints each note once, although every frame has it."""
 
-    output is the path of the frame's picture and passes the folder of its passes. frame is None for the scene's current
-    frame."""
+    def __init__(self, quiet):
+        self.quiet, self.told = quiet, set()
+
+    def tell(self, notes):
+        for note in notes:
+            if not self.quiet and note not in self.told:
+                print_lines(f"note: {note}")
+            self.told.add(note)
+
+
+def each_frame(options, renderer, work, may_exist=False):
+    """Calls work(frame, polyrecon, progress) for the Frame of every frame of the options, then closes the renderer.
+
+    may_exist: whether the outputs may be there already, because `work` continues an earlier run."""
     try:
-        frames = parse_ranges(options.frames) if options.frames else [options.frame]
+        numbers = parse_ranges(options.frames) if options.frames else [options.frame]
+        frames = [_frame_of(options, number) for number in numbers]
+        files = [path for frame in frames for path in frame.outputs]
+        outputs.check_new(files, options.overwrite or may_exist)
+        outputs.check_writable(files)
         polyrecon = Polyrecon(options.polyrecon)
-        with Progress("none" if options.quiet else options.progress) as progress:
+        described = polyrecon.describe()  # It fails where the program does not run.
+        if options.verbose:
+            print_lines(described)
+        with Progress("none" if options.quiet else options.progress, len(frames)) as progress:
             for frame in frames:
-                output = _output_of(options, frame)
-                passes = options.passes_dir or output.with_suffix(".passes")
-                if options.frames and options.passes_dir:
-                    passes = passes / frame_path("####", frame)
-                work(frame, output, passes, polyrecon, progress)
+                progress.begin_frame()
+                work(frame, polyrecon, progress)
     finally:
         renderer.close()
 
 
-def _output_of(options, frame):
-    """The path of one frame's picture. A single frame needs no place for its number."""
-    if frame is not None and is_pattern(options.output):
-        return pathlib.Path(frame_path(options.output, frame))
-    if options.frames:
-        raise DriverError(ExitCode.USAGE, f"-o {options.output}: several frames need #### or %04d in the file's name")
-    return pathlib.Path(options.output)
+def _frame_of(options, number):
+    """The files of one frame. A single frame needs no place for its number."""
+    named = {name: path for name in OUTPUTS if (path := getattr(options, name, None))}
+    paths = {}
+    for name, path in named.items():
+        outputs.check_ending(path, OUTPUTS[name])
+        if number is not None and is_pattern(path):
+            path = frame_path(path, number)
+        elif options.frames:
+            option = "-o" if name == "output" else f"--{name.replace('_', '-')}"
+            raise DriverError(ExitCode.USAGE, f"{option} {path}: several frames need #### or %04d in the file's name")
+        paths[name] = pathlib.Path(path)
+    passes = options.passes_dir or paths["output"].with_suffix(".passes")
+    if options.frames and options.passes_dir:
+        passes = passes / frame_path("####", number)
+    return Frame(number, passes, **paths)

@@ -62,7 +62,9 @@ def run_main(program, main, words=None):
         code, text = _explain(error)
         if isinstance(error, BrokenPipeError):  # Nobody reads standard output; Python must not flush it at its end.
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        print_lines(f"{program}: {text}", file=sys.stderr)
+        if isinstance(error, KeyboardInterrupt) and sys.stderr.isatty():
+            print(file=sys.stderr)  # The terminal shows ^C where the bar was.
+        print_lines(f"{program}: {text}{getattr(error, 'advice', '')}", file=sys.stderr)
         return code
 
 

@@ -33,10 +33,21 @@ def read(path, wanted=None):
     return channels
 
 
-def metadata(path):
-    """The attributes of the first part: {name: value}."""
+def names(path):
+    """The names of the channels of all parts, in file order."""
+    found, part = [], 0
     with opened(path) as file:
-        return {attribute.name: attribute.value for attribute in file.spec().extra_attribs}
+        while file.seek_subimage(part, 0):
+            found += file.spec().channelnames
+            part += 1
+    return found
+
+
+def metadata(path):
+    """The attributes of the first part that are texts or numbers: {name: value}."""
+    with opened(path) as file:
+        attributes = {attribute.name: attribute.value for attribute in file.spec().extra_attribs}
+    return {name: value for name, value in attributes.items() if isinstance(value, (str, int, float))}
 
 
 @contextlib.contextmanager
@@ -81,17 +92,20 @@ def _error_of(source):
         return "cannot be read or written"
 
 
-def write(path, channels, attributes=None, compression="zip:2"):
-    """Writes one part of 32-bit floats from {name: array (height, width)}. The file appears complete or not at all."""
+def write(path, channels, attributes=None, compression="zip:2", halves=()):
+    """Writes one part from {name: array (height, width)}: 32-bit floats, and half floats of the channels in `halves`.
+    The file appears complete or not at all."""
     names = list(channels)
     pixels = np.stack([np.asarray(channels[name], np.float32) for name in names], axis=-1)
     height, width, count = pixels.shape
     spec = oiio.ImageSpec(width, height, count, "float")
     spec.channelnames = names
-    spec.attribute("compression", compression)
-    spec.attribute("oiio:ColorSpace", "scene_linear")
+    if halves:
+        spec.channelformats = tuple(oiio.TypeDesc("half" if name in halves else "float") for name in names)
     for name, value in (attributes or {}).items():
         spec.attribute(name, value)
+    spec.attribute("compression", compression)
+    spec.attribute("oiio:ColorSpace", "scene_linear")
     with replacing(path) as temporary:
         file = oiio.ImageOutput.create("openexr")
         if not file.open(_name_for_oiio(temporary), spec) or not file.write_image(np.ascontiguousarray(pixels)):

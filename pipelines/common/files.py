@@ -30,9 +30,10 @@ def open_regular(path):
 @contextlib.contextmanager
 def replacing(path):
     """A context with the path of a new file, which replaces `path` at its end. A link at `path` is replaced itself, and
-    its target is not touched. After an error `path` is what it was."""
+    its target is not touched. After an error `path` is what it was. Missing folders are made."""
     path = pathlib.Path(path)
     try:
+        path.parent.mkdir(parents=True, exist_ok=True)
         _remove_stale(path)
         temporary = path.with_name(f".{_stem(path.name)}.polyrecon-{secrets.token_hex(8)}")
         lock = os.open(temporary, os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW, 0o666)

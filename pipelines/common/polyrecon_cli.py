@@ -35,6 +35,14 @@ class Polyrecon:
     def __init__(self, path=None):
         self.program = find_polyrecon(path)
 
+    def describe(self):
+        """Its name, version and path."""
+        code, output, errors = process.run([self.program, "--version"])
+        if code != 0 or not output.startswith("polyrecon "):
+            reason = (process.lines_of(errors) or [f"--version ends with code {code}"])[-1]
+            raise DriverError(ExitCode.MISSING, f"{self.program}: is not polyrecon: {reason}")
+        return f"{output.strip()} ({self.program})"
+
     def run(self, command, *words):
         """Runs one sub-command; returns its standard output."""
         return self.run_side_by_side(command, [words])[0]
@@ -46,5 +54,8 @@ class Polyrecon:
             if code != 0:
                 lines = [line for line in process.lines_of(errors) if line.strip()] or [f"ended with code {code}"]
                 known = code in ExitCode.__members__.values()
-                raise DriverError(code if known else ExitCode.INTERNAL, f"polyrecon {command}: {lines[-1]}")
+                raise DriverError(
+                    code if known else ExitCode.INTERNAL,
+                    f"polyrecon {command}: {lines[-1].removeprefix('polyrecon: ')}",
+                )
         return [output for _, output, _ in results]

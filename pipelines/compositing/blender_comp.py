@@ -16,6 +16,8 @@ import sys
 import bpy
 
 sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+if not sys.dont_write_bytecode:  # A checkout stays as it is.
+    sys.dont_write_bytecode = True
 
 from common.terminal import print_lines, printable
 from common.work_folder import WorkFolder

@@ -2,14 +2,15 @@
 """Prints what denoising a shot costs on nodes of a given kind, as a Markdown table. The figures come from the measured
 model."""
 
-import argparse
 import pathlib
 import sys
 
 if not __package__:  # run as a script from a checkout
     sys.path[0] = str(pathlib.Path(__file__).resolve().parents[2])
+    sys.dont_write_bytecode = True  # A checkout stays as it is.
     __package__ = "pipelines.farm"
 
+from ..common.arguments import Parser
 from ..common.denoise_defaults import QUALITIES
 from ..common.errors import DriverError, ExitCode, run_main
 from .requirements import Frame, Model, Node, threads_for
@@ -17,8 +18,8 @@ from .submission import positive, size
 
 EXAMPLES = """\
 examples:
-  polyrecon-farm cost                                                      # for 1000 frames of 4K
-  polyrecon-farm cost --size 1920x1080 --frames 240 --node-cpus 32 --node-memory 128G --price 0.03
+  %(prog)s                                                      # for 1000 frames of 4K
+  %(prog)s --size 1920x1080 --frames 240 --node-cpus 32 --node-memory 128G --price 0.03
 """
 
 
@@ -66,29 +67,28 @@ def print_table(options):
 
 
 def arguments(words):
-    parser = argparse.ArgumentParser(
-        prog="polyrecon-farm cost",
-        description=__doc__,
-        epilog=EXAMPLES,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
+    parser = Parser("polyrecon-farm cost", description=__doc__, epilog=EXAMPLES)
     add = parser.add_argument
-    add("--size", default="3840x2160", metavar="WxH", help="size of a frame (3840x2160)")
-    add("--frames", type=positive, default=1000, metavar="N", help="frames of the shot (1000)")
-    add("--channels", type=positive, default=42, metavar="N", help="channels of a file (42)")
-    add("--fit-channels", type=positive, default=41, metavar="N", help="channels that take part in the fit (41)")
-    add("--nodes", type=positive, default=10, metavar="N", help="nodes that work on it (10)")
-    add("--node-cpus", type=positive, default=64, metavar="N", help="processors of a node (64)")
-    add("--node-memory", type=size, default="256G", metavar="SIZE", help="memory of a node (256G)")
-    add("--price", type=float, default=0.04, metavar="P", help="price of a core-hour (0.04)")
+    add("--size", default="3840x2160", metavar="WxH", help="size of a frame")
+    add("--frames", type=positive, default=1000, metavar="N", help="frames of the shot")
+    add("--channels", type=positive, default=42, metavar="N", help="channels of a file")
+    add("--fit-channels", type=positive, default=41, metavar="N", help="channels that take part in the fit")
+    add("--nodes", type=positive, default=10, metavar="N", help="nodes that work on it")
+    add("--node-cpus", type=positive, default=64, metavar="N", help="processors of a node")
+    add("--node-memory", type=size, default="256G", metavar="SIZE", help="memory of a node")
+    add("--price", type=float, default=0.04, metavar="P", help="price of a core-hour")
     add(
         "--speed",
         type=float,
         default=1,
         metavar="F",
-        help="speed of a node's core, relative to the measured machine (1)",
+        help="speed of a node's core, relative to the measured machine",
     )
-    add("--model", metavar="FILE", help="constants of your nodes, measured by tests/bench/farm_model.py")
+    add(
+        "--model",
+        metavar="FILE",
+        help="constants of your nodes, by tests/bench/farm_model.py (default: those of one machine)",
+    )
     return parser.parse_args(words)
 
 

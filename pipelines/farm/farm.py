@@ -1,31 +1,32 @@
 #!/usr/bin/env python3
 """The command polyrecon-farm: its sub-commands are modules of this folder."""
 
+import argparse
 import pathlib
 import sys
 
 if not __package__:  # run as a script from a checkout
     sys.path[0] = str(pathlib.Path(__file__).resolve().parents[2])
+    sys.dont_write_bytecode = True  # A checkout stays as it is.
     __package__ = "pipelines.farm"
 
-from ..common.errors import ExitCode
+from ..common.arguments import Parser
 from . import cost, openjd, report, slurm
 
 COMMANDS = {"slurm": slurm, "openjd": openjd, "report": report, "cost": cost}
 
 
-def usage():
-    lines = ["usage: polyrecon-farm COMMAND ..., with --help for each", ""]
-    return "\n".join(lines + [f"  {name:8}{module.__doc__.split('.')[0]}" for name, module in COMMANDS.items()])
-
-
 def main(words=None):
-    words = sys.argv[1:] if words is None else words
-    if words and words[0] in COMMANDS:
-        return COMMANDS[words[0]].main(words[1:])
-    help_requested = bool(words) and words[0] in ("-h", "--help")
-    print(usage(), file=sys.stdout if help_requested else sys.stderr)
-    return ExitCode.DONE if help_requested else ExitCode.USAGE
+    words = list(sys.argv[1:] if words is None else words)
+    subjects = {name: module.__doc__.split(".")[0].replace("\n", " ") for name, module in COMMANDS.items()}
+    parser = Parser(
+        "polyrecon-farm",
+        usage="%(prog)s COMMAND ..., with --help for each",
+        description="\n".join(["commands:", *(f"  {name:8}{subject}" for name, subject in subjects.items())]),
+    )
+    parser.add_argument("command", choices=COMMANDS, metavar="COMMAND", help=argparse.SUPPRESS)
+    command = parser.parse_args(words[:1]).command
+    return COMMANDS[command].main(words[1:])
 
 
 if __name__ == "__main__":

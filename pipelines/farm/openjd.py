@@ -2,7 +2,6 @@
 """Writes an Open Job Description bundle for a sequence: a job template with the requirements of a worker, and its
 parameters."""
 
-import argparse
 import math
 import os
 import pathlib
@@ -10,23 +9,35 @@ import sys
 
 if not __package__:  # run as a script from a checkout
     sys.path[0] = str(pathlib.Path(__file__).resolve().parents[2])
+    sys.dont_write_bytecode = True  # A checkout stays as it is.
     __package__ = "pipelines.farm"
 
+from ..common import modules
+from ..common.arguments import Parser
 from ..common.errors import DriverError, ExitCode, run_main
 from ..common.files import write_text
 from ..common.frame_names import parse_ranges, ranges_text
 from ..common.polyrecon_cli import Polyrecon
 from ..common.terminal import print_lines
 from .requirements import MIB, Node, chunk_for, threads_for
-from .submission import add_job_options, first_frame, limit_of, parse_words, quality_of, request_of, seconds_of, size
+from .submission import (
+    add_job_options,
+    first_frame,
+    limit_of,
+    parse_words,
+    quality_of,
+    request_of,
+    seconds_of,
+    size,
+)
 
 TEMPLATE = pathlib.Path(__file__).with_name("template.yaml")
 MAX_TASKS = 1000
 EXAMPLES = """\
 examples:
-  polyrecon-farm openjd -i shot.####.exr -o clean/shot.####.exr --frames 1-240 --bundle denoise_shot
+  %(prog)s -i shot.####.exr -o clean/shot.####.exr --frames 1-240 --bundle denoise_shot
   deadline bundle submit denoise_shot
-  polyrecon-farm openjd -i shot.####.exr -o clean/shot.####.exr --frames 1-240 --bundle denoise_shot \\
+  %(prog)s -i shot.####.exr -o clean/shot.####.exr --frames 1-240 --bundle denoise_shot \\
       --worker-cpus 16 --worker-memory 64G -- --quality best --aov 'Diffuse Direct'
 """
 
@@ -35,9 +46,7 @@ def load_template():
     try:
         import yaml
     except ImportError as error:
-        raise DriverError(
-            ExitCode.MISSING, "the Python module yaml is missing: install PyYAML (Debian: python3-yaml)"
-        ) from error
+        raise DriverError(ExitCode.MISSING, modules.advice(["yaml"])) from error
     return yaml, yaml.safe_load(TEMPLATE.read_text())
 
 
@@ -69,6 +78,14 @@ def without_quality(words):
     return [word for word in kept if not word.startswith("--quality=")]
 
 
+def programs_of(options, polyrecon):
+    """The parameters for the programs on the workers, where these are not the installed commands on the PATH."""
+    values = {"Polyrecon": str(polyrecon.program)} if options.polyrecon else {}
+    if __package__ == "pipelines.farm":  # A checkout has no installed commands.
+        values["PolyreconFarm"] = str(pathlib.Path(__file__).with_name("farm.py").resolve())
+    return values
+
+
 def write_bundle(options):
     frames = parse_ranges(options.frames)
     polyrecon = Polyrecon(options.polyrecon)
@@ -91,31 +108,26 @@ def write_bundle(options):
         "Quality": quality_of(options.options),
         "Threads": threads,
         "MaxMemory": str(limit_of(options, request)),
+        **programs_of(options, polyrecon),
     }
     folder = pathlib.Path(options.bundle)
     parameters = {"parameterValues": [{"name": name, "value": value} for name, value in values.items()]}
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise DriverError(ExitCode.OUTPUT, f"{folder}: {error.strerror}") from error
     write_text(folder / "template.yaml", yaml.safe_dump(template, sort_keys=False))
     write_text(folder / "parameter_values.yaml", yaml.safe_dump(parameters, sort_keys=False))
     print_lines(f"{folder}: {len(frames)} frames, {chunk} a task; a task: {threads} threads, {request / 1e9:.2f} GB")
+    print_lines(f"checked with {polyrecon.describe()}; workers run {values.get('Polyrecon', 'the one on their PATH')}")
 
 
 def arguments(words):
-    parser = argparse.ArgumentParser(
-        prog="polyrecon-farm openjd",
-        description=__doc__,
-        epilog=EXAMPLES,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
+    parser = Parser("polyrecon-farm openjd", description=__doc__, epilog=EXAMPLES)
     add_job_options(parser)
     parser.add_argument(
         "--bundle", required=True, metavar="FOLDER", help="folder for the template and its parameter values"
     )
-    parser.add_argument("--worker-cpus", type=int, default=0, metavar="N", help="processors of a worker")
-    parser.add_argument("--worker-memory", type=size, default=0, metavar="SIZE", help="memory of a worker, such as 64G")
+    parser.add_argument("--worker-cpus", type=int, default=0, metavar="N", help="processors of a worker, 0 if unknown")
+    parser.add_argument(
+        "--worker-memory", type=size, default=0, metavar="SIZE", help="memory of a worker, such as 64G; 0 if unknown"
+    )
     return parse_words(parser, words)
 
 

@@ -1,7 +1,6 @@
 #!/usr/bin/env python3
 """Checks every frame of a job: which are finished, and what they took."""
 
-import argparse
 import collections
 import concurrent.futures
 import dataclasses
@@ -12,9 +11,11 @@ import sys
 
 if not __package__:  # run as a script from a checkout
     sys.path[0] = str(pathlib.Path(__file__).resolve().parents[2])
+    sys.dont_write_bytecode = True  # A checkout stays as it is.
     __package__ = "pipelines.farm"
 
 from ..common import process
+from ..common.arguments import Parser, add_program
 from ..common.decode import InvalidFileError, decode, read_json
 from ..common.errors import DriverError, ExitCode, run_main
 from ..common.frame_names import parse_ranges, ranges_text
@@ -24,8 +25,8 @@ from .job import FRAME_ERROR, RECORDS, REPORT_FILE, Job, chunks, write_json
 
 EXAMPLES = """\
 examples:
-  polyrecon-farm report out/polyrecon_farm/shot                 # folder of a job, at any time
-  polyrecon-farm report -i shot.####.exr -o out/shot.####.exr --frames 1-100 -- --quality best
+  %(prog)s out/polyrecon_farm/shot                 # folder of a job, at any time
+  %(prog)s -i shot.####.exr -o out/shot.####.exr --frames 1-100 -- --quality best
 """
 FINISHED = re.compile(r"frame (-?\d+): .*, finished already: skipped")
 
@@ -185,12 +186,7 @@ def make_report(job, folder, processes, openjd):
 
 
 def arguments(words):
-    parser = argparse.ArgumentParser(
-        prog="polyrecon-farm report",
-        description=__doc__,
-        epilog=EXAMPLES,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
+    parser = Parser("polyrecon-farm report", description=__doc__, epilog=EXAMPLES)
     parser.add_argument("folder", nargs="?", help="folder of a submitted job")
     parser.add_argument(
         "-i", "--input", metavar="PATTERN", help="the renders, such as shot.####.exr, if there is no folder of a job"
@@ -198,7 +194,7 @@ def arguments(words):
     parser.add_argument("-o", "--output", metavar="PATTERN", help="the results")
     parser.add_argument("--frames", metavar="RANGES", help="frames, such as 1-10,20-40x2")
     parser.add_argument(
-        "--processes", type=int, default=1, metavar="N", help="processes that check frames concurrently (1)"
+        "--processes", type=int, default=1, metavar="N", help="processes that check frames concurrently"
     )
     parser.add_argument(
         "--progress",
@@ -206,7 +202,7 @@ def arguments(words):
         default="none",
         help="openjd: lines for an Open Job Description session",
     )
-    parser.add_argument("--polyrecon", metavar="PATH", help="the program (default: $POLYRECON, else `polyrecon`)")
+    add_program(parser)
     parser.add_argument(
         "options", nargs="*", metavar="-- OPTION", help="further options that the frames were denoised with"
     )

@@ -2,7 +2,6 @@
 """Denoises a sequence on a Slurm cluster: an array job with a task for each chunk of frames, then a job for the
 report."""
 
-import argparse
 import itertools
 import json
 import math
@@ -16,9 +15,11 @@ import time
 
 if not __package__:  # run as a script from a checkout
     sys.path[0] = str(pathlib.Path(__file__).resolve().parents[2])
+    sys.dont_write_bytecode = True  # A checkout stays as it is.
     __package__ = "pipelines.farm"
 
 from ..common import process
+from ..common.arguments import Parser
 from ..common.errors import DriverError, ExitCode, run_main
 from ..common.files import write_text
 from ..common.frame_names import parse_ranges
@@ -26,23 +27,33 @@ from ..common.polyrecon_cli import Polyrecon
 from ..common.terminal import print_lines
 from .job import JOB_FILE, REPORT_FILE, Job
 from .requirements import MIB, Node, chunk_for, threads_for
-from .submission import add_job_options, first_frame, limit_of, parse_words, positive, request_of, seconds_of
+from .submission import (
+    add_job_options,
+    first_frame,
+    limit_of,
+    parse_words,
+    positive,
+    request_of,
+    seconds_of,
+)
 
 EXAMPLES = """\
 examples:
-  polyrecon-farm slurm submit -i shot.####.exr -o clean/shot.####.exr --frames 1-240
-  polyrecon-farm slurm submit -i shot.####.exr -o clean/shot.####.exr --frames 1-240 --after 4711 \\
+  %(prog)s -i shot.####.exr -o clean/shot.####.exr --frames 1-240
+  %(prog)s -i shot.####.exr -o clean/shot.####.exr --frames 1-240 --after 4711 \\
       --partition night --sbatch=--account=film --wait -- --quality best --aov 'Diffuse Direct'
-  polyrecon-farm slurm submit -i shot.####.exr -o clean/shot.####.exr --frames 1-240 --dry-run
+  %(prog)s -i shot.####.exr -o clean/shot.####.exr --frames 1-240 --dry-run
   polyrecon-farm report clean/polyrecon_farm/shot        # progress, at any time
 """
 REPORT_LOG = "report.txt"
+DEFAULT_MAX_TASKS = 1000  # of an array, as Slurm is installed
 POLL_SECONDS = 2
 MAX_UNANSWERED = 20  # calls of squeue
 # The script of a task or of the report. sbatch copies it, so it names the folder of the drivers.
 SCRIPT = """\
 #!/usr/bin/env python3
 import sys
+sys.dont_write_bytecode = True
 sys.path.insert(0, {root!r})
 from {module} import main
 sys.exit(main({words!r}))
@@ -57,6 +68,11 @@ def slurm(*words):
     if code:
         raise DriverError(ExitCode.USAGE, f"{words[0]}: {' '.join(errors.split()) or f'ended with {code}'}")
     return output
+
+
+def is_here():
+    """Whether this machine has Slurm's commands."""
+    return shutil.which("sinfo") is not None
 
 
 def nodes_of(partition):
@@ -74,20 +90,23 @@ def nodes_of(partition):
 def max_tasks():
     """The largest number of tasks of an array."""
     match = re.search(r"^MaxArraySize\s*=\s*(\d+)", slurm("scontrol", "show", "config"), re.MULTILINE)
-    return max(1, int(match[1]) - 1) if match else 1000
+    return max(1, int(match[1]) - 1) if match else DEFAULT_MAX_TASKS
 
 
 def job_of(options):
-    """The job, and the bytes to request for a task; 0 if the cluster does not manage memory."""
+    """The job, and the bytes to request for a task; 0 if the cluster does not manage memory. Without Slurm, which a dry
+    run does not need, nothing is known about the nodes."""
     frames = parse_ranges(options.frames)
     polyrecon = Polyrecon(options.polyrecon)
     frame = first_frame(options, frames, polyrecon)
     request = request_of(options, frame)
-    nodes = nodes_of(options.partition)
+    known = is_here() or not options.dry_run
+    nodes = nodes_of(options.partition) if known else ()
     threads = options.threads or threads_for(request, nodes)
     chunk = options.chunk
     if not chunk:
-        chunk = chunk_for(seconds_of(options, frame, threads), options.task_minutes, len(frames), max_tasks())
+        limit = max_tasks() if known else DEFAULT_MAX_TASKS
+        chunk = chunk_for(seconds_of(options, frame, threads), options.task_minutes, len(frames), limit)
     job = Job(
         input=os.path.abspath(options.input),
         output=os.path.abspath(options.output),
@@ -99,7 +118,10 @@ def job_of(options):
         memory=limit_of(options, request),
         request=request,
     )
-    return job, request if any(node.memory for node in nodes) else 0
+    print_lines(polyrecon.describe())
+    if not known:
+        print_lines("no Slurm on this machine: threads, memory and tasks are those for nodes that are not known")
+    return job, request if not known or any(node.memory for node in nodes) else 0
 
 
 def common_words(options, job_name, folder, log):
@@ -230,15 +252,10 @@ def wait_for(job, folder):
 
 
 def arguments(words):
-    parser = argparse.ArgumentParser(
-        prog="polyrecon-farm slurm",
-        description=__doc__,
-        epilog=EXAMPLES,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
-    commands = parser.add_subparsers(dest="command", required=True)
+    parser = Parser("polyrecon-farm slurm", description=__doc__)
+    commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND", parser_class=Parser)
     sub = commands.add_parser(
-        "submit", help=__doc__, epilog=EXAMPLES, formatter_class=argparse.RawDescriptionHelpFormatter
+        "submit", program="polyrecon-farm slurm submit", help=__doc__, description=__doc__, epilog=EXAMPLES
     )
     add_job_options(sub)
     sub.add_argument("--partition", metavar="NAME", help="partition of the cluster (default: the cluster's)")

@@ -5,6 +5,7 @@ import json
 import os
 import re
 
+from ..common.arguments import add_program
 from ..common.denoise_defaults import DEFAULT_FRAME_RADIUS, DEFAULT_QUALITY
 from ..common.errors import DriverError, ExitCode
 from ..common.frame_names import frame_path, is_pattern
@@ -45,7 +46,7 @@ def add_job_options(parser):
     add("-o", "--output", required=True, type=pattern, metavar="PATTERN", help="results; their folder must exist")
     add("--frames", required=True, metavar="RANGES", help="frames, such as 1-10,20-40x2")
     add("--chunk", type=positive, metavar="N", help="frames of a task (default: as many as take --task-minutes)")
-    add("--task-minutes", type=float, default=10, metavar="M", help="minutes that a task takes (10)")
+    add("--task-minutes", type=float, default=10, metavar="M", help="minutes that a task takes")
     add(
         "--threads",
         type=positive,
@@ -53,8 +54,12 @@ def add_job_options(parser):
         help="threads of a task (default: so that the tasks fill a node's memory)",
     )
     add("--memory", type=size, metavar="SIZE", help="memory of a task, such as 4G (default: by the measured model)")
-    add("--model", metavar="FILE", help="constants of your nodes, measured by tests/bench/farm_model.py")
-    add("--polyrecon", metavar="PATH", help="the program (default: $POLYRECON, else `polyrecon`)")
+    add(
+        "--model",
+        metavar="FILE",
+        help="constants of your nodes, by tests/bench/farm_model.py (default: those of one machine)",
+    )
+    add_program(parser)
 
 
 def parse_words(parser, words):

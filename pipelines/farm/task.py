@@ -1,7 +1,6 @@
 #!/usr/bin/env python3
 """Runs a task of a farm job: denoises the frames of its chunk, and records what they took."""
 
-import argparse
 import os
 import pathlib
 import socket
@@ -11,9 +10,11 @@ import time
 
 if not __package__:  # run as a script from a checkout
     sys.path[0] = str(pathlib.Path(__file__).resolve().parents[2])
+    sys.dont_write_bytecode = True  # A checkout stays as it is.
     __package__ = "pipelines.farm"
 
 from ..common import process
+from ..common.arguments import Parser
 from ..common.errors import DriverError, ExitCode, run_main
 from ..common.frame_names import frame_path, ranges_text
 from ..common.terminal import print_lines
@@ -99,7 +100,7 @@ def run_chunk(folder, index):
 
 def main(words=None):
     def work(words):
-        parser = argparse.ArgumentParser(prog="polyrecon-farm task", description=__doc__)
+        parser = Parser("polyrecon-farm task", description=__doc__)
         parser.add_argument("folder", help="folder of the job")
         parser.add_argument(
             "index", type=int, nargs="?", help="number of the chunk, from 0 (default: $SLURM_ARRAY_TASK_ID)"

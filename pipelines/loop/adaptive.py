@@ -7,18 +7,23 @@ measured and refined, a pixel that is bright by chance would draw the samples th
 too dark (docs/guide/adaptive.md)."""
 
 import dataclasses
+import hashlib
+import json
 import math
 import pathlib
 import time
 from typing import Optional
 
+from ..common.command import Frame
 from ..common.denoise_defaults import DEFAULT_QUALITY
 from ..common.digests import digest
+from ..common.outputs import DEFAULT_DWA_LEVEL
 from .budget import (
     SAMPLES_SPENT,
     SECONDS_SPENT,
     Budget,
     reason_to_stop,
+    result_over_decision,
     samples_left,
     samples_of_next_round,
     uniform_share,
@@ -45,16 +50,29 @@ NO_ERROR_LEFT = "no error is left that more samples could lower"
 
 @dataclasses.dataclass(frozen=True)
 class Settings:
-    output: pathlib.Path
-    passes: pathlib.Path  # Folder of this frame's passes
+    files: Frame
     budget: Budget
-    frame: Optional[int] = None  # None: the scene's current frame
     first_pass: int = 8  # Samples per pixel
     max_rounds: int = 8
     quality: str = DEFAULT_QUALITY  # That of the last reconstruction
     resume: bool = False
-    identity: dict = dataclasses.field(default_factory=dict)  # Digests of the scene: see journal.State
+    with_prior: bool = False  # Whether Open Image Denoise gives a second opinion
+    keep_passes: bool = False  # Whether the picture has the channels that only the reconstruction needs
+    compression: Optional[str] = None  # Of the picture, in OpenImageIO's words; None: the scene's
+    dwa_level: float = DEFAULT_DWA_LEVEL
+    identity: dict = dataclasses.field(default_factory=dict)  # Of the scene: see journal.State
     scene: Optional[str] = None  # Path of the input that is compared where the renderer lists none
+
+    @property
+    def passes_identity(self):
+        """What the passes show. Other passes cannot be added to them."""
+        return {**self.identity, "frame": self.files.number, "first_pass": self.first_pass}
+
+    def digest(self):
+        """The SHA-256 of the scene and of every setting that changes the picture."""
+        chosen = [self.passes_identity, dataclasses.asdict(self.budget), self.max_rounds, self.quality, self.with_prior]
+        scene = digest(self.scene) if self.scene else None
+        return hashlib.sha256(json.dumps([scene, *chosen], sort_keys=True).encode()).hexdigest()
 
 
 @dataclasses.dataclass(frozen=True)
@@ -64,25 +82,27 @@ class Result:
     state: State
     merged: pathlib.Path
     error_map: pathlib.Path
-    error: float  # Estimated mean relative MSE
+    error: float  # Estimated mean relative MSE of the picture
+    noise: float  # Mean relative noise variance of the samples' mean
     samples: float  # Per pixel, mean of the frame
     seconds: float
     why_ended: str
 
 
-def run(renderer, polyrecon, settings, progress):
-    """Runs the loop for one frame; returns a Result. Raises DriverError; the frame can then be resumed."""
-    folder = PassFolder(settings.passes)
+def run(renderer, polyrecon, settings, progress, tell=lambda notes: None):
+    """Runs the loop for one frame; returns a Result. Raises DriverError; the frame can then be resumed.
+
+    tell: gets the notes about the scene before anything is rendered."""
+    folder = PassFolder(settings.files.passes)
     with folder.claimed():
-        return _Loop(renderer, polyrecon, settings, folder, progress).run()
+        return _Loop(renderer, polyrecon, settings, folder, progress).run(tell)
 
 
 class _Loop:
     def __init__(self, renderer, polyrecon, settings, folder, progress):
         self.renderer, self.polyrecon, self.settings, self.progress = renderer, polyrecon, settings, progress
         self.budget, self.folder = settings.budget, folder
-        identity = {**settings.identity, "frame": settings.frame, "first_pass": settings.first_pass}
-        new_state = State(identity, first_pass_parts=first_pass_parts(settings.first_pass, self.budget))
+        new_state = State(settings.passes_identity, first_pass_parts=first_pass_parts(settings.first_pass, self.budget))
         self.journal = Journal.open(self.folder, new_state, settings.resume)
         self.state = self.journal.state
         if self.state.rounds and not self.state.rounds[-1].next_samples:
@@ -91,11 +111,14 @@ class _Loop:
         self.why_ended = ""
         self.decision_seconds = None  # Measured at the last decision, or estimated; None: unknown
 
-    def run(self):
-        audit = self.renderer.begin(self.settings.frame)
+    def run(self, tell):
+        audit = self.renderer.begin(self.settings.files.number)
+        tell(audit.notes)
         scene = self.settings.scene
         self.journal.compare_inputs(audit.inputs or ({scene: digest(scene)} if scene else {}))
-        self.reconstruction = Reconstruction(self.polyrecon, self.renderer, self.folder, self.state, audit.beauty)
+        self.reconstruction = Reconstruction(
+            self.polyrecon, self.renderer, self.folder, self.state, audit, self.settings.with_prior
+        )
         self.rendering.render_first_pass(self.settings.first_pass)
         if self.budget.seconds:
             self.decision_seconds = self.reconstruction.estimate_decision_seconds()
@@ -179,7 +202,7 @@ class _Loop:
 
     def finish(self, audit):
         self.announce("result", done=1.0)
-        error = self.reconstruction.finish(self.settings.output, self.settings.quality)
+        error, noise = self.reconstruction.finish(self.settings)
         self.journal.save()
         return Result(
             audit=audit,
@@ -188,6 +211,7 @@ class _Loop:
             merged=self.folder.merged,
             error_map=self.folder.error_map,
             error=error,
+            noise=noise,
             samples=self.state.samples,
             seconds=self.journal.seconds(),
             why_ended=self.why_ended,
@@ -207,8 +231,7 @@ class _Loop:
             self.state,
             self.journal.seconds(),
             self.decision_seconds,
-            self.settings.quality,
-            self.renderer.complete_last_over_decision,
+            result_over_decision(self.settings.quality, self.settings.with_prior),
         )
 
     def uniform_samples(self, samples):
@@ -225,7 +248,7 @@ class _Loop:
         elif budget.seconds:
             done, left = seconds / budget.seconds, budget.seconds - seconds
         known = {
-            "frame": self.settings.frame,
+            "frame": self.settings.files.number,
             "samples": self.state.samples,
             "error": self.state.error,
             "seconds": round(seconds, 2),

@@ -25,6 +25,7 @@ CONVERGENCE_RATE = 0.75
 # Seconds of the last merge, the last reconstruction and the report over the seconds of a decision, for each --quality.
 # By hand, 2026-11-28. To check: seconds after the last part of a run over decision_seconds in its journal.json.
 RESULT_OVER_DECISION = {"draft": 0.8, "standard": 1.9, "best": 4.4}
+PRIOR_OVER_DECISION = {"draft": 1.0, "standard": 3.0, "best": 5.0}  # seconds of --with-prior, the same way
 
 SAMPLES_SPENT, SECONDS_SPENT = "the samples are spent", "the seconds are spent"
 
@@ -54,6 +55,11 @@ class Spent:
     decision_seconds: float  # For a decision: both reconstructions and the sample maps
     result_seconds: float  # That the result still needs
     error: float = math.nan  # Estimated mean relative MSE of the result
+
+
+def result_over_decision(quality, with_prior):
+    """Seconds of the result over those of a decision."""
+    return RESULT_OVER_DECISION[quality] + (PRIOR_OVER_DECISION[quality] if with_prior else 0.0)
 
 
 def uniform_share(budget, spent):

@@ -1,12 +1,18 @@
 """The command line options of the adaptive loop, and the loop over the frames that they name."""
 
+import shlex
+
+from ..common import exr, outputs
 from ..common.arguments import positive
-from ..common.command import each_frame
+from ..common.command import Notes, each_frame
 from ..common.denoise_defaults import DEFAULT_QUALITY, QUALITIES
+from ..common.errors import DriverError, ExitCode
 from ..common.terminal import print_lines
-from . import adaptive, report
+from . import adaptive, prior, report
 from .budget import Budget
+from .folder import PassFolder
 from .journal import HALVES
+from .reconstruction import SETTINGS_ATTRIBUTE
 
 MIN_FIRST_PASS = 2 * len(HALVES)
 
@@ -20,16 +26,25 @@ def add_loop_arguments(parser, first_pass, first_pass_help):
     )
     budget.add_argument("--target", type=positive, metavar="E", help="estimated mean relative MSE of the result")
     parser.add_argument("--first-pass", type=int, default=first_pass, metavar="N", help=first_pass_help)
+    parser.add_argument("--max-rounds", type=int, default=8, metavar="N", help="limit of the rounds of extra samples")
     parser.add_argument(
-        "--max-rounds", type=int, default=8, metavar="N", help="limit of the rounds of extra samples (8)"
+        "--quality", choices=QUALITIES, default=DEFAULT_QUALITY, help="quality of the last reconstruction"
     )
     parser.add_argument(
-        "--quality",
-        choices=QUALITIES,
-        default=DEFAULT_QUALITY,
-        help=f"quality of the last reconstruction ({DEFAULT_QUALITY})",
+        "--with-prior", action="store_true", help="use Open Image Denoise's picture where it is better (--prior oidn)"
     )
-    parser.add_argument("--resume", action="store_true", help="continue with the passes of an earlier run")
+    parser.add_argument("--error-map", metavar="FILE.exr", help="write the estimated error of each pixel")
+    parser.add_argument("--report", metavar="FILE.html", help="write a page with pictures and figures of every round")
+    outputs.add_encoding(parser)
+    parser.add_argument(
+        "--keep-passes",
+        action="store_true",
+        help="keep the folder of passes, which --resume continues from; the result has the layers of the features, "
+        "their variance and halves too",
+    )
+    parser.add_argument(
+        "--resume", action="store_true", help="continue with the passes of an earlier run; finished frames are skipped"
+    )
 
 
 def check_budget(parser, options):
@@ -47,22 +62,74 @@ def run_frames(options, renderer, identity):
     identity: every setting that changes a sample, with a name; `scene` is the path of a file. --resume continues only
     passes of the same identity, frame and --first-pass, and of the same inputs (Audit.inputs)."""
 
-    def work(frame, output, passes, polyrecon, progress):
+    def work(frame, polyrecon, progress):
         settings = adaptive.Settings(
-            output=output,
-            passes=passes,
+            files=frame,
             budget=Budget(options.budget_spp, options.budget_seconds, options.target),
-            frame=frame,
             first_pass=options.first_pass,
             max_rounds=options.max_rounds,
             quality=options.quality,
             resume=options.resume,
+            with_prior=options.with_prior,
+            keep_passes=options.keep_passes,
+            compression=options.compression,
+            dwa_level=options.dwa_level,
             identity=identity,
             scene=identity.get("scene"),
         )
-        result = adaptive.run(renderer, polyrecon, settings, progress)
-        page = report.write(result, settings, polyrecon)
+        if options.resume and is_finished(settings, options.overwrite):
+            said = [f"{frame.output}: finished already: skipped"]
+        else:
+            said = one_frame(settings, options.verbose, renderer, polyrecon, progress, notes.tell)
         if not options.quiet:
-            print_lines(*report.lines(result, settings, page))
+            print_lines(*said)
 
-    each_frame(options, renderer, work)
+    notes = Notes(options.quiet)
+    if options.with_prior:
+        prior.check(options.polyrecon)
+    each_frame(options, renderer, work, may_exist=options.resume)
+
+
+def is_finished(settings, overwrite):
+    """Whether an earlier run has finished a frame and removed its passes. A result of other settings is refused unless
+    `overwrite`."""
+    output, folder = settings.files.output, PassFolder(settings.files.passes)
+    if folder.journal.exists() or not output.exists():
+        return False
+    if exr.metadata(output).get(SETTINGS_ATTRIBUTE) == settings.digest():
+        return True
+    if overwrite:
+        return False
+    raise DriverError(
+        ExitCode.USAGE,
+        f"{output}: is there, but not from this scene with these options, and its passes are not in {folder.path}: "
+        "add --overwrite to render it again",
+    )
+
+
+def one_frame(settings, verbose, renderer, polyrecon, progress, tell):
+    """Renders a frame; returns the lines about it. tell: gets notes as they are known."""
+    folder = PassFolder(settings.files.passes)
+    try:
+        result = adaptive.run(renderer, polyrecon, settings, progress, tell)
+    except BaseException as error:
+        if folder.journal.exists():
+            error.advice = f"; {passes_text(folder)}"
+        raise
+    pages = [page for page in (settings.files.report, folder.report if settings.keep_passes else None) if page]
+    if pages:
+        report.write(result, settings, polyrecon, pages)
+    tell(result.audit.notes)
+    said = report.lines(result, settings, verbose)
+    if settings.keep_passes:
+        return [*said, f"  {passes_text(folder)}"]
+    with folder.claimed():
+        folder.remove()
+    return said
+
+
+def passes_text(folder):
+    """Where the passes are, how large they are, what they are good for, and how to remove them."""
+    words = ["rm", "-r", *(["--"] if str(folder.path).startswith("-") else []), str(folder.path)]
+    size = outputs.size_text(folder.size)
+    return f"passes in {folder.path} ({size}): --resume continues with them, `{shlex.join(words)}` removes them"

@@ -3,7 +3,7 @@ no file."""
 
 import numpy as np
 
-from .budget import CONVERGENCE_RATE, RESULT_OVER_DECISION, Spent
+from .budget import CONVERGENCE_RATE, Spent
 from .counts import weight_of_samples
 from .journal import HALVES, RoundPlan
 
@@ -29,15 +29,15 @@ def first_pass_parts(samples, budget):
     return samples // 2 if samples > 8 and samples % 4 == 0 else samples
 
 
-def what_is_spent(state, seconds, decision_seconds, quality, complete_last_over_decision):
-    """quality: of the last reconstruction. complete_last_over_decision: see Renderer."""
+def what_is_spent(state, seconds, decision_seconds, result_over_decision):
+    """result_over_decision: seconds of the result over those of a decision."""
     return Spent(
         samples=state.samples,
         cost_weighted_samples=sum(part.cost_weighted_samples for part in state.parts),
         seconds=seconds,
         seconds_per_sample=seconds_per_uniform_sample(state.parts) * masked_over_uniform(state.parts),
         decision_seconds=decision_seconds,
-        result_seconds=decision_seconds * (RESULT_OVER_DECISION[quality] + complete_last_over_decision),
+        result_seconds=decision_seconds * result_over_decision,
     )
 
 

@@ -4,12 +4,13 @@ import contextlib
 import dataclasses
 import pathlib
 import re
+import shutil
 
 from ..common import folder_lock
 from ..common.errors import DriverError, ExitCode
 from ..common.files import remove_temporaries
 
-_FILE = re.compile(r"part_[0-9]+[ab][0-9]+\.exr|merged\.exr|error\.exr|journal\.json|report\.html")
+_FILE = re.compile(r"part_[0-9]+[ab][0-9]+\.exr|(?:merged|clean|error)\.exr|journal\.json|report\.html")
 _ROUND = re.compile(r"round_[0-9]+")
 
 
@@ -26,6 +27,11 @@ class PassFolder:
     @property
     def merged(self):
         return self.path / "merged.exr"
+
+    @property
+    def clean(self):
+        """The result before it is delivered."""
+        return self.path / "clean.exr"
 
     @property
     def error_map(self):
@@ -51,6 +57,21 @@ class PassFolder:
                 if _ROUND.fullmatch(entry.name) and entry.is_dir():
                     remove_temporaries(entry, lambda name: name.endswith(".exr"))
             yield
+
+    @property
+    def size(self):
+        """Bytes of all files in it."""
+        return sum(path.stat().st_size for path in self.path.rglob("*") if path.is_file())
+
+    def remove(self):
+        """Removes the files of the loop, and the folder if nothing else is in it."""
+        for entry in self.path.iterdir():
+            if _ROUND.fullmatch(entry.name):
+                shutil.rmtree(entry)
+            elif _FILE.fullmatch(entry.name) or entry.name == folder_lock.LOCK:
+                entry.unlink()
+        with contextlib.suppress(OSError):
+            self.path.rmdir()
 
     def create_round(self, number):
         folder = self.path / f"round_{number}"

@@ -6,10 +6,11 @@ import time
 
 import numpy as np
 
-from ..common import exr
+from ..common import exr, outputs
 from .budget import CONVERGENCE_RATE
 from .counts import cost_of_samples, quantise
 from .journal import HALVES
+from .renderer import RENDER_SECONDS, SAMPLE_COUNT
 
 DECISION_QUALITY = "draft"
 
@@ -19,15 +20,18 @@ DECISION_OVER_MERGE = 8.5
 
 MIN_COUNT_LIMIT = 1024  # A sample map may always put this many samples into one pixel.
 
+SETTINGS_ATTRIBUTE = "polyrecon/loop"  # of a result: the digest of its settings
+PRIOR = ("--prior", "oidn")
 UNCOMPRESSED = ("--compression", "none")  # Merged files are read again at once.
 
 
 class Reconstruction:
-    """beauty: the layer of the picture in the parts, '' for bare R, G and B."""
+    """with_prior: whether Open Image Denoise's picture takes part."""
 
-    def __init__(self, polyrecon, renderer, folder, state, beauty):
-        self.polyrecon, self.renderer, self.folder, self.state = polyrecon, renderer, folder, state
-        self.prefix = f"{beauty}." if beauty else ""
+    def __init__(self, polyrecon, renderer, folder, state, audit, with_prior):
+        self.polyrecon, self.renderer, self.folder, self.state, self.audit = polyrecon, renderer, folder, state, audit
+        self.prefix = f"{audit.beauty}." if audit.beauty else ""
+        self.prior = PRIOR if with_prior else ()
 
     def estimate_decision_seconds(self):
         """Seconds that a decision will take, from a trial merge of the first part of each half."""
@@ -102,17 +106,38 @@ class Reconstruction:
             file.unlink()
         return counts
 
-    def finish(self, output, quality):
-        """Merges all parts and reconstructs them into `output`; returns the estimated mean relative MSE."""
-        merged, error_map = self.folder.merged, self.folder.error_map
+    def finish(self, settings):
+        """Merges all parts, reconstructs them, and writes the outputs of the settings. Returns the mean relative MSE
+        that is estimated for the picture, and that of the noise before."""
+        merged, clean, error_map = self.folder.merged, self.folder.clean, self.folder.error_map
         a, b = (self._files(half) for half in HALVES)
         self.polyrecon.run("merge", *a, "--half-b", *b, "-o", merged, *UNCOMPRESSED, "--quiet")
         self.renderer.complete(merged)
-        self.renderer.complete_last(merged)
-        self.polyrecon.run(
-            "denoise", "-i", merged, "-o", output, "--quality", quality, "--error-map", error_map, "--quiet"
-        )
-        return float(np.nanmean(exr.read(error_map, lambda name: name == "relmse.Y")["relmse.Y"]))
+        options = ["--quality", settings.quality, "--error-map", error_map, *self.prior, "--quiet"]
+        self.polyrecon.run("denoise", "-i", merged, "-o", clean, *options)
+        files = settings.files
+        if files.error_map:
+            outputs.copy(error_map, files.error_map)
+        compression = outputs.encoding(settings.compression or self.audit.compression, settings.dwa_level)
+        attributes = {SETTINGS_ATTRIBUTE: settings.digest()}
+        note = outputs.deliver(clean, files.output, self._type_of(settings.keep_passes), compression, attributes)
+        self.audit.notes += [note] if note else []
+        clean.unlink()
+        found = exr.read(error_map, lambda name: name in ("relmse.Y", "relnoise.Y"))
+        return tuple(float(np.nanmean(found[name])) for name in ("relmse.Y", "relnoise.Y"))
+
+    def _type_of(self, everything):
+        """The type of each channel of the result, as a function of its name. Without `everything` those are left out
+        that only the reconstruction needs."""
+        rendered = {name.rpartition(".")[0] for name in exr.names(self._files(HALVES[0])[0])}
+
+        def type_of(name):
+            layer = name.rpartition(".")[0]
+            if layer not in rendered or layer in self.audit.working or name.endswith((SAMPLE_COUNT, RENDER_SECONDS)):
+                return "float" if everything else None
+            return "half" if outputs.is_colour(name) and not self.audit.float_colours else "float"
+
+        return type_of
 
     def _files(self, half):
         return [self.folder.path / file for file in self.state.files(half)]

@@ -34,6 +34,10 @@ class Switch:
     setting: str  # "off"
     reason: str  # "nothing moves within the shutter"
     saves: str = ""  # "one synchronisation a pass"
+    changes_picture: bool = False  # What the scene asks for is missing in the result.
+
+    def __str__(self):
+        return f"{self.effect} {self.setting}: {self.reason}"
 
 
 @dataclasses.dataclass
@@ -45,11 +49,24 @@ class Audit:
     beauty: str = ""  # Layer of the picture in the parts, "ViewLayer.Combined"; "": bare R, G, B
     switches: list[Switch] = dataclasses.field(default_factory=list)  # Printed, and a table of the report
     passes: dict[str, str] = dataclasses.field(default_factory=dict)  # Name of each pass, and why it is rendered
-    notes: list[str] = dataclasses.field(default_factory=list)  # Lines for the user
+    notes: list[str] = dataclasses.field(default_factory=list)  # What the user should know before any rendering
+    details: list[str] = dataclasses.field(default_factory=list)  # What was found, for who wants to know
     method: str = ""  # How extra samples are rendered, in a few words
+    features: list[str] = dataclasses.field(default_factory=list)  # What guides the reconstruction: "albedo"
+    working: list[str] = dataclasses.field(default_factory=list)  # Layers of the parts that the user did not ask for
+    float_colours: bool = False  # Whether the scene asks for a picture of 32-bit floats
+    compression: str = "zip"  # Of the picture: that of the scene's own output, in OpenImageIO's words
     inputs: dict[str, str] = dataclasses.field(
         default_factory=dict
     )  # SHA-256 of each file that the picture shows; none: that of the scene is compared
+
+    def __post_init__(self):
+        self.notes += [str(switch) for switch in self.switches if switch.changes_picture]
+
+    def lines(self):
+        """What was changed and decided, for the terminal."""
+        found = [f"{switch} (saves {switch.saves})" if switch.saves else str(switch) for switch in self.switches]
+        return [*found, f"extra samples: {self.method}", *self.details]
 
 
 class Renderer(abc.ABC):
@@ -61,10 +78,6 @@ class Renderer(abc.ABC):
     # Whether `extra` takes its samples from the sequence. If not, the renderer itself sees to it that no pixel takes a
     # sample twice, and may take more than the largest count.
     extra_in_sequence = True
-
-    # Seconds of complete_last over the seconds of a decision (both reconstructions and sample maps). A budget of
-    # seconds keeps them in reserve.
-    complete_last_over_decision = 0.0
 
     @abc.abstractmethod
     def begin(self, frame: Optional[int]) -> Audit:
@@ -91,10 +104,6 @@ class Renderer(abc.ABC):
     def complete(self, merged: pathlib.Path) -> None:  # noqa: B027 (optional)
         """Adds to a file of merged parts what is rendered once for the frame, such as feature passes. They must not
         depend on the samples of the picture."""
-
-    def complete_last(self, merged: pathlib.Path) -> None:  # noqa: B027 (optional)
-        """Adds to the merged file of all parts what only the last reconstruction uses, such as a prior made from its
-        halves."""
 
     def close(self) -> None:  # noqa: B027 (optional)
         """Ends processes in the background. Called once, also after an error."""

@@ -11,34 +11,61 @@ from ..common.errors import DriverError
 from ..common.files import write_text
 from ..common.terminal import printable
 from ..common.work_folder import WorkFolder
+from .adaptive import NO_ERROR_LEFT
+from .budget import CONVERGENCE_RATE
 from .folder import PassFolder
 
 TEMPLATE = pathlib.Path(__file__).with_name("report.html.j2")
+FEW_SAMPLES = 64  # per pixel: up to here a network's picture is worth its seconds (docs/guide/second_opinion.md)
 CURVE = {"width": 640, "height": 240, "margin": 48}  # Pixels
 
 
-def lines(result, settings, page):
-    """A few lines for the terminal."""
+def lines(result, settings, verbose):
+    """What is printed of a frame: what was rendered, what came of it, what would make it better. `verbose`: what was
+    decided on the way, too."""
+    audit, rounds, files = result.audit, result.state.rounds, settings.files
+    frame = "" if files.number is None else f"frame {files.number}, "
+    features = ", ".join(audit.features)
     found = [
-        f"{settings.output}: {result.samples:.3g} samples per pixel, {result.seconds:.1f} s, "
-        f"estimated relMSE {_error_text(result.error)}",
-        f"  budget {settings.budget}: {result.why_ended}",
+        f"{files.output}: {frame}{audit.width} x {audit.height}, {result.renderer}, "
+        f"{result.samples:.3g} samples per pixel"
+        + (f" in {len(rounds)} rounds" if len(rounds) > 1 else "")
+        + (f"; features: {features}" if features else "; no features"),
+        f"  relative MSE {_error_text(result.noise)} before, {_error_text(result.error)} estimated after, "
+        f"{_seconds_text(result.seconds)}; {result.why_ended or 'the budget is spent'}",
+        f"  better: {_advice(result, settings)}",
     ]
+    if not verbose:
+        return found
     found += [
         f"  round {entry.round}: {entry.samples:.3g} spp, {entry.seconds:.1f} s, relMSE {_error_text(entry.error)}"
-        for entry in result.state.rounds
+        for entry in rounds
     ]
-    found += [
-        f"  {switch.effect} {switch.setting}: {switch.reason}" + (f" (saves {switch.saves})" if switch.saves else "")
-        for switch in result.audit.switches
-    ]
-    found += [f"  extra samples: {result.audit.method}"] + [f"  {note}" for note in result.audit.notes]
-    return [*found, f"  report: {page}"]
+    return [*found, *(f"  {line}" for line in audit.lines())]
 
 
-def write(result, settings, polyrecon):
-    """Writes report.html into the folder of passes; returns its path. The page holds its pictures and loads nothing.
-    Where these cannot be made, a note says so."""
+def _advice(result, settings):
+    """What would lower the error, as options of the driver."""
+    budget, factor = settings.budget, 2 ** (1 / CONVERGENCE_RATE)
+    if result.why_ended == NO_ERROR_LEFT:
+        return "nothing, the picture has no noise left"
+    if budget.samples:
+        more = f"--budget-spp {factor * result.samples:.0f}"
+    elif budget.seconds:
+        more = f"--budget-seconds {factor * budget.seconds:.0f}"
+    else:
+        more = f"--target {budget.target / 2:.2g}"
+    words = [f"{more} halves the error"]
+    if settings.quality != "best":
+        words.append(f"--quality {'best' if settings.quality == 'standard' else 'standard'}")
+    if not settings.with_prior and result.samples <= FEW_SAMPLES:
+        words.append("--with-prior, since the samples are few")
+    return "; ".join(words)
+
+
+def write(result, settings, polyrecon, pages):
+    """Writes the report to each path of `pages`. It holds its pictures and loads nothing. Where these cannot be made, a
+    note says so."""
     environment = jinja2.Environment(
         autoescape=True,
         trim_blocks=True,
@@ -47,11 +74,11 @@ def write(result, settings, polyrecon):
         finalize=lambda value: printable(value) if isinstance(value, str) else value,
     )
     environment.filters["error_text"] = _error_text
-    passes = PassFolder(settings.passes)
+    passes = PassFolder(settings.files.passes)
     rounds = result.state.rounds
     with WorkFolder("report") as folder:
         files = [_files_of(entry.round, passes) for entry in rounds]
-        files.append([result.merged, settings.output, result.error_map])
+        files.append([result.merged, settings.files.output, result.error_map])
         try:
             *pictures, final = _pictures(polyrecon, files, folder)
         except DriverError as error:  # The frame is finished, so it does not fail for a page's pictures.
@@ -60,13 +87,18 @@ def write(result, settings, polyrecon):
     page = environment.from_string(TEMPLATE.read_text(encoding="utf-8")).render(
         result=result,
         settings=settings,
+        program=polyrecon.describe(),
         rounds=list(zip(rounds, pictures)),
         final=final,
         curve=_curve(result),
         size=CURVE,
     )
-    write_text(passes.report, page)
-    return passes.report
+    for path in pages:
+        write_text(path, page)
+
+
+def _seconds_text(seconds):
+    return f"{seconds:.1f} s" if seconds < 120 else f"{seconds / 60:.1f} min"
 
 
 def _error_text(error):

@@ -1,30 +1,43 @@
 #!/usr/bin/env python3
 """Renders a POV-Ray scene with the layers that `polyrecon denoise` uses: picture, albedo, normal, visibility and depth,
-as far as the scene needs them, each with mean, variance and halves. The scene's files are not changed."""
+as far as the scene needs them, each with mean, variance and halves. The scene's files are not changed.
+
+examples:
+  %(prog)s scene.pov -o merged.exr -- +W640 +H360
+  %(prog)s scene.pov -o merged.exr --subpixels 8 -- scene.ini +Ltextures Declare=Night=1
+  polyrecon denoise -i merged.exr -o clean.exr"""
 
 if not __package__:  # run as a script from a checkout
     import pathlib
     import sys
 
     sys.path[0] = str(pathlib.Path(__file__).resolve().parents[2])
+    sys.dont_write_bytecode = True  # A checkout stays as it is.
     __package__ = "pipelines.povray"
 
 import argparse
+import pathlib
+import shlex
 import sys
 import time
 
-import numpy as np
+from ..common.modules import RENDERING, required
 
-from ..common import exr
-from ..common.arguments import add_pass_timeout
-from ..common.errors import run_main
-from ..common.layer_names import HALF_A_SUFFIX, HALF_B_SUFFIX, VARIANCE_SUFFIX
-from ..common.terminal import print_lines
-from ..loop.renderer import SAMPLE_COUNT
-from . import passes
-from .crops import cover
-from .scene import Scene
-from .subpixels import Estimate, estimate, join
+with required("polyrecon-povray-passes", RENDERING):
+    import numpy as np
+
+    from ..common import exr, outputs
+    from ..common.arguments import Parser, add_pass_timeout
+    from ..common.command import add_output_arguments
+    from ..common.errors import run_main
+    from ..common.layer_names import HALF_A_SUFFIX, HALF_B_SUFFIX, VARIANCE_SUFFIX
+    from ..common.terminal import print_lines
+    from ..loop.renderer import SAMPLE_COUNT
+    from . import passes
+    from .crops import cover
+    from .scene import Scene
+    from .subpixels import Estimate, estimate, join
+
 
 FIRST_GRID = 2  # subpixels per side of a pixel in the first pass and in the feature passes
 NOISE_LIMIT = 0.005  # standard error of the first pass, relative to the brightness, above which there is noise
@@ -32,7 +45,7 @@ NOISE_BLOCK = 8  # pixels per side of a block; half of them must be noisy, so th
 
 
 def main(words=None):
-    return run_main("render_passes.py", _main, words)
+    return run_main("polyrecon-povray-passes", _main, words)
 
 
 def split_words(words):
@@ -45,23 +58,30 @@ def split_words(words):
 def _main(words):
     words, povray_options = split_words(words)
     options = _parser().parse_args(words)
-    say = (lambda *_: None) if options.quiet else print_lines
+    outputs.check_ending(options.output, ".exr")
+    outputs.check_new([options.output], options.overwrite)
+    outputs.check_writable([options.output])
+    detail = print_lines if options.verbose else (lambda *_: None)
+    begun = time.monotonic()
     with Scene(options.scene, povray_options, options.povray, options.pass_timeout) as scene:
-        say(f"{options.scene}: {scene.width} x {scene.height}, parsed in {scene.parse_seconds:.1f} s")
-        begun = time.monotonic()
+        detail(f"{options.scene}: {scene.width} x {scene.height}, parsed in {scene.parse_seconds:.1f} s")
         choice = passes.choose_passes(scene, options.camera)
         for decision in choice.decisions:
-            say(f"  {'yes' if decision.run else 'no ':3} {decision.name}: {decision.reason}")
-        say(f"  decided in {time.monotonic() - begun:.1f} s")
-
-        begun = time.monotonic()
-        beauty, samples = render_beauty(scene, options.subpixels, say)
-        say(f"  beauty: {samples.mean():.1f} samples per pixel in {time.monotonic() - begun:.1f} s")
-        begun = time.monotonic()
+            detail(f"  {'yes' if decision.run else 'no ':3} {decision.name}: {decision.reason}")
+        detail(f"  decided in {time.monotonic() - begun:.1f} s")
+        beauty, samples = render_beauty(scene, options.subpixels, detail)
+        detail(f"  beauty after {time.monotonic() - begun:.1f} s")
         features = passes.render_features(scene, choice, FIRST_GRID)
-        say(f"  {len(features)} feature passes in {time.monotonic() - begun:.1f} s")
         layers = {"Combined": beauty, **features}
         exr.write(options.output, {**channels(layers), SAMPLE_COUNT: samples}, {"Software": "polyrecon, POV-Ray"})
+        if not options.quiet:
+            found = ", ".join(decision.name for decision in choice.decisions if decision.run) or "none"
+            print_lines(
+                f"{options.output}: {scene.width} x {scene.height}, {scene.version}, {samples.mean():.3g} samples per "
+                f"pixel; features: {found}",
+                f"  {outputs.size_text(pathlib.Path(options.output).stat().st_size)}, {time.monotonic() - begun:.1f} s",
+                f"  next: polyrecon denoise -i {shlex.quote(options.output)}",
+            )
 
 
 def render_beauty(scene, grid, say=lambda text: None):
@@ -135,7 +155,7 @@ def add_povray_arguments(parser):
     parser.add_argument(
         "--camera", metavar="X,Y,Z", type=_place, help="place of the camera, if it is not found in the scene file"
     )
-    parser.add_argument("--povray", default="povray", metavar="PATH", help="POV-Ray (default: `povray`)")
+    parser.add_argument("--povray", default="povray", metavar="PATH", help="POV-Ray, a path or a name on the PATH")
     add_pass_timeout(parser)
 
 
@@ -155,26 +175,20 @@ def _grid(text):
 
 
 def _parser():
-    parser = argparse.ArgumentParser(
-        prog="render_passes.py",
+    parser = Parser(
+        "polyrecon-povray-passes",
+        usage="%(prog)s SCENE.pov -o OUT.exr [options] [-- POV-Ray's options]",
         description=__doc__,
-        usage="%(prog)s SCENE.pov -o FILE.exr [options] [-- POV-Ray's options]",
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-        epilog="examples:\n"
-        "  render_passes.py scene.pov -o merged.exr -- +W640 +H360\n"
-        "  render_passes.py scene.pov -o merged.exr --subpixels 8 -- scene.ini +Ltextures Declare=Night=1\n"
-        "  polyrecon denoise -i merged.exr -o clean.exr",
     )
     parser.add_argument("scene", metavar="SCENE.pov", help="the scene; it is never changed")
-    parser.add_argument("-o", "--output", required=True, metavar="FILE.exr", help="EXR file to write")
-    parser.add_argument("-q", "--quiet", action="store_true", help="print nothing but errors")
+    add_output_arguments(parser)
     add_povray_arguments(parser)
     parser.add_argument(
         "--subpixels",
         type=_grid,
         default=4,
         metavar="N",
-        help=f"N x N more samples of pixels in which {FIRST_GRID} x {FIRST_GRID} show noise, 2 to 64 (4)",
+        help=f"N x N more samples of pixels in which {FIRST_GRID} x {FIRST_GRID} show noise, 2 to 64",
     )
     return parser
 

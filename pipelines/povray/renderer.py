@@ -62,15 +62,17 @@ class PovrayRenderer(Renderer):
             switches=[Switch("antialiasing", "off", "the samples are subpixels")],
             passes={decision.name: decision.reason for decision in self.choice.decisions if decision.run},
             notes=self._notes(),
+            details=[
+                f"no {decision.name}: {decision.reason}" for decision in self.choice.decisions if not decision.run
+            ],
             method="crops with grids of subpixels",
             inputs=input_digests,
+            features=[decision.name for decision in self.choice.decisions if decision.run],
         )
 
     def _notes(self):
-        notes = [f"no {decision.name}: {decision.reason}" for decision in self.choice.decisions if not decision.run]
-        if self.scene.not_confined:
-            notes.append(f"POV-Ray can write where the scene says: {self.scene.not_confined}")
-        return notes
+        why = self.scene.not_confined
+        return [f"POV-Ray can write where the scene says: {why}"] if why else []
 
     def uniform(self, first, samples, target):
         if self.first is None:

@@ -22,10 +22,12 @@ current = None  # the running job, or else the last one
 
 
 class Job:
-    """Commands that run one after another. `title` and `results` ({name: path}) are shown in the panel."""
+    """Commands that run one after another. `title` and `results` ({name: path}) are shown in the panel, and so is what
+    the program's report (a JSON file) advises."""
 
-    def __init__(self, title, commands, results):
-        self.title, self.results = title, results
+    def __init__(self, title, commands, results, report=None):
+        self.title, self.results, self._report = title, results, report
+        self.advice = []  # [(what is missing, what to do)]
         self.state = "running"  # later "done", "failed" or "cancelled"
         self.phase, self.fraction = "starting", 0.0
         self.error = ""
@@ -65,6 +67,7 @@ class Job:
             self._next()
         else:
             self.fraction = 1.0
+            self.advice = _advice_of(self._report)
             self._finish("done")
         return self.running
 
@@ -143,20 +146,32 @@ class Job:
         self.phase = state
 
 
+def _advice_of(report):
+    """What a report says about missing passes; passes that are switched on at one place stand together."""
+    if report is None:
+        return []
+    with open(report, encoding="utf-8") as file:
+        advice = json.load(file).get("advice", [])
+    places = {}
+    for one in advice:
+        places.setdefault(one["how"], []).append(f"no {one['pass']} ({one['without']})")
+    return [(", ".join(missing), how) for how, missing in places.items()]
+
+
 def _figures(progress):
     """The figures of the loop's progress as texts."""
     known = (("samples", "{:.3g} spp"), ("error", "error {:.2g}"), ("seconds_left", "{:.0f} s left"))
     return [text.format(progress[name]) for name, text in known if name in progress]
 
 
-def start(title, commands, results):
+def start(title, commands, results, report=None):
     """Starts a job and the timer that polls it; returns the job."""
     global current
     import bpy
 
     if current and current.running:
         raise programs.SetupError(f"{current.title} is still running")
-    current = Job(title, commands, results)
+    current = Job(title, commands, results, report)
     if not bpy.app.timers.is_registered(_tick):
         bpy.app.timers.register(_tick, first_interval=0.1, persistent=True)
     return current

@@ -1,6 +1,7 @@
 """The operators of the panel's buttons. None of them waits for a program."""
 
 import os
+import pathlib
 import shutil
 
 import bpy
@@ -71,19 +72,10 @@ class POLYRECON_OT_denoise(_Start, bpy.types.Operator):
         results = _results(clean)
         _save_render(scene, results["NOISY"])
         error_map = results["ERROR"].with_suffix(".exr")
-        denoise = [
-            program,
-            "denoise",
-            "-i",
-            results["NOISY"],
-            "-o",
-            clean,
-            "--error-map",
-            error_map,
-            "--progress",
-            "json",
-        ]
-        jobs.start("Denoise", [denoise, _error_picture(program, error_map, results)], results)
+        report = pathlib.Path(bpy.app.tempdir) / "polyrecon_report.json"
+        denoise = [program, "denoise", "-i", results["NOISY"], "-o", clean, "--error-map", error_map]
+        denoise += ["--report", report, "--progress", "json"]
+        jobs.start("Denoise", [denoise, _error_picture(program, error_map, results)], results, report)
 
 
 def _results(clean):
@@ -143,7 +135,8 @@ class POLYRECON_OT_adaptive(_Start, bpy.types.Operator):
             _forget(outputs.values())
             bpy.ops.wm.save_as_mainfile(filepath=str(copy), copy=True, check_existing=False)
         words += [copy, "-o", chosen.output_pattern(), *chosen.limit_words(), *chosen.frames_words(scene)]
-        words += ["--polyrecon", program, "--progress", "json", *(["--resume"] if chosen.resume else [])]
+        words += ["--polyrecon", program, "--progress", "json", "--keep-passes", "--overwrite"]
+        words += ["--resume"] if chosen.resume else []
         passes = _passes(last)
         results = {
             "CLEAN": last,

@@ -123,10 +123,11 @@ def switch_off(scene, view_layer):
     """Switches off what would spoil the samples or cannot change them; returns the arguments of the loop's Switch."""
     switches = []
 
-    def switch(owner, name, value, effect, reason, saves=""):
+    def switch(owner, name, value, effect, reason, saves="", changes_picture=False):
         if hasattr(owner, name) and getattr(owner, name) != value:
             setattr(owner, name, value)
-            switches.append({"effect": effect, "setting": "off", "reason": reason, "saves": saves})
+            found = {"effect": effect, "setting": "off", "reason": reason, "saves": saves}
+            switches.append({**found, "changes_picture": changes_picture})
 
     render, cycles = scene.render, scene.cycles
     switch(
@@ -148,9 +149,12 @@ def switch_off(scene, view_layer):
     switch(
         render, "use_sequencer", False, "sequencer", "it does not change the render layers", "its time in every pass"
     )
-    switch(render, "use_freestyle", False, "Freestyle", "its scripts would run code of the file; no lines are drawn")
-    switch(render, "use_multiview", False, "stereo", "one view is rendered")
-    switch(render, "use_border", False, "render border", "the whole frame is rendered")
+    for name, effect, reason in (
+        ("use_freestyle", "Freestyle", "its scripts would run code of the file; no lines are drawn"),
+        ("use_multiview", "stereo", "one view is rendered"),
+        ("use_border", "render border", "the whole frame is rendered"),
+    ):
+        switch(render, name, False, effect, reason, changes_picture=True)
     if render.use_motion_blur and not moves(scene):
         switch(
             render,
@@ -162,5 +166,6 @@ def switch_off(scene, view_layer):
         )
     for layer in scene.view_layers:
         if layer != view_layer:
-            switch(layer, "use", False, f"view layer {layer.name}", f"{view_layer.name} is rendered")
+            reason = f"{view_layer.name} is rendered"
+            switch(layer, "use", False, f"view layer {layer.name}", reason, changes_picture=True)
     return switches

@@ -8,6 +8,16 @@ import bpy
 import caches
 
 
+def version_of(path):
+    """The version of Blender that saved a file which this Blender may not be able to open; None if it is unknown."""
+    with open(path, "rb") as file:
+        start = file.read(64)
+    # "BLENDER-v304", and since Blender 5.0 "BLENDER17-01v0500". Compressed files begin with the same bytes after some
+    # of their own, since a first occurrence cannot be compressed.
+    found = re.search(rb"BLENDER(?:[-_][vV]|\d\d-\d\dv0)(\d)(\d\d)", start)
+    return (int(found[1]), int(found[2])) if found else None
+
+
 def opened(path):
     """The .blend files that were read when the scene was opened."""
     return sorted({path, *(_absolute(library, library.filepath) for library in bpy.data.libraries)})

@@ -15,9 +15,9 @@ import traceback
 
 import bpy
 
-import _cycles  # isort: skip (bpy makes it importable)
-
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+if not sys.dont_write_bytecode:  # A checkout stays as it is.
+    sys.dont_write_bytecode = True
 
 import audit
 import caches
@@ -63,14 +63,21 @@ class Session:
             "switches": self.switches,
             "user_passes": [name for _, name in self.user_passes if name != "use_pass_combined"],
             "no_mask_camera": reason,
-            "has_denoiser": bool(_cycles.with_openimagedenoise),
+            "denoising_data": self.denoising_data,
+            "output": self.output,
             "sequence": self.sequence,
             "filter_overhang": camera.filter_overhang(scene),
             "files": self.files,
         }
 
     def load(self, path, visibility, cache_folder):
-        bpy.ops.wm.open_mainfile(filepath=path, load_ui=False, use_scripts=False)
+        try:
+            bpy.ops.wm.open_mainfile(filepath=path, load_ui=False, use_scripts=False)
+        except RuntimeError as error:
+            refuse_newer(inputs.version_of(path))
+            this = ".".join(map(str, bpy.app.version[:2]))
+            raise RuntimeError(f"{error}".strip() + f" (or one of a Blender later than {this})") from error
+        refuse_newer(bpy.data.version)
         self.files = {"opened": inputs.opened(bpy.data.filepath), "used": inputs.used()}
         if cache_folder:
             caches.redirect(cache_folder)
@@ -81,8 +88,10 @@ class Session:
         self.view_layer = next((layer for layer in scene.view_layers if layer.use), scene.view_layers[0])
         self.effects = audit.effects(scene, self.view_layer)
         self.switches = audit.switch_off(scene, self.view_layer)
+        self.output = self.output_of(scene.render.image_settings)
         self.choose_output(scene.render)
         self.user_passes = self.passes_on()
+        self.denoising_data = bool(self.view_layer.cycles.denoising_store_passes)
         self.choose_passes(visibility)
         scene.render.use_persistent_data = True
 
@@ -95,6 +104,12 @@ class Session:
         self.sequence = SEQUENCE if cycles.seed == probe else None
         if self.sequence:
             cycles.seed = self.file_seed
+
+    def output_of(self, settings):
+        """How the file asks for its pictures: in 32-bit floats or not, and with which compression."""
+        if not settings.file_format.startswith("OPEN_EXR"):
+            return {"float": False, "compression": "zip"}
+        return {"float": settings.color_depth == "32", "compression": settings.exr_codec.lower()}
 
     def choose_output(self, render):
         settings = render.image_settings
@@ -155,18 +170,6 @@ class Session:
         bpy.ops.render.render(write_still=True, scene=scene.name)
         return {"seconds": time.monotonic() - begin}
 
-    def denoise(self, source, target):
-        """Runs Cycles' denoiser on an EXR file of picture and features."""
-        cycles = bpy.context.scene.cycles
-        kept = cycles.use_denoising
-        cycles.use_denoising, cycles.denoiser = True, "OPENIMAGEDENOISE"
-        cycles.denoising_input_passes, cycles.denoising_prefilter = "RGB_ALBEDO_NORMAL", "ACCURATE"
-        try:
-            bpy.ops.cycles.denoise_animation(input_filepath=source, output_filepath=target)
-        finally:
-            cycles.use_denoising = kept
-        return {}
-
     def choose_samples(self, first, samples):
         cycles = self.scene.cycles
         if self.sequence:
@@ -191,6 +194,13 @@ class Session:
             # Borders lie inside a pixel, so that rounding does not select the one before it.
             render.border_min_x, render.border_max_x = (x0 + 0.1) / width, (x1 + 0.1) / width
             render.border_min_y, render.border_max_y = (height - y1 + 0.1) / height, (height - y0 + 0.1) / height
+
+
+def refuse_newer(version):
+    """Refuses a file of a newer Blender: this one would leave out what it does not know. version: None if unknown."""
+    if version and tuple(version[:2]) > bpy.app.version[:2]:
+        saved, this = (".".join(map(str, numbers[:2])) for numbers in (version, bpy.app.version))
+        raise RuntimeError(f"the file was saved by Blender {saved}, this is {this}: render it with {saved} or later")
 
 
 def take_standard_output():

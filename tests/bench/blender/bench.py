@@ -5,7 +5,7 @@
 (b) adaptive       pipelines/blender/adaptive.py
 (c) cycles         Cycles' adaptive sampling, then Open Image Denoise; the noise threshold is tuned to the seconds
 (d) oidn           uniform samples, then Open Image Denoise (albedo, normal, accurate prefilter, as in (c))
-(e) prior          (b) --with-prior: Open Image Denoise's picture of each half is an input of the reconstruction
+(e) prior          (b) --with-prior: Open Image Denoise gives a second opinion
 (f) uniform_prior  (a) with such a prior
 
 The seconds are those of the whole command: start-up, rendering, merging, reconstruction. (b) and (e) get them as their
@@ -198,14 +198,14 @@ def run(words):
 # the tuning (None: all seconds), and further figures for the row of results.
 
 
-def uniform(scene, image, samples):
+def uniform(scene, image, samples, *words):
     parts = [scene.folder / f"part_{i}.exr" for i in range(PARTS)]
     merged = scene.folder / "merged.exr"
     rendering = scene.render(scene.folder / "part.exr", spp=samples, parts=PARTS, features=True)
     scene.polyrecon.run(
         "merge", *parts, "-o", merged, "--samples", str(samples // PARTS), "--compression", "none", "--quiet"
     )
-    scene.polyrecon.run("denoise", "-i", merged, "-o", image, "--quiet")
+    scene.polyrecon.run("denoise", "-i", merged, "-o", image, "--quiet", *words)
     return rendering, {"spp": samples}
 
 
@@ -218,20 +218,7 @@ def cycles(scene, image, threshold):
 
 
 def uniform_prior(scene, image, samples):
-    merged = scene.folder / "merged_prior.exr"
-    words = ["-o", merged, "--spp", str(samples), "--parts", str(PARTS), "--bpy", "--with-prior", "--quiet"]
-    run(
-        [
-            scene.options.python,
-            DRIVERS / "render_passes.py",
-            scene.blend,
-            *words,
-            "--polyrecon",
-            scene.polyrecon.program,
-        ]
-    )
-    scene.polyrecon.run("denoise", "-i", merged, "-o", image, "--quiet")
-    return None, {"spp": samples}
+    return uniform(scene, image, samples, "--prior", "oidn")
 
 
 def prior(scene, image, amount):
@@ -244,6 +231,7 @@ def adaptive(scene, image, amount, *words):
     shutil.rmtree(passes, ignore_errors=True)
     budget = "--budget-seconds" if scene.options.clock == "wall" else "--budget-spp"
     words = [budget, f"{amount:g}", "--passes-dir", passes, "--polyrecon", scene.polyrecon.program, *words]
+    words += ["--keep-passes", "--overwrite"]
     run([scene.options.python, DRIVERS / "adaptive.py", scene.blend, "-o", image, "--bpy", *words])
     journal = json.loads((passes / "journal.json").read_text())
     rendering = sum(part["seconds"] for part in journal["parts"])

@@ -76,7 +76,7 @@ def measure(work, name):
     size = ["--", f"+W{width}", f"+H{height}"]
     for grid in UNIFORM_GRIDS:
         merged, clean = work / f"{name}_{grid}.exr", work / f"{name}_{grid}_clean.exr"
-        seconds = run("render_passes.py", path, "-o", merged, "--subpixels", grid, "--quiet", *size)
+        seconds = run("render_passes.py", path, "-o", merged, "--subpixels", grid, "--quiet", "--overwrite", *size)
         begun = processor_seconds()
         Polyrecon().run("denoise", "-i", merged, "-o", clean, "--quiet")
         yield row(
@@ -84,7 +84,7 @@ def measure(work, name):
         )
     passes, clean = work / f"{name}.passes", work / f"{name}_adaptive.exr"
     shutil.rmtree(passes, ignore_errors=True)
-    options = ["--budget-spp", ADAPTIVE_SAMPLES, "--passes-dir", passes, "--quiet"]
+    options = ["--budget-spp", ADAPTIVE_SAMPLES, "--passes-dir", passes, "--keep-passes", "--overwrite", "--quiet"]
     seconds = run("adaptive.py", path, "-o", clean, *options, *size)
     yield row(f"adaptive.py --budget-spp {ADAPTIVE_SAMPLES}", work, name, passes / "merged.exr", clean, [seconds])
     pictures = [work / f"{name}_4.exr", work / f"{name}_4_clean.exr", work / f"{name}_ref.exr"]

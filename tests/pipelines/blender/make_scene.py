@@ -212,7 +212,24 @@ def simulating(scene):
     settings.cache_directory = os.path.join(folder, "elsewhere")
 
 
+def user_passes(scene):
+    """Passes for compositing, and how the picture is to be written."""
+    layer = scene.view_layers[0]
+    layer.use_pass_z = layer.use_pass_object_index = layer.use_pass_diffuse_color = True
+    settings = scene.render.image_settings
+    if hasattr(settings, "media_type"):
+        settings.media_type = "MULTI_LAYER_IMAGE"
+    settings.file_format, settings.color_depth, settings.exr_codec = "OPEN_EXR_MULTILAYER", "16", "PIZ"
+
+
+def compressed(scene):
+    """Saved with compression."""
+    bpy.context.preferences.filepaths.use_file_compression = True
+
+
 MADE = (
+    user_passes,
+    compressed,
     lens,
     depth_of_field,
     caustic,

@@ -16,7 +16,7 @@ from pipelines.common.errors import DriverError, ExitCode
 from pipelines.loop.renderer import SAMPLE_COUNT
 from tests.pipelines.blender.support import BLENDER_3, ROOT, SceneTest
 
-SMALL = ("--budget-spp", 8, "--first-pass", 4, "--quality", "draft")
+SMALL = ("--budget-spp", 8, "--first-pass", 4, "--quality", "draft", "--keep-passes")
 CONTENT = (".blend", ".png", ".osl")
 
 
@@ -161,7 +161,7 @@ class Attacks(SceneTest):
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("/\\xe9\\x1b/o.exr: ", done.stdout)
         self.assertIn("<title>o.exr</title>", (folder / "o.passes/report.html").read_text(encoding="utf-8"))
-        done = self.loop(scene, "--bpy", output=folder.name + "/o.exr")
+        done = self.loop(scene, "--bpy", "--overwrite", output=folder.name + "/o.exr")
         self.refused(done, ExitCode.USAGE, "/\\xe9\\x1b/o.passes/journal.json: passes of an earlier run")
         done = self.loop(scene, "--bpy", "--resume", output=folder.name + "/o.exr")
         self.assertEqual(done.returncode, 0, done.stderr)
@@ -192,6 +192,7 @@ class Attacks(SceneTest):
                 reason = "(Too many open files|no message|open files are allowed)"
                 self.assertRegex(done.stderr, f"^polyrecon-blender: .*{reason}.*\n$")
             shutil.rmtree(self.folder / "o.passes", ignore_errors=True)
+            (self.folder / "o.exr").unlink(missing_ok=True)
 
 
 class BlenderRendererOf(BlenderRenderer):

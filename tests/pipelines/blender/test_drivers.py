@@ -11,6 +11,7 @@ import time
 import unittest
 
 import numpy as np
+import OpenImageIO as oiio
 
 from pipelines.common import exr
 from tests.pipelines.blender.support import BLENDER_3, NO_BLENDER_5_2, PYTHON_OF_BLENDER_5_2, ROOT, SceneTest
@@ -26,6 +27,13 @@ def journal_of(passes):
     return json.loads((passes / "journal.json").read_text())
 
 
+def channel_types(path):
+    """{channel: type} of the first part of an EXR file."""
+    spec = oiio.ImageInput.open(str(path)).spec()
+    formats = spec.channelformats or [spec.format] * spec.nchannels
+    return dict(zip(spec.channelnames, map(str, formats)))
+
+
 def running(pid):
     try:
         return pathlib.Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
@@ -37,15 +45,14 @@ class Adaptive(SceneTest):
     def check(self, scene, blender, method, others=()):
         before = hashlib.sha256(scene.read_bytes()).digest()
         out = self.folder / "out.exr"
-        done = self.driver(
-            "adaptive.py", scene, "-o", out, "--budget-spp", 16, "--first-pass", 4, "--quality", "draft", *blender
-        )
+        words = ["--budget-spp", 16, "--first-pass", 4, "--quality", "draft", "--keep-passes", "-v", *blender]
+        done = self.driver("adaptive.py", scene, "-o", out, *words)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn(f"extra samples: {method}", done.stdout)
         self.assertEqual(before, hashlib.sha256(scene.read_bytes()).digest())
         picture = exr.read(out)
         self.assertTrue(all(np.isfinite(picture[f"ViewLayer.Combined.{c}"]).all() for c in "RGB"))
-        self.assertIn("budget 16 samples per pixel: ", done.stdout)
+        self.assertIn("; the samples are spent", done.stdout)
         taken = [part["samples"] for part in journal_of(out.with_suffix(".passes"))["parts"]]
         self.assertLess(sum(taken[:-1]), 16)  # case 31: no pass starts after the budget is spent
         counts = exr.read(out.with_suffix(".passes") / "merged.exr")["ViewLayer.Sample Count.X"]
@@ -87,6 +94,7 @@ class Adaptive(SceneTest):
             "1-3x2",
             "--quality",
             "draft",
+            "--keep-passes",
             "-o",
             folder / "<i>ä_##.exr",
             "--",
@@ -114,6 +122,7 @@ class Adaptive(SceneTest):
             "draft",
             "--max-rounds",
             99,
+            "--keep-passes",
             "--bpy",
         ]
         killed = subprocess.Popen(
@@ -137,7 +146,7 @@ class Adaptive(SceneTest):
         before = journal_of(passes)
         done = self.driver("adaptive.py", *words, "--resume")
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertIn("budget 8 s: the seconds are spent", done.stdout)
+        self.assertIn("the seconds are spent", done.stdout)
         after = journal_of(passes)
         parts = after["parts"]
         self.assertEqual(parts[: len(before["parts"])], before["parts"])
@@ -147,6 +156,64 @@ class Adaptive(SceneTest):
         # The seconds count both runs. No round starts after them, however busy the machine is.
         self.assertGreater(after["seconds"], before["seconds"])
         self.assertTrue(all(entry["seconds"] < 8 for entry in after["rounds"] if entry["next_samples"]))
+
+    def test_the_result_is_lean_and_nothing_else_stays(self):
+        """The scene asks for depth, ids and a colour; features, variance, halves and counts serve the loop alone."""
+        scene, words = self.scene("user_passes"), ["--budget-spp", 12, "--first-pass", 4, "--quality", "draft", "--bpy"]
+        before = sorted(path.name for path in self.folder.iterdir())
+        done = self.driver("adaptive.py", scene, "-o", "new/lean.exr", *words, "--error-map", "maps/error.exr")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(len(done.stdout.splitlines()), 3, done.stdout)
+        self.assertRegex(done.stdout.splitlines()[0], "new/lean.exr: .*12 samples per pixel.*albedo, normal, depth")
+        self.assertEqual(sorted(path.name for path in self.folder.iterdir()), sorted([*before, "new", "maps"]))
+        self.assertEqual(os.listdir(self.folder / "new"), ["lean.exr"])
+        self.assertIn("relmse.Y", exr.names(self.folder / "maps" / "error.exr"))
+        types = channel_types(self.folder / "new" / "lean.exr")
+        layers = {name.rpartition(".")[0].partition(".")[2] for name in types}
+        self.assertEqual(layers, {"Combined", "Depth", "Object Index", "Diffuse Color"})
+        for layer, kind in (("Combined.R", "half"), ("Diffuse Color.G", "half"), ("Depth.Z", "float")):
+            self.assertEqual(types[f"ViewLayer.{layer}"], kind)
+        self.assertEqual(types["ViewLayer.Object Index.X"], "float")
+        spec = oiio.ImageInput.open(str(self.folder / "new" / "lean.exr")).spec()
+        self.assertEqual(spec.getattribute("compression"), "piz")  # as the file says
+
+        again = self.driver("adaptive.py", scene, "-o", "new/lean.exr", *words, "--resume")
+        self.assertEqual((again.returncode, again.stdout), (0, "new/lean.exr: finished already: skipped\n"))
+        more = self.driver("adaptive.py", scene, "-o", "new/lean.exr", *words, "--resume", "--quality", "standard")
+        self.assertEqual(more.returncode, 2, more.stderr)
+        self.assertIn("add --overwrite to render it again", more.stderr)
+        kept = self.driver("adaptive.py", scene, "-o", "new/lean.exr", *words, "--overwrite", "--keep-passes")
+        self.assertEqual(kept.returncode, 0, kept.stderr)
+        last = kept.stdout.splitlines()[-1]
+        self.assertRegex(
+            last, r"passes in new/lean.passes \(.* MB\): --resume continues .* `rm -r new/lean.passes` removes"
+        )
+        types = channel_types(self.folder / "new" / "lean.exr")
+        for layer in ("Combined A.R", "Combined Variance.R", "Denoising Albedo.R", "Sample Count.X"):
+            self.assertEqual(types[f"ViewLayer.{layer}"], "float")
+
+    def test_a_frame_that_fails_keeps_its_passes_and_says_so(self):
+        command = [sys.executable, ROOT / "pipelines" / "blender" / "adaptive.py", self.scene(), "-o", "o.exr", "--bpy"]
+        command += ["--budget-spp", "4000", "--first-pass", "8", "--quality", "draft"]
+        child = subprocess.Popen(
+            [*map(str, command)], cwd=self.folder, stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+        )
+        while not (self.folder / "o.passes" / "part_0a1.exr").exists():
+            self.assertIsNone(child.poll())
+            time.sleep(0.01)
+        child.terminate()
+        _, errors = child.communicate(timeout=60)
+        self.assertEqual((child.returncode, len(errors.splitlines())), (143, 1), errors)
+        self.assertRegex(errors, r"terminated; passes in o.passes \(.*--resume continues with them, `rm -r o.passes`")
+
+    def test_a_file_of_a_newer_blender_is_told(self):
+        for compress, kind in ((False, "plain"), (True, "compressed")):
+            scene = self.scene(kind)
+            done = self.driver(
+                "render_passes.py", scene, "-o", f"{compress}.exr", "--spp", 4, "--parts", 2, "--blender", BLENDER_3
+            )
+            self.assertEqual(done.returncode, 7, done.stderr)
+            self.assertIn("the file was saved by Blender 5.0, this is 3.4", done.stderr)
 
     def test_wrong_use_is_an_error_before_any_work(self):
         scene = self.folder / "none.blend"

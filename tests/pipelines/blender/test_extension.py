@@ -3,6 +3,7 @@
 import json
 import os
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
@@ -88,6 +89,10 @@ class Extension(unittest.TestCase):
         popup = bpy.context.window_manager.popmenu_begin__internal("test", icon="NONE")
         draw(popup)
         return str(popup.layout.introspect())
+
+    def shown_text(self):
+        """The labels of the panel, with their lines joined."""
+        return " ".join(re.findall(r"'draw_string': '([^']*)'", self.panel()))
 
     def panel(self):
         return self.drawn(lambda popup: bpy.types.POLYRECON_PT_render.draw(popup, bpy.context))
@@ -219,7 +224,7 @@ class Extension(unittest.TestCase):
         self.finish(job)
         self.assertEqual(job.state, "failed")
         self.assertIn("no.exr", job.error)
-        self.assertIn(job.error, self.panel())
+        self.assertIn(job.error, self.shown_text())
 
     def test_preferences_tell_what_they_find(self):
         draw = sys.modules[MODULE + ".preferences"].draw

@@ -16,6 +16,7 @@ import numpy as np
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3]))
 from pipelines.blender.renderer import BlenderRenderer
 from pipelines.common import exr
+from pipelines.common.command import Frame
 from pipelines.common.polyrecon_cli import Polyrecon
 from pipelines.common.progress import Progress
 from pipelines.loop import adaptive
@@ -55,7 +56,9 @@ def main():
             for seed in range(options.seeds):
                 renderer.offset = seed * 4096
                 passes = folder / f"p{seed}"
-                settings = adaptive.Settings(folder / "o.exr", passes, Budget(samples=options.spp), quality="draft")
+                settings = adaptive.Settings(
+                    Frame(None, passes, folder / "o.exr"), Budget(samples=options.spp), quality="draft"
+                )
                 result = adaptive.run(renderer, polyrecon, settings, Progress("none"))
                 adapted.append(picture(result.merged))
                 counts.append(exr.read(result.merged)["ViewLayer.Sample Count.X"])

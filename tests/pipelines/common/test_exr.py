@@ -47,7 +47,7 @@ class Files(unittest.TestCase):
             exr.read(self.folder / "gone.exr")
         self.assertEqual(caught.exception.code, ExitCode.MISSING)
         with self.assertRaisesRegex(DriverError, "such.exr") as caught:
-            exr.write(self.folder / "no" / "such.exr", {"R": np.zeros((1, 1))})
+            exr.write(broken / "such.exr", {"R": np.zeros((1, 1))})
         self.assertEqual(caught.exception.code, ExitCode.OUTPUT)
 
     def test_a_folder_that_is_not_utf8(self):

@@ -29,9 +29,15 @@ class Files(unittest.TestCase):
         self.assertEqual(caught.exception.code, ExitCode.OUTPUT)
         self.assertEqual(self.path.read_text(), "before")
 
-    def test_a_folder_that_is_missing_is_named(self):
-        with self.assertRaisesRegex(DriverError, "gone.*: No such file or directory"):
-            write_text(self.path.parent / "gone" / "a.json", "text")
+    def test_missing_folders_are_made(self):
+        write_text(self.path.parent / "gone" / "ö" / "a.json", "text")
+        self.assertEqual((self.path.parent / "gone" / "ö" / "a.json").read_text(), "text")
+
+    def test_a_folder_that_cannot_be_made_is_named(self):
+        self.path.write_text("a file")
+        with self.assertRaisesRegex(DriverError, "ä b.json/a.json: (Not a directory|File exists)") as caught:
+            write_text(self.path / "a.json", "text")
+        self.assertEqual(caught.exception.code, ExitCode.OUTPUT)
 
     def test_planted_links_are_replaced_and_not_followed(self):
         victim = self.path.with_name("victim")

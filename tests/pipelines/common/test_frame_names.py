@@ -82,8 +82,8 @@ class Driver:
     def close(self):
         self.closed = True
 
-    def visit(self, frame, output, passes, polyrecon, progress):
-        self.frames.append((frame, str(output), str(passes)))
+    def visit(self, frame, polyrecon, progress):
+        self.frames.append((frame.number, str(frame.output), str(frame.passes)))
 
 
 class EachFrame(unittest.TestCase):

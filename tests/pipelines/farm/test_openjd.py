@@ -17,8 +17,9 @@ POLYRECON = os.path.abspath(os.environ["POLYRECON"])
 OPENJD = Path(sysconfig.get_path("scripts")) / "openjd"
 
 
-def run(*words):
-    return subprocess.run([str(word) for word in words], capture_output=True, text=True)
+def run(*words, **environment):
+    words, environment = [str(word) for word in words], {**os.environ, **environment}
+    return subprocess.run(words, capture_output=True, text=True, env=environment)
 
 
 class Template(unittest.TestCase):
@@ -65,6 +66,34 @@ class Template(unittest.TestCase):
         self.assertTrue(all(0 <= percent <= 100 for percent in percents))
         self.assertIn("openjd_status: frame 1 (1 of 2)", done.stdout)
 
+    def test_the_default_names_of_the_programs_are_found_on_the_path(self):
+        """A worker has both commands on its PATH."""
+        programs, outputs = self.folder / "bin", self.folder / "new" / "out"
+        programs.mkdir()
+        outputs.mkdir(parents=True)
+        (programs / "polyrecon").symlink_to(POLYRECON)
+        command = programs / "polyrecon-farm"
+        command.write_text(f'#!/bin/sh\nexec {sys.executable} -B {FARM / "farm.py"} "$@"\n')
+        command.chmod(0o755)
+        values = {"InputFolder": self.folder / "in", "OutputFolder": outputs, "Frames": "1-3", "Quality": "draft"}
+        words = [word for name, value in values.items() for word in ("-p", f"{name}={value}")]
+        path = f"{programs}:{os.environ['PATH']}"
+        run_words = [OPENJD, "run", FARM / "template.yaml", "--step", "Report", "--run-dependencies", *words]
+        done = run(*run_words, PATH=path, POLYRECON="")
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        self.assertIn("3 of 3 frames are finished", done.stdout)
+        self.assertEqual(sorted(os.listdir(outputs)), [f"shot.{frame:04d}.exr" for frame in (1, 2, 3)])
+
+        # A bundle that was made with these programs runs with them, too.
+        words = ["-i", self.folder / "in/shot.####.exr", "-o", outputs / "shot.####.exr", "--frames", "1-3"]
+        done = run(command, "openjd", *words, "--bundle", self.folder / "new bundle", PATH=path, POLYRECON="")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn(f"({programs / 'polyrecon'})", done.stdout)
+        values = yaml.safe_load((self.folder / "new bundle" / "parameter_values.yaml").read_text())["parameterValues"]
+        given = {value["name"]: value["value"] for value in values}
+        self.assertNotIn("Polyrecon", given)
+        self.assertEqual(given["PolyreconFarm"], str(FARM / "farm.py"))  # of this checkout
+
     def test_a_broken_frame_fails_its_task_and_no_other(self):
         broken = self.folder / "in/shot.0003.exr"
         broken.write_bytes(broken.read_bytes()[:-1])
@@ -89,7 +118,7 @@ class Template(unittest.TestCase):
         given = {value["name"]: value["value"] for value in values}
         self.assertEqual((given["Frames"], given["Quality"], given["Threads"]), ("1,3,5", "draft", 1))
         # parameter_values.yaml is for Deadline Cloud; openjd takes the same values by name.
-        given.update(Polyrecon=POLYRECON, PolyreconFarm=FARM / "farm.py")
+        self.assertEqual(given["Polyrecon"], POLYRECON)
         done = run(
             OPENJD,
             "run",

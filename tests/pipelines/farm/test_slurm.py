@@ -28,6 +28,27 @@ def identities(folder):
     return {path.name: (path.stat().st_ino, path.stat().st_mtime_ns) for path in Path(folder).glob("shot.*.exr")}
 
 
+class DryRun(unittest.TestCase):
+    """Without Slurm."""
+
+    def submit(self, folder, *more):
+        make_shot(folder, [1, 2])
+        command = [sys.executable, ROOT / "pipelines/farm/slurm.py", "submit", "-i", f"{folder}/shot.####.exr"]
+        command += ["-o", f"{folder}/new/shot.####.exr", "--frames", "1-2", "--polyrecon", POLYRECON, *more]
+        return subprocess.run(command, capture_output=True, text=True, env={**os.environ, "PATH": "/nowhere"})
+
+    def test_it_works_where_there_is_no_slurm(self):
+        with tempfile.TemporaryDirectory() as folder:
+            done = self.submit(folder, "--dry-run")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertIn(f"({POLYRECON})", done.stdout)
+            self.assertIn("no Slurm on this machine", done.stdout)
+            self.assertRegex(done.stdout, "sbatch .*--array=0-0 .*--cpus-per-task=1 --mem=[0-9]+M")
+            self.assertEqual(sorted(os.listdir(folder)), ["shot.0001.exr", "shot.0002.exr"])
+            done = self.submit(folder)
+            self.assertEqual((done.returncode, len(done.stderr.splitlines())), (4, 1), done.stderr)
+
+
 @unittest.skipUnless(can_run(), "starting Slurm needs root and process namespaces")
 class Slurm(unittest.TestCase):
     """A cluster of two nodes and a shot in a folder with an awkward name (case 33), for all tests."""
@@ -131,7 +152,7 @@ class Slurm(unittest.TestCase):
         running = self.submit("--dry-run", "--sbatch=--comment=a b", "--", "--quality", "best")
         code, output = self.finish(running)
         self.assertEqual(code, 0, output)
-        array = output.splitlines()[1]
+        array = output.splitlines()[2]
         self.assertIn("'--comment=a b'", array)
         self.assertIn("--requeue", array)
         self.assertIn("--cpus-per-task=1", array)

@@ -12,8 +12,8 @@ from pipelines.common import exr
 def check_killed_and_resumed(test, command, folder, environment=None):
     """A run that is killed between the parts of a round and then continued has the bits of a run that was not.
 
-    test: a unittest.TestCase. command(output): the words that start the driver on `output`, with a budget of samples
-    that is enough for a round. folder: an empty one."""
+    test: a unittest.TestCase. command(output): the words that start the driver on `output`, with --keep-passes and a
+    budget of samples that is enough for a round. folder: an empty one."""
     whole, broken = folder / "whole.exr", folder / "broken.exr"
     _run(test, command(whole), environment)
     _run_until(test, command(broken), environment, _passes(broken) / "part_1a0.exr")

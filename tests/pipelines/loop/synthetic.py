@@ -7,6 +7,7 @@ import sys
 import numpy as np
 
 from pipelines.common import exr
+from pipelines.common.command import Frame
 from pipelines.common.digests import digest
 from pipelines.common.errors import run_main
 from pipelines.common.polyrecon_cli import Polyrecon
@@ -70,14 +71,12 @@ def loop(
 ):
     folder = pathlib.Path(folder)
     settings = adaptive.Settings(
-        folder / "out.exr",
-        folder / "passes",
+        Frame(frame, folder / "passes", folder / "out.exr"),
         budget,
         resume=resume,
         quality=quality,
         max_rounds=max_rounds,
         scene=str(scene) if scene else None,
-        frame=frame,
     )
     renderer = renderer or SyntheticRenderer(seed=seed, **size)
     return renderer, adaptive.run(renderer, Polyrecon(), settings, Progress(style))

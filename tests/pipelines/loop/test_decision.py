@@ -31,8 +31,8 @@ class Seconds(unittest.TestCase):
 
     def test_the_result_is_kept_in_reserve(self):
         state = State({}, parts=[part(8, 4.0), part(8, 4.0)])
-        spent = decision.what_is_spent(state, 20.0, 3.0, "standard", 1.5)
-        self.assertAlmostEqual(spent.result_seconds, 3.0 * (1.9 + 1.5))
+        spent = decision.what_is_spent(state, 20.0, 3.0, 3.4)
+        self.assertAlmostEqual(spent.result_seconds, 3.0 * 3.4)
         self.assertAlmostEqual(spent.seconds_per_sample, 0.5 * decision.MASKED_OVER_UNIFORM)
         self.assertEqual((spent.samples, spent.cost_weighted_samples), (16, 16))
 

@@ -2,6 +2,7 @@ import tempfile
 import unittest
 from pathlib import Path
 
+from pipelines.common.command import Frame
 from pipelines.common.errors import DriverError, ExitCode
 from pipelines.common.polyrecon_cli import Polyrecon
 from pipelines.loop import report
@@ -22,13 +23,27 @@ class Report(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             budget = Budget(samples=8)
             _, result = loop(folder, budget)
-            settings = Settings(Path(folder, "out.exr"), Path(folder, "passes"), budget)
+            settings = Settings(Frame(None, Path(folder, "passes"), Path(folder, "out.exr")), budget)
+            pages = [Path(folder, "pages", "a.html"), Path(folder, "b.html")]
             for polyrecon, pictures in ((Polyrecon(), 2), (WithoutPreview(), 0)):
-                page = report.write(result, settings, polyrecon)
-                self.assertEqual(page.read_text(encoding="utf-8").count("<img"), pictures)
+                report.write(result, settings, polyrecon, pages)
+                for page in pages:
+                    self.assertEqual(page.read_text(encoding="utf-8").count("<img"), pictures)
             note = "the report has no pictures: polyrecon preview: no library for pictures"
-            self.assertIn(f"<p>{note}</p>", page.read_text(encoding="utf-8"))
-            self.assertIn(f"  {note}", report.lines(result, settings, page))
+            self.assertIn(f"<p>{note}</p>", pages[0].read_text(encoding="utf-8"))
+            self.assertIn(note, result.audit.notes)
+
+    def test_a_frame_ends_in_three_lines(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for budget, more in ((Budget(samples=16), "--budget-spp 40"), (Budget(target=0.02), "--target 0.01")):
+                _, result = loop(Path(folder, str(budget)), budget)
+                settings = Settings(Frame(7, Path(folder, "passes"), Path(folder, "out.exr")), budget)
+                read, done, better = report.lines(result, settings, verbose=False)
+                self.assertIn(f"out.exr: frame 7, 96 x 64, synthetic, {result.samples:.3g} samples per pixel", read)
+                self.assertIn(f"relative MSE {result.noise:.3g} before, {result.error:.3g} estimated after", done)
+                self.assertLess(result.error, result.noise)
+                self.assertIn(f"{more} halves the error", better)
+                self.assertGreater(len(report.lines(result, settings, verbose=True)), 4)
 
 
 if __name__ == "__main__":

@@ -20,7 +20,7 @@ DRIVER = pathlib.Path(__file__).parents[3] / "pipelines" / "povray" / "adaptive.
 
 class Adaptive(InFolder):
     def command(self, *words):
-        return [sys.executable, "-B", DRIVER, "ball.pov", "-o", "ball.exr", *words, "--", *SIZE]
+        return [sys.executable, "-B", DRIVER, "ball.pov", "-o", "ball.exr", "--keep-passes", *words, "--", *SIZE]
 
     def run_driver(self, *words, code=0):
         done = subprocess.run(self.command(*words), capture_output=True, text=True)
@@ -36,9 +36,10 @@ class Adaptive(InFolder):
         killed.send_signal(signal.SIGTERM)
         self.assertEqual(killed.wait(20), 143)
         self.assertFalse(pathlib.Path("ball.exr").exists())
-        self.run_driver("--budget-spp", "48", code=2)  # Passes of an earlier run are not overwritten without --resume.
+        done = self.run_driver("--budget-spp", "48", code=2)
+        self.assertIn("ball.passes/journal.json: passes of an earlier run", done.stderr)
         said = self.run_driver("--budget-spp", "48", "--resume").stdout
-        self.assertIn("report:", said)
+        self.assertIn("passes in ball.passes (", said)
 
         journal = json.loads(pathlib.Path("ball.passes/journal.json").read_text())
         # A pass is never empty, so the last one may exceed the budget by a row.

@@ -24,7 +24,7 @@ class RenderPasses(InFolder):
     def test_a_noisy_scene(self):
         scene = self.scene(HEAD % 1 + CAMERA + BALL + NOISY_LAMP, "ba'll ü.pov")
         before = scene.stat()
-        said = self.run_driver(scene, "-o", "merged.exr", "--", *SIZE).stdout
+        said = self.run_driver(scene, "-o", "merged.exr", "-v", "--", *SIZE).stdout
         self.assertIn("yes more subpixels", said)
         self.assertEqual(
             (scene.stat().st_mtime_ns, sorted(os.listdir())), (before.st_mtime_ns, [scene.name, "merged.exr"])
@@ -63,8 +63,9 @@ class RenderPasses(InFolder):
 
     def test_a_scene_without_noise_is_left_at_the_first_pass_and_as_it_is(self):
         scene = self.scene(HEAD % 1 + CAMERA + BALL + LAMP)
-        said = self.run_driver(scene, "-o", "merged.exr", "--subpixels", "8", "--", *SIZE).stdout
+        said = self.run_driver(scene, "-o", "new/folder/merged.exr", "--subpixels", "8", "-v", "--", *SIZE).stdout
         self.assertIn("no  more subpixels", said)
+        pathlib.Path("new/folder/merged.exr").rename("merged.exr")
         merged = exr.read("merged.exr")
         self.assertEqual(set(np.unique(merged["Sample Count.X"])), {4})
         Polyrecon().run("denoise", "-i", "merged.exr", "-o", "clean.exr", "--quiet")
@@ -76,7 +77,8 @@ class RenderPasses(InFolder):
         scene = self.scene(HEAD % 1 + CAMERA + BALL + LAMP)
         self.run_driver(scene, "-o", "m.exr", "--camera", "1,2", code=2)
         self.run_driver(scene, "-o", "m.exr", "--subpixels", "1", code=2)
-        self.run_driver(scene, "-o", "none/m.exr", "--", *SIZE, code=5)
+        self.run_driver(scene, "-o", "scene.pov/m.exr", "--", *SIZE, code=5)
+        self.assertIn("did you mean --subpixels?", self.run_driver(scene, "-o", "m.exr", "--supixels=3", code=2).stderr)
         self.run_driver("none.pov", "-o", "m.exr", code=4)
         self.assertEqual(os.listdir(), ["scene.pov"])
 
