@@ -8,6 +8,7 @@ from . import tree
 PATTERNS = {
     "CMakeLists.txt": r"project\(polyrecon VERSION ([\d.]+)",
     "pyproject.toml": r'^version = "([\d.]+)"',
+    "pipelines/common/version.py": r'^VERSION = "([\d.]+)"',
     "pipelines/blender/extension/blender_manifest.toml": r'^version = "([\d.]+)"',
     "src/package/changelog": r"\Apolyrecon \(([\d.]+)\)",
 }
