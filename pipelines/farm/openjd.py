@@ -22,6 +22,7 @@ from ..common.terminal import print_lines
 from .requirements import MIB, Node, chunk_for, threads_for
 from .submission import (
     add_job_options,
+    check_options,
     first_frame,
     limit_of,
     parse_words,
@@ -89,6 +90,7 @@ def programs_of(options, polyrecon):
 def write_bundle(options):
     frames = parse_ranges(options.frames)
     polyrecon = Polyrecon(options.polyrecon)
+    check_options(polyrecon, options, frames)
     frame = first_frame(options, frames, polyrecon)
     request = request_of(options, frame)
     worker = Node(options.worker_cpus, options.worker_memory)

@@ -29,6 +29,7 @@ from .job import JOB_FILE, REPORT_FILE, Job
 from .requirements import MIB, Node, chunk_for, threads_for
 from .submission import (
     add_job_options,
+    check_options,
     first_frame,
     limit_of,
     parse_words,
@@ -70,9 +71,9 @@ def slurm(*words):
     return output
 
 
-def is_here():
-    """Whether this machine has Slurm's commands."""
-    return shutil.which("sinfo") is not None
+def answers():
+    """Whether this machine is one of a cluster whose controller answers."""
+    return shutil.which("scontrol") is not None and process.run(["scontrol", "show", "config"], timeout=120)[0] == 0
 
 
 def nodes_of(partition):
@@ -94,13 +95,14 @@ def max_tasks():
 
 
 def job_of(options):
-    """The job, and the bytes to request for a task; 0 if the cluster does not manage memory. Without Slurm, which a dry
-    run does not need, nothing is known about the nodes."""
+    """The job, the bytes to request for a task (0 if the cluster does not manage memory), and lines about program and
+    cluster. Without Slurm, which a dry run does not need, nothing is known about the nodes."""
     frames = parse_ranges(options.frames)
     polyrecon = Polyrecon(options.polyrecon)
+    check_options(polyrecon, options, frames)
     frame = first_frame(options, frames, polyrecon)
     request = request_of(options, frame)
-    known = is_here() or not options.dry_run
+    known = not options.dry_run or answers()
     nodes = nodes_of(options.partition) if known else ()
     threads = options.threads or threads_for(request, nodes)
     chunk = options.chunk
@@ -118,10 +120,10 @@ def job_of(options):
         memory=limit_of(options, request),
         request=request,
     )
-    print_lines(polyrecon.describe())
+    about = [polyrecon.describe()]
     if not known:
-        print_lines("no Slurm on this machine: threads, memory and tasks are those for nodes that are not known")
-    return job, request if not known or any(node.memory for node in nodes) else 0
+        about.append("no Slurm answers here: threads, memory and tasks are those for nodes that are not known")
+    return job, request if not known or any(node.memory for node in nodes) else 0, about
 
 
 def common_words(options, job_name, folder, log):
@@ -206,13 +208,13 @@ def describe(job, request):
 
 
 def submit(options):
-    job, request = job_of(options)
+    job, request, about = job_of(options)
     name = options.name or re.sub(r"\W+", "_", pathlib.Path(options.input).name.split("#")[0].split("%")[0]).strip("_")
     name = name or "polyrecon"
     if "/" in name or name in (".", ".."):
         raise DriverError(ExitCode.USAGE, f"--name {name}: is the name of a folder, too: give one without /")
     folder = job_folder(options, name, job)
-    print_lines(describe(job, request))
+    print_lines(*about, describe(job, request))
     if options.dry_run:
         print_lines(shlex.join(array_words(options, job, request, name, folder)))
         print_lines(shlex.join(report_words(options, job, request, name, folder, "ARRAY")))

@@ -5,6 +5,7 @@ import json
 import os
 import re
 
+from ..common import process
 from ..common.arguments import add_program
 from ..common.denoise_defaults import DEFAULT_FRAME_RADIUS, DEFAULT_QUALITY
 from ..common.errors import DriverError, ExitCode
@@ -68,6 +69,16 @@ def parse_words(parser, words):
     options = parser.parse_args(words[:at])
     options.options = words[at + 1 :]
     return options
+
+
+def check_options(polyrecon, options, frames):
+    """Lets the program check the options of `polyrecon denoise`, so that no task fails because of them. No render needs
+    to exist."""
+    words = ["denoise", "-i", options.input, "-o", options.output, "--frames", str(frames[0]), "--skip-existing"]
+    code, _, errors = process.run([polyrecon.program, *words, *options.options, "--dry-run"])
+    if code == ExitCode.USAGE:
+        line = (process.lines_of(errors) or [f"ended with code {code}"])[-1].removeprefix("polyrecon: ")
+        raise DriverError(ExitCode.USAGE, f"options of polyrecon denoise: {line}")
 
 
 def value_of(option, words, default):

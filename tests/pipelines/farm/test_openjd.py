@@ -94,6 +94,15 @@ class Template(unittest.TestCase):
         self.assertNotIn("Polyrecon", given)
         self.assertEqual(given["PolyreconFarm"], str(FARM / "farm.py"))  # of this checkout
 
+    def test_options_are_checked_before_a_bundle_is_written(self):
+        words = ["-i", self.folder / "in/shot.####.exr", "-o", self.folder / "o.####.exr", "--frames", "1-3"]
+        words += ["--bundle", self.folder / "bundle", "--polyrecon", POLYRECON]
+        for options in (["--qualty", "best"], ["--quality", "bst"]):
+            done = run(sys.executable, FARM / "farm.py", "openjd", *words, "--", *options)
+            self.assertEqual((done.returncode, len(done.stderr.splitlines())), (2, 1), done.stderr)
+            self.assertIn(options[-1] if options[0] == "--quality" else options[0], done.stderr)
+            self.assertFalse((self.folder / "bundle").exists())
+
     def test_a_broken_frame_fails_its_task_and_no_other(self):
         broken = self.folder / "in/shot.0003.exr"
         broken.write_bytes(broken.read_bytes()[:-1])

@@ -31,22 +31,31 @@ def identities(folder):
 class DryRun(unittest.TestCase):
     """Without Slurm."""
 
-    def submit(self, folder, *more):
+    def submit(self, folder, *more, path="/nowhere"):
         make_shot(folder, [1, 2])
         command = [sys.executable, ROOT / "pipelines/farm/slurm.py", "submit", "-i", f"{folder}/shot.####.exr"]
         command += ["-o", f"{folder}/new/shot.####.exr", "--frames", "1-2", "--polyrecon", POLYRECON, *more]
-        return subprocess.run(command, capture_output=True, text=True, env={**os.environ, "PATH": "/nowhere"})
+        return subprocess.run(command, capture_output=True, text=True, env={**os.environ, "PATH": path})
 
     def test_it_works_where_there_is_no_slurm(self):
         with tempfile.TemporaryDirectory() as folder:
             done = self.submit(folder, "--dry-run")
             self.assertEqual(done.returncode, 0, done.stderr)
             self.assertIn(f"({POLYRECON})", done.stdout)
-            self.assertIn("no Slurm on this machine", done.stdout)
+            self.assertIn("no Slurm answers here", done.stdout)
             self.assertRegex(done.stdout, "sbatch .*--array=0-0 .*--cpus-per-task=1 --mem=[0-9]+M")
             self.assertEqual(sorted(os.listdir(folder)), ["shot.0001.exr", "shot.0002.exr"])
+            # Slurm's commands are there, and no controller.
+            done = self.submit(folder, "--dry-run", path=os.environ["PATH"])
+            self.assertIn("no Slurm answers here", done.stdout, done.stderr)
             done = self.submit(folder)
             self.assertEqual((done.returncode, len(done.stderr.splitlines())), (4, 1), done.stderr)
+
+    def test_options_are_checked_before_anything_is_submitted(self):
+        with tempfile.TemporaryDirectory() as folder:
+            done = self.submit(folder, "--dry-run", "--", "--qualty", "best")
+            self.assertEqual((done.returncode, len(done.stderr.splitlines())), (2, 1), done.stderr)
+            self.assertIn("--qualty", done.stderr)
 
 
 @unittest.skipUnless(can_run(), "starting Slurm needs root and process namespaces")
