@@ -25,7 +25,8 @@ CONVERGENCE_RATE = 0.75
 # Seconds of the last merge, the last reconstruction and the report over the seconds of a decision, for each --quality.
 # By hand, 2026-11-28. To check: seconds after the last part of a run over decision_seconds in its journal.json.
 RESULT_OVER_DECISION = {"draft": 0.8, "standard": 1.9, "best": 4.4}
-PRIOR_OVER_DECISION = {"draft": 1.0, "standard": 3.0, "best": 5.0}  # seconds of --with-prior, the same way
+# The same of --with-prior (docs/lab/2026-12-01-prior-in-the-loop.md).
+PRIOR_OVER_DECISION = {"draft": 1.1, "standard": 2.0, "best": 2.0}
 
 SAMPLES_SPENT, SECONDS_SPENT = "the samples are spent", "the seconds are spent"
 
