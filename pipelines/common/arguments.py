@@ -47,7 +47,7 @@ class Parser(argparse.ArgumentParser):
 
 
 def typed_name(program):
-    """What the user typed to start the command: its name where it is installed, the script in a checkout."""
+    """The words that start the command: its name where it is installed, the script in a checkout."""
     first, *sub_command = program.split()
     script = sys.argv[0]
     if os.path.basename(script) == first or not script.endswith(".py"):

@@ -8,7 +8,7 @@ import sys
 from .errors import ExitCode
 from .terminal import print_lines
 
-# What the modules are called: by pip, by Debian.
+# Names of the modules: for pip, for Debian.
 _PACKAGES = {
     "jinja2": ("jinja2", "python3-jinja2"),
     "numpy": ("numpy", "python3-numpy"),
@@ -31,7 +31,7 @@ def required(program, names):
 
 
 def advice(missing):
-    """What to do about missing modules, on one line."""
+    """Advice about missing modules, on one line."""
     pip, debian = (" ".join(names) for names in zip(*(_PACKAGES[name] for name in missing)))
     plural = "s" if len(missing) > 1 else ""
     commands = f"{os.path.abspath(sys.executable)} -m pip install {pip} (Debian: apt-get install {debian})"

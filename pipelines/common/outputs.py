@@ -11,7 +11,7 @@ from .errors import DriverError, ExitCode
 from .files import replacing
 
 HINTS = {".exr": "`polyrecon preview` makes pictures to look at", ".html": "the report is a page"}
-# What OpenEXR offers, in OpenImageIO's words.
+# The compressions of OpenEXR, in OpenImageIO's words.
 COMPRESSIONS = ("none", "rle", "zips", "zip", "piz", "pxr24", "b44", "b44a", "dwaa", "dwab")
 DEFAULT_DWA_LEVEL = 45.0  # OpenEXR's
 WITH_LEVEL = ("dwaa", "dwab")

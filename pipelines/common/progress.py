@@ -9,7 +9,7 @@ from .terminal import print_lines
 
 STYLES = ("auto", "bar", "json", "none")
 LOG_SECONDS = 60  # Least time between two lines of a log
-MIN_SHARE = 0.02  # Of the run: before that the remaining time cannot be told.
+MIN_SHARE = 0.02  # Share of the run before which the remaining time is unknown
 
 
 class Progress:

@@ -58,14 +58,14 @@ class Settings:
     resume: bool = False
     with_prior: bool = False  # Whether Open Image Denoise gives a second opinion
     keep_passes: bool = False  # Whether the picture has the channels that only the reconstruction needs
-    compression: Optional[str] = None  # Of the picture, in OpenImageIO's words; None: the scene's
+    compression: Optional[str] = None  # The picture's, in OpenImageIO's words; None: the scene's
     dwa_level: float = DEFAULT_DWA_LEVEL
-    identity: dict = dataclasses.field(default_factory=dict)  # Of the scene: see journal.State
+    identity: dict = dataclasses.field(default_factory=dict)  # Digests of the scene: see journal.State
     scene: Optional[str] = None  # Path of the input that is compared where the renderer lists none
 
     @property
     def passes_identity(self):
-        """What the passes show. Other passes cannot be added to them."""
+        """Identity of the render passes. Passes of another identity cannot be added to them."""
         return {**self.identity, "frame": self.files.number, "first_pass": self.first_pass}
 
     def digest(self):

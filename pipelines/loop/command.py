@@ -129,7 +129,7 @@ def one_frame(settings, verbose, renderer, polyrecon, progress, tell):
 
 
 def passes_text(folder):
-    """Where the passes are, how large they are, what they are good for, and how to remove them."""
+    """The place, size and use of the render passes, and how to remove them."""
     words = ["rm", "-r", *(["--"] if str(folder.path).startswith("-") else []), str(folder.path)]
     size = outputs.size_text(folder.size)
     return f"passes in {folder.path} ({size}): --resume continues with them, `{shlex.join(words)}` removes them"

@@ -147,7 +147,7 @@ class Job:
 
 
 def _advice_of(report):
-    """What a report says about missing passes; passes that are switched on at one place stand together."""
+    """The advice of a report about missing passes; passes that are switched on at one place stand together."""
     if report is None:
         return []
     with open(report, encoding="utf-8") as file:
