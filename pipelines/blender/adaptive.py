@@ -49,7 +49,12 @@ def work(words):
     command.run_frames(
         options,
         renderer_of(options, options.method),
-        {"renderer": "Blender", "scene": str(options.scene.resolve()), "visibility": options.visibility},
+        {
+            "renderer": "Blender",
+            "scene": str(options.scene.resolve()),
+            "visibility": options.visibility,
+            "view_layer": options.view_layer,
+        },
     )
 
 

@@ -13,6 +13,9 @@ def add_common(parser):
     parser.add_argument("scene", type=pathlib.Path, metavar="SCENE.blend", help="the scene; it is never changed")
     add_frame_arguments(parser)
     parser.add_argument(
+        "--view-layer", metavar="NAME", help="view layer to render (default: the first that is switched on)"
+    )
+    parser.add_argument(
         "--visibility",
         choices=("shadow", "ambient-occlusion", "none"),
         default="none",
@@ -31,4 +34,4 @@ def renderer_of(options, method="auto"):
     if not options.scene.is_file():
         raise DriverError(ExitCode.MISSING, f"{options.scene}: no such file")
     visibility = None if options.visibility == "none" else options.visibility
-    return BlenderRenderer(options.scene, options.blender, method, visibility, options.pass_timeout)
+    return BlenderRenderer(options.scene, options.blender, method, visibility, options.pass_timeout, options.view_layer)

@@ -39,12 +39,14 @@ class BlenderRenderer(Renderer):
 
     method       The way of extra samples: 'osl' (a camera with a mask, Blender 5 or later), 'regions' (rectangles), or
                  'auto'.
-    visibility   The pass for that feature: 'shadow', 'ambient-occlusion' or None."""
+    visibility   The pass for that feature: 'shadow', 'ambient-occlusion' or None.
+    view_layer   The name of the view layer; None: the first that is switched on."""
 
-    def __init__(self, scene, blender=None, method="auto", visibility=None, timeout=3600.0):
+    def __init__(self, scene, blender=None, method="auto", visibility=None, timeout=3600.0, view_layer=None):
         self.scene = pathlib.Path(scene).absolute()
         self.method = method
         self.visibility = visibility
+        self.view_layer = view_layer
         self.session = BlenderSession(blender, timeout)
         self.inputs = SceneInputs()
         self.overhead_seconds = OVERHEAD_SECONDS
@@ -74,6 +76,7 @@ class BlenderRenderer(Renderer):
             path=str(self.scene),
             frame=self.frame,
             visibility=self.visibility,
+            view_layer=self.view_layer,
             mask_camera=self.method != "regions",
             cache_folder=None if self.session.not_confined else str(self.session.new_folder()),
         )
@@ -93,6 +96,8 @@ class BlenderRenderer(Renderer):
             notes.append(
                 "Python drivers of the file are not run; the properties that they drive keep their saved values"
             )
+        if found["path_guiding"]:
+            notes.append("path guiding learns anew in every render pass, so it helps less than in one long render")
         if self.session.not_confined:
             notes.append(f"Blender can write where the file says: {self.session.not_confined}")
         method = "masks by a camera shader" if self.masked else f"rectangles, because {found['no_mask_camera']}"

@@ -119,8 +119,10 @@ def _emits_texture(node):
     return bool(socket and socket.is_linked)
 
 
-def switch_off(scene, view_layer):
-    """Switches off what would spoil the samples or cannot change them; returns the arguments of the loop's Switch."""
+def switch_off(scene, view_layer, is_chosen):
+    """Switches off what would spoil the samples or cannot change them; returns the arguments of the loop's Switch.
+
+    is_chosen: whether the user named the view layer, and knows that others are left out."""
     switches = []
 
     def switch(owner, name, value, effect, reason, saves="", changes_picture=False):
@@ -166,6 +168,6 @@ def switch_off(scene, view_layer):
         )
     for layer in scene.view_layers:
         if layer != view_layer:
-            reason = f"{view_layer.name} is rendered"
-            switch(layer, "use", False, f"view layer {layer.name}", reason, changes_picture=True)
+            reason = f"{view_layer.name} is rendered; --view-layer renders another"
+            switch(layer, "use", False, f"view layer {layer.name}", reason, changes_picture=not is_chosen)
     return switches

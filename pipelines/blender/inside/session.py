@@ -36,12 +36,12 @@ class Session:
     def __init__(self):
         self.scene = self.view_layer = self.mask_camera = None
 
-    def open(self, path, frame, visibility, mask_camera, cache_folder):
+    def open(self, path, frame, visibility, view_layer, mask_camera, cache_folder):
         """Opens the file, if it is not open, at a frame, sets it up, and returns what it is. Nothing is ever saved.
 
         cache_folder: where simulations write; None if they cannot be kept from writing elsewhere."""
         if self.scene is None:
-            self.load(path, visibility, cache_folder)
+            self.load(path, visibility, view_layer, cache_folder)
         scene = self.scene
         self.go_to(self.file_frame if frame is None else frame)
         if scene.camera is None:
@@ -64,13 +64,14 @@ class Session:
             "user_passes": [name for _, name in self.user_passes if name != "use_pass_combined"],
             "no_mask_camera": reason,
             "denoising_data": self.denoising_data,
+            "path_guiding": bool(getattr(scene.cycles, "use_guiding", False)),
             "output": self.output,
             "sequence": self.sequence,
             "filter_overhang": camera.filter_overhang(scene),
             "files": self.files,
         }
 
-    def load(self, path, visibility, cache_folder):
+    def load(self, path, visibility, view_layer, cache_folder):
         try:
             bpy.ops.wm.open_mainfile(filepath=path, load_ui=False, use_scripts=False)
         except RuntimeError as error:
@@ -85,15 +86,25 @@ class Session:
         if scene.render.engine != "CYCLES":
             raise RuntimeError(f"the scene's renderer is {scene.render.engine}, not Cycles")
         self.file_frame, self.file_seed = scene.frame_current, scene.cycles.seed
-        self.view_layer = next((layer for layer in scene.view_layers if layer.use), scene.view_layers[0])
+        self.view_layer = self.choose_view_layer(view_layer)
         self.effects = audit.effects(scene, self.view_layer)
-        self.switches = audit.switch_off(scene, self.view_layer)
+        self.switches = audit.switch_off(scene, self.view_layer, is_chosen=view_layer is not None)
         self.output = self.output_of(scene.render.image_settings)
         self.choose_output(scene.render)
         self.user_passes = self.passes_on()
         self.denoising_data = bool(self.view_layer.cycles.denoising_store_passes)
         self.choose_passes(visibility)
         scene.render.use_persistent_data = True
+
+    def choose_view_layer(self, name):
+        """The view layer of this name; without one, the first that is switched on."""
+        layers = self.scene.view_layers
+        if name is None:
+            return next((layer for layer in layers if layer.use), layers[0])
+        if name not in layers:
+            raise RuntimeError(f"the scene has no view layer {name!r}; it has {', '.join(map(repr, layers.keys()))}")
+        layers[name].use = True
+        return layers[name]
 
     def go_to(self, frame):
         """Evaluates the scene at a frame. If the seed is animated, each render resets it; then there is one sequence

@@ -222,6 +222,16 @@ def user_passes(scene):
     settings.file_format, settings.color_depth, settings.exr_codec = "OPEN_EXR_MULTILAYER", "16", "PIZ"
 
 
+def view_layers(scene):
+    """Two view layers over nothing; the second has another material."""
+    scene.render.film_transparent = True
+    scene.view_layers[0].name = "near"
+    layer = scene.view_layers.new("far")
+    layer.material_override = bpy.data.materials.new("grey")
+    if hasattr(scene.cycles, "use_guiding"):
+        scene.cycles.use_guiding = True
+
+
 def compressed(scene):
     """Saved with compression."""
     bpy.context.preferences.filepaths.use_file_compression = True
@@ -229,6 +239,7 @@ def compressed(scene):
 
 MADE = (
     user_passes,
+    view_layers,
     compressed,
     lens,
     depth_of_field,

@@ -192,6 +192,31 @@ class Adaptive(SceneTest):
         for layer in ("Combined A.R", "Combined Variance.R", "Denoising Albedo.R", "Sample Count.X"):
             self.assertEqual(types[f"ViewLayer.{layer}"], "float")
 
+    def test_view_layers_and_transparent_film(self):
+        scene, words = self.scene("view_layers"), ["--budget-spp", 16, "--first-pass", 4, "--quality", "draft", "--bpy"]
+        pictures = {}
+        for name, *more in (("near",), ("far", "--view-layer", "far")):
+            done = self.driver("adaptive.py", scene, "-o", f"{name}.exr", *words, *more)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            said = done.stdout.splitlines()
+            note = "note: view layer far off: near is rendered; --view-layer renders another"
+            self.assertEqual(note in said, name == "near")
+            self.assertLess(
+                said.index(next(line for line in said if "path guiding learns anew" in line)), len(said) - 3
+            )
+            pictures[name] = exr.read(self.folder / f"{name}.exr")
+        self.assertEqual(set(pictures["near"]), {f"near.Combined.{c}" for c in "RGBA"})
+        self.assertGreater(np.abs(pictures["near"]["near.Combined.R"] - pictures["far"]["far.Combined.R"]).max(), 0.05)
+        # Alpha is that of an ordinary render, whatever samples the pixels got.
+        done = self.driver("render_passes.py", scene, "-o", "even.exr", "--spp", 64, "--bpy")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        even, alpha = (found["near.Combined.A"] for found in (exr.read(self.folder / "even.exr"), pictures["near"]))
+        self.assertEqual((alpha.min(), alpha.max()), (0, 1))
+        self.assertLess(np.abs(even - alpha).mean(), 0.01)
+        done = self.driver("adaptive.py", scene, "-o", "no.exr", *words, "--view-layer", "nowhere")
+        self.assertEqual(done.returncode, 7, done.stderr)
+        self.assertIn("no view layer 'nowhere'; it has 'near', 'far'", done.stderr)
+
     def test_a_frame_that_fails_keeps_its_passes_and_says_so(self):
         command = [sys.executable, ROOT / "pipelines" / "blender" / "adaptive.py", self.scene(), "-o", "o.exr", "--bpy"]
         command += ["--budget-spp", "4000", "--first-pass", "8", "--quality", "draft"]
