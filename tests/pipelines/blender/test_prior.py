@@ -8,6 +8,7 @@ import numpy as np
 from pipelines.common import exr
 from tests.bench.relmse import relative_squares
 from tests.pipelines.blender.support import SceneTest
+from tests.pipelines.oidn import NO_OIDN, OIDN
 
 SMALL = ("--first-pass", 4, "--quality", "draft", "--bpy")
 
@@ -18,7 +19,7 @@ def picture(path):
 
 
 class Prior(SceneTest):
-    @unittest.skipUnless(os.environ.get("POLYRECON_OIDN"), "Open Image Denoise is not installed")
+    @unittest.skipUnless(OIDN, NO_OIDN)
     def test_it_lowers_the_error_of_few_samples(self):
         scene = self.scene("caustic")
         for name, *words in (
@@ -26,7 +27,7 @@ class Prior(SceneTest):
             ("without.exr", "--budget-spp", 8),
             ("with.exr", "--budget-spp", 8, "--with-prior", "--keep-passes"),
         ):
-            done = self.driver("adaptive.py", scene, "-o", name, *SMALL, *words)
+            done = self.driver("adaptive.py", scene, "-o", name, *SMALL, *words, POLYRECON_OIDN=OIDN)
             self.assertEqual(done.returncode, 0, done.stderr)
         reference = picture(self.folder / "reference.exr")
         errors = {

@@ -1,10 +1,12 @@
 import json
 import os
 import pathlib
+import shutil
 import signal
 import subprocess
 import sys
 import time
+import unittest
 
 import numpy as np
 
@@ -12,6 +14,7 @@ from pipelines.common import exr
 from pipelines.povray.scene import Scene
 from pipelines.povray.subpixels import estimate
 from tests.bench.relmse import relative_squares
+from tests.pipelines.oidn import NO_OIDN, OIDN
 
 from .scenes import BALL, CAMERA, HEAD, NOISY_LAMP, SIZE, InFolder
 
@@ -23,7 +26,8 @@ class Adaptive(InFolder):
         return [sys.executable, "-B", DRIVER, "ball.pov", "-o", "ball.exr", "--keep-passes", *words, "--", *SIZE]
 
     def run_driver(self, *words, code=0):
-        done = subprocess.run(self.command(*words), capture_output=True, text=True)
+        environment = {**os.environ, "POLYRECON_OIDN": OIDN}
+        done = subprocess.run(self.command(*words), capture_output=True, text=True, env=environment)
         self.assertEqual(done.returncode, code, done.stderr)
         return done
 
@@ -72,6 +76,19 @@ class Adaptive(InFolder):
         said = self.run_driver("--budget-spp", "48").stdout
         self.assertIn("no error is left that more samples could lower", said)
         self.assertEqual(set(exr.read("ball.passes/merged.exr")["Sample Count.X"].flat), {16})
+
+    @unittest.skipUnless(OIDN, NO_OIDN)
+    def test_open_image_denoise_takes_part(self):
+        self.scene(HEAD % 1 + CAMERA + BALL + NOISY_LAMP, "ball.pov")
+        pictures = []
+        for words in ([], ["--with-prior"]):
+            self.run_driver("--budget-spp", "20", "--quality", "draft", *words)
+            pictures.append(exr.read("ball.exr"))
+            for path in ("ball.passes", "ball.exr"):
+                shutil.rmtree(path) if os.path.isdir(path) else os.unlink(path)
+        change = np.abs(pictures[0]["Combined.G"] - pictures[1]["Combined.G"])
+        self.assertGreater(change.max(), 1e-3)
+        self.assertLess(change.mean(), 0.02)
 
     def test_wrong_use(self):
         self.scene(HEAD % 1 + CAMERA + BALL + NOISY_LAMP, "ball.pov")
