@@ -8,6 +8,7 @@ find_package(PkgConfig REQUIRED)
 pkg_check_modules(OpenColorIO REQUIRED IMPORTED_TARGET OpenColorIO)  # Debian ships no CMake package of it
 find_package(fmt CONFIG REQUIRED)
 find_package(nlohmann_json CONFIG REQUIRED)
+find_package(ZLIB REQUIRED)
 
 # Debian's OpenImageIO target names the include folder of OpenCV even if that is not installed, which would be an error.
 # OpenImageIO's headers do not need it.

@@ -30,6 +30,7 @@ void setup_app(CLI::App& app, Command& chosen) {
   setup_merge(app, chosen);
   setup_samplemap(app, chosen);
   setup_preview(app, chosen);
+  setup_view(app, chosen);
   setup_compare(app, chosen);
   setup_sweep(app, chosen);
 }

@@ -15,6 +15,7 @@ void setup_inspect(CLI::App& app, Command& chosen);
 void setup_merge(CLI::App& app, Command& chosen);
 void setup_samplemap(CLI::App& app, Command& chosen);
 void setup_preview(CLI::App& app, Command& chosen);
+void setup_view(CLI::App& app, Command& chosen);
 void setup_compare(CLI::App& app, Command& chosen);
 void setup_sweep(CLI::App& app, Command& chosen);
 

@@ -12,6 +12,7 @@
 
 #include "cli/commands.h"
 #include "cli/common/checks.h"
+#include "cli/common/display_options.h"
 #include "cli/common/layers.h"
 #include "cli/common/memory_limit.h"
 #include "cli/common/printed_text.h"
@@ -39,6 +40,7 @@ struct SweepOptions {
   std::vector<std::string> groups = trade_groups();
   int threads = 0;
   bool quiet = false;
+  std::size_t max_size = default_page_size;
   std::size_t max_memory = default_memory;
 };
 
@@ -122,7 +124,7 @@ void run(const SweepOptions& o) {
   Sweep sweep = run_sweep(inputs, o.groups, reference, std::move(peers), *progress);
   sweep.reference_name = file_name(o.reference);
   if (o.threads > 0) sweep.threads = o.threads;
-  write_bytes(o.output, page_of(sweep, POLYRECON_VERSION));
+  write_bytes(o.output, page_of(sweep, POLYRECON_VERSION, o.max_size));
   if (!o.csv.empty()) write_bytes(o.csv, csv_of(sweep));
   if (o.quiet) return;
   for (const Trial& trial : sweep.inputs.front().trials)
@@ -159,6 +161,7 @@ void setup_sweep(CLI::App& app, Command& chosen) {
   sub->add_option("-t,--threads", o->threads, "Threads to use; 0: one for each processor")
       ->check(CLI::Range(0, 4096))
       ->capture_default_str();
+  add_page_size(*sub, o->max_size);
   add_memory_limit(*sub, o->max_memory);
   sub->add_flag("-q,--quiet", o->quiet, "Print nothing but errors");
   sub->footer(

@@ -51,8 +51,7 @@ Image double_resolution(const Image& image, int width, int height, const Image& 
                           double_resolution(mask, width, height));
 }
 
-Image at_most_wide(const Image& image, int max_width) {
-  const int factor = (image.width() + max_width - 1) / max_width;
+Image reduced(const Image& image, int factor) {
   if (factor <= 1) return image;
   Image out((image.width() + factor - 1) / factor, (image.height() + factor - 1) / factor, image.channels());
   for (int c = 0; c < out.channels(); ++c)

@@ -18,7 +18,8 @@ Image double_resolution(const Image& image, int width, int height);
 /// The same over the coarse pixels inside a mask; 0 where there are none.
 Image double_resolution(const Image& image, int width, int height, const Image& mask);
 
-/// The image reduced to a width of at most max_width pixels. Each pixel is the mean of a square block of pixels.
-Image at_most_wide(const Image& image, int max_width);
+/// The image reduced by a whole factor. Each pixel is the mean of the factor x factor pixels that it covers (fewer at
+/// the border).
+Image reduced(const Image& image, int factor);
 
 }  // namespace polyrecon

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "core/pi.h"
-#include "html/page.h"
+#include "html/escaped.h"
 
 namespace polyrecon {
 namespace {
@@ -101,11 +101,25 @@ std::string marker_at(double x, double y, const PlotSeries& series, const PlotPo
       shape = fmt::format("<rect x='{:.1f}' y='{:.1f}' width='9' height='9'", x - 4.5, y - 4.5);
       break;
   }
-  return fmt::format("{} fill='{}' class='point'><title>{}</title></{}>\n", shape, series.color,
-                     escaped(point.name + (point.details.empty() ? "" : "\n" + point.details)),
-                     series.marker == Marker::Disc      ? "circle"
-                     : series.marker == Marker::Diamond ? "path"
-                                                        : "rect");
+  const char* const tag = series.marker == Marker::Disc ? "circle" : series.marker == Marker::Diamond ? "path" : "rect";
+  const std::string marker =
+      fmt::format("{} fill='{}' class='point'><title>{}</title></{}>", shape, series.color,
+                  escaped(point.name + (point.details.empty() ? "" : "\n" + point.details)), tag);
+  return point.address.empty() ? marker + "\n" : fmt::format("<a href='{}'>{}</a>\n", point.address, marker);
+}
+
+/// Lines for the values of the axis upwards, and its name; low: the lower end of the drawing.
+std::string upward_grid(const std::string& label, const LogAxis& y, double low) {
+  std::string svg;
+  for (const double value : y.ticks())
+    svg += fmt::format(
+        "<line class='grid' y1='{0:.1f}' y2='{0:.1f}' x1='{1}' x2='{2}'/><text class='tick' x='{3}' y='{4:.1f}' "
+        "text-anchor='end'>{5:g}</text>\n",
+        y.at(value), left, width - right, left - 7, y.at(value) + 4, value);
+  const double middle = (top + low - bottom) / 2;
+  return svg + fmt::format(
+                   "<text class='axis' transform='rotate(-90 16 {0})' x='16' y='{0}' text-anchor='middle'>{1}</text>\n",
+                   middle, escaped(label));
 }
 
 std::string axes(const LogPlot& plot, const LogAxis& x, const LogAxis& y) {
@@ -115,17 +129,9 @@ std::string axes(const LogPlot& plot, const LogAxis& x, const LogAxis& y) {
         "<line class='grid' x1='{0:.1f}' x2='{0:.1f}' y1='{1}' y2='{2}'/><text class='tick' x='{0:.1f}' y='{3}' "
         "text-anchor='middle'>{4:g}</text>\n",
         x.at(value), top, height - bottom, height - bottom + 17, value);
-  for (const double value : y.ticks())
-    svg += fmt::format(
-        "<line class='grid' y1='{0:.1f}' y2='{0:.1f}' x1='{1}' x2='{2}'/><text class='tick' x='{3}' y='{4:.1f}' "
-        "text-anchor='end'>{5:g}</text>\n",
-        y.at(value), left, width - right, left - 7, y.at(value) + 4, value);
   svg += fmt::format("<text class='axis' x='{}' y='{}' text-anchor='middle'>{}</text>\n", (left + width - right) / 2,
                      height - 12, escaped(plot.x_label));
-  const double middle = (top + height - bottom) / 2;
-  return svg + fmt::format(
-                   "<text class='axis' transform='rotate(-90 16 {0})' x='16' y='{0}' text-anchor='middle'>{1}</text>\n",
-                   middle, escaped(plot.y_label));
+  return svg + upward_grid(plot.y_label, y, height);
 }
 
 template <typename Points>
@@ -141,7 +147,9 @@ std::string polyline(const Points& points, const LogAxis& x, const LogAxis& y, c
 std::string legend(const std::vector<std::pair<std::string, std::string>>& entries) {
   std::string html = "<p class='legend'>";
   for (const auto& [name, color] : entries)
-    html += fmt::format("<span><i style='background:{}'></i>{}</span> ", color, escaped(name));
+    html += fmt::format(
+        "<span><svg class='swatch' viewBox='0 0 10 10'><rect width='10' height='10' fill='{}'/></svg>{}</span> ", color,
+        escaped(name));
   return html + "</p>\n";
 }
 
@@ -196,14 +204,56 @@ std::string svg_of(const LogPlot& plot) {
   for (const auto& [name, value] : plot.levels)
     if (std::isfinite(value) && value > 0)
       svg += fmt::format(
-          "<line class='level' x1='{0}' x2='{1}' y1='{2:.1f}' y2='{2:.1f}'/><text class='label' "
-          "style='text-anchor:end' x='{3}' y='{4:.1f}'>{5}</text>\n",
+          "<line class='level' x1='{0}' x2='{1}' y1='{2:.1f}' y2='{2:.1f}'/><text "
+          "class='level-name' x='{3}' y='{4:.1f}'>{5}</text>\n",
           left, width - right, y.at(value), width - right - 4, y.at(value) - 5, escaped(name));
   svg += polyline(plot.front, x, y, "front", "currentColor") + series_svg(plot, x, y) + "</svg>\n";
   std::vector<std::pair<std::string, std::string>> names;
   for (const PlotSeries& series : plot.series)
     if (!series.points.empty()) names.emplace_back(series.name, series.color);
   return svg + legend(names);
+}
+
+std::string svg_of(const FramePlot& plot) {
+  constexpr double lower = 300;
+  Range ys;
+  int first = 0, last = 0;
+  bool some = false;
+  for (const FramePlot::Series& series : plot.series)
+    for (const FramePlot::Point& p : series.points) {
+      first = some ? std::min(first, p.frame) : p.frame;
+      last = some ? std::max(last, p.frame) : p.frame;
+      some = true;
+      if (std::isfinite(p.value) && p.value > 0) ys.add(p.value);
+    }
+  if (ys.high == 0) return "<p>No value above zero: nothing to draw.</p>\n";
+  const LogAxis y(ys.low, ys.high, lower - bottom, top);
+  const auto x = [&](int frame) {
+    return left + 12 + (width - right - left - 24) * (frame - first) / std::max(last - first, 1);
+  };
+  std::string svg =
+      fmt::format("<svg viewBox='0 0 {} {}' role='img'>\n", width, lower) + upward_grid(plot.y_label, y, lower);
+  const int step = std::max(1, (last - first + 11) / 12);
+  for (int frame = first; frame <= last; frame += step)
+    svg += fmt::format("<text class='tick' x='{:.1f}' y='{}' text-anchor='middle'>{}</text>\n", x(frame),
+                       lower - bottom + 17, frame);
+  svg += fmt::format("<text class='axis' x='{}' y='{}' text-anchor='middle'>{}</text>\n", (left + width - right) / 2,
+                     lower - 12, escaped(plot.x_label));
+  std::vector<std::pair<std::string, std::string>> names;
+  for (const FramePlot::Series& series : plot.series) {
+    std::string path, points;
+    for (const FramePlot::Point& p : series.points) {
+      if (!std::isfinite(p.value) || p.value <= 0) continue;
+      path += fmt::format("{}{:.1f} {:.1f}", path.empty() ? "M" : " L", x(p.frame), y.at(p.value));
+      points += fmt::format(
+          "<a href='{}'><circle cx='{:.1f}' cy='{:.1f}' r='4.5' fill='{}' class='point'><title>{}, frame {}: {:.4g}"
+          "</title></circle></a>\n",
+          p.address, x(p.frame), y.at(p.value), series.color, escaped(series.name), p.frame, p.value);
+    }
+    if (!path.empty()) svg += fmt::format("<path class='joined' stroke='{}' d='{}'/>\n", series.color, path) + points;
+    names.emplace_back(series.name, series.color);
+  }
+  return svg + "</svg>\n" + legend(names);
 }
 
 std::string svg_of(const StackedBars& bars) {

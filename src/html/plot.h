@@ -10,8 +10,9 @@ enum class Marker { Disc, Diamond, Square };
 
 struct PlotPoint {
   double x = 0, y = 0;
-  std::string name;     ///< Written next to the point.
-  std::string details;  ///< Shown while the pointer is on it.
+  std::string name;          ///< Written next to the point.
+  std::string details;       ///< Shown while the pointer is on it.
+  std::string address = {};  ///< Of a link, escaped; empty: none.
 };
 
 struct PlotSeries {
@@ -41,8 +42,24 @@ struct StackedBars {
   std::vector<Row> rows;
 };
 
+/// A line for each image over the numbers of frames, with a logarithmic axis upwards.
+struct FramePlot {
+  std::string x_label, y_label;
+  struct Point {
+    int frame = 0;
+    double value = 0;     ///< Not drawn where it is not positive and finite.
+    std::string address;  ///< Of a link, escaped.
+  };
+  struct Series {
+    std::string name, color;
+    std::vector<Point> points;
+  };
+  std::vector<Series> series;
+};
+
 /// Inline SVG, every text escaped.
 std::string svg_of(const LogPlot& plot);
+std::string svg_of(const FramePlot& plot);
 std::string svg_of(const StackedBars& bars);
 
 /// One of ten colours that colour-blind readers can distinguish as well as is possible with ten.

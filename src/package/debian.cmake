@@ -29,7 +29,7 @@ where a renderer's next samples help most.")
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME libpolyrecon-dev)
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_DEPENDS "libeigen3-dev, libtbb-dev, libopenexr-dev, libopenimageio-dev, \
-openimageio-tools, libopencolorio-dev, libfmt-dev, nlohmann-json3-dev, pkg-config")
+openimageio-tools, libopencolorio-dev, libfmt-dev, nlohmann-json3-dev, zlib1g-dev, pkg-config")
 set(CPACK_COMPONENT_LIBRARY_DESCRIPTION "rebuilds clean images from noisy Monte Carlo renders (library)
 The static library behind polyrecon, its headers, and the files by which
 CMake's find_package(polyrecon) finds them.")

@@ -5,34 +5,17 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <utility>
 
-#include "html/page.h"
+#include "html/escaped.h"
 #include "html/plot.h"
-#include "io/pictures/preview.h"
+#include "html/viewer_page.h"
+#include "io/pictures/color.h"
 #include "polyrecon/params.h"
 #include "presets/pareto.h"
-#include "sweep/pictures.h"
 
 namespace polyrecon {
 namespace {
-
-constexpr std::size_t pictured_points = 4;  // settings of the front that get a picture, the first and last included
-
-constexpr int page_width = 1080;  // CSS pixels
-
-constexpr const char* rules = R"(
-svg{width:100%;height:auto;display:block}
-svg text{fill:var(--text);font-size:12px}svg .label{font-size:11px;text-anchor:middle}svg .tick{fill:var(--soft)}
-.grid{stroke:var(--line);stroke-width:1}.level{stroke:var(--soft);stroke-dasharray:5 4}
-.front{fill:none;stroke:var(--text);stroke-width:2;opacity:.55}.joined{fill:none;stroke-width:1.5;opacity:.8}
-.leader{stroke-width:.8;opacity:.6}.point{stroke:var(--ground);stroke-width:1}
-.legend span{margin-right:1.1rem;white-space:nowrap}.legend i{display:inline-block;width:.75rem;height:.75rem;
- border-radius:2px;margin-right:.35rem}
-table{width:100%}tr.front td{background:var(--shade);font-weight:600}
-.pictures{display:grid;grid-template-columns:repeat(auto-fill,minmax(300px,1fr));gap:1rem}
-figure{margin:0}figure img{width:100%;display:block;image-rendering:pixelated;margin-bottom:3px}
-figcaption{color:var(--soft)}
-)";
 
 CostPoint cost_of(const Trial& trial) { return {trial.seconds, trial.score.relative_mse}; }
 
@@ -54,46 +37,55 @@ std::string price_text(const CostPoint& cheap, const CostPoint& dear, const char
                      : fmt::format("10 % less error costs {:.3g}x the {}", price, what);
 }
 
-std::string header(const Sweep& sweep, const std::string& version) {
-  const SweptInput& input = sweep.inputs.front();
-  return page_head("Sweep of " + input.name, page_width, rules) +
-         fmt::format(
-             "<h1>What accuracy costs: {}</h1>\n<p class='soft'>{} x {} pixels{}; measured against {}; polyrecon {}, "
-             "{} "
-             "threads; seconds of the reconstruction, without files</p>\n",
-             escaped(input.name), input.beauty.width(), input.beauty.height(),
-             input.samples > 0 ? ", " + samples_text(input.samples) : "", escaped(sweep.reference_name),
-             escaped(version), sweep.threads);
+/// What the viewer shows: which image each trial and each peer is, where it is in the page.
+struct PicturedSweep {
+  std::map<std::size_t, std::size_t> trials, peers;
+  bool complete = true;
+};
+
+/// The address of an image beside the reference, which is the second image of the page; empty where it is not in it.
+std::string address_of(const std::map<std::size_t, std::size_t>& images, std::size_t index) {
+  const auto at = images.find(index);
+  return at == images.end() ? std::string() : fmt::format("#a={}&amp;b=1", at->second);
+}
+
+std::string linked(const std::string& name, const std::string& address) {
+  return address.empty() ? escaped(name) : fmt::format("<a href=\"{}\">{}</a>", address, escaped(name));
 }
 
 std::string details_of(const Trial& trial) {
   return fmt::format("{:.3g} s, relMSE {:.4g}", trial.seconds, trial.score.relative_mse);
 }
 
+std::string details_of(const Peer& peer) {
+  return fmt::format("{:.3g} s, relMSE {:.4g}", peer.seconds, peer.score.relative_mse);
+}
+
 /// Time and error of each setting, coloured by what was varied.
-std::string front_section(const Sweep& sweep) {
+std::string front_section(const Sweep& sweep, const PicturedSweep& pictured) {
   const SweptInput& input = sweep.inputs.front();
   LogPlot plot{"seconds", "relMSE", {}, {}, {{"noisy input", input.noisy.relative_mse}}};
   for (const std::string& group : setting_groups()) {
     PlotSeries series{group, plot_color(plot.series.size()), Marker::Disc, false, {}};
-    for (const Trial& trial : input.trials)
-      if (trial.group == group)
-        series.points.push_back({trial.seconds, trial.score.relative_mse, trial.name, details_of(trial)});
+    for (std::size_t i = 0; i < input.trials.size(); ++i)
+      if (const Trial& trial = input.trials[i]; trial.group == group)
+        series.points.push_back(
+            {trial.seconds, trial.score.relative_mse, trial.name, details_of(trial), address_of(pictured.trials, i)});
     if (group == "quality") series.marker = Marker::Square;
     if (!series.points.empty()) plot.series.push_back(std::move(series));
   }
   PlotSeries peers{"other programs", "#000", Marker::Diamond, false, {}};
   peers.color = "var(--text)";
-  for (const Peer& peer : sweep.peers)
-    peers.points.push_back({peer.seconds, peer.score.relative_mse, peer.name,
-                            fmt::format("{:.3g} s, relMSE {:.4g}", peer.seconds, peer.score.relative_mse)});
+  for (std::size_t i = 0; i < sweep.peers.size(); ++i)
+    peers.points.push_back({sweep.peers[i].seconds, sweep.peers[i].score.relative_mse, sweep.peers[i].name,
+                            details_of(sweep.peers[i]), address_of(pictured.peers, i)});
   plot.series.push_back(std::move(peers));
   for (const std::size_t i : front_of(input))
     plot.front.emplace_back(input.trials[i].seconds, input.trials[i].score.relative_mse);
   return "<h2>Accuracy against time</h2>\n<p class='soft'>Further left is faster, further down is more accurate. The "
          "line "
          "connects the settings that no other one beats in both. Each setting but the presets differs from "
-         "standard in one thing.</p>\n" +
+         "standard in one thing. A click on a point shows its picture above, beside the reference.</p>\n" +
          svg_of(plot);
 }
 
@@ -172,53 +164,60 @@ std::string phases_section(const SweptInput& input) {
   return "<h2>Time by phase</h2>\n" + svg_of(bars);
 }
 
-/// The fastest and the most accurate setting of the front, and some between.
-std::vector<std::size_t> pictured(const SweptInput& input) {
-  std::vector<std::size_t> front = front_of(input);
-  if (front.size() <= pictured_points) return front;
-  std::vector<std::size_t> some;
-  for (std::size_t k = 0; k < pictured_points; ++k)
-    some.push_back(front[k * (front.size() - 1) / (pictured_points - 1)]);
-  return some;
+/// Adds an image with its relative error; returns whether the page had room for it.
+bool add_picture(ViewerPage& page, std::size_t image, const Image& beauty, const Image* reference) {
+  if (!page.add_layer(image, {0}, {"", "RGB", {"R", "G", "B"}}, beauty, false)) return false;
+  if (!reference) return true;
+  ViewedLayer error{"relMSE", "relative error", {"Y"}, 0, 0, true};
+  const Image values = relative_error(beauty, *reference);
+  if (const LogRange range = log_range(values); range.high > range.low)
+    error.scale = MapScale{range.low, range.high, true};
+  error.listed = true;
+  page.add_layer(image, {0}, error, values, false);
+  return true;
 }
 
-std::string pictures_section(const Sweep& sweep) {
+/// Noisy input, reference, other programs and settings, those of the front first. As many as the page has room for.
+PicturedSweep add_pictures(ViewerPage& page, const Sweep& sweep) {
   const SweptInput& input = sweep.inputs.front();
-  std::vector<Picture> pictures{
-      {"noisy input", "relMSE " + fmt::format("{:.4g}", input.noisy.relative_mse), &input.beauty}};
-  for (const std::size_t i : pictured(input))
-    pictures.push_back({input.trials[i].name, details_of(input.trials[i]), &input.trials[i].beauty});
-  for (const Peer& peer : sweep.peers)
-    pictures.push_back(
-        {peer.name, fmt::format("{:.3g} s, relMSE {:.4g}", peer.seconds, peer.score.relative_mse), &peer.beauty});
-  pictures.push_back({"reference", sweep.reference_name, &sweep.reference.mean});
-  std::string html =
-      "<h2>Pictures</h2>\n<p class='soft'>The frame, a part of it enlarged where the results are worst, and the "
-      "squared "
-      "relative error of each pixel (logarithmic, one scale for all: black is exact, yellow worst).</p>\n"
-      "<div class='pictures'>\n";
-  for (const PicturedResult& result : picture_results(pictures, sweep.reference.mean)) {
-    html += fmt::format("<figure><img alt='{0}' src='{1}'><img alt='{0}, enlarged' src='{2}'>", escaped(result.name),
-                        result.whole, result.part);
-    if (!result.error.empty())
-      html += fmt::format("<img alt='{}, error' src='{}'>", escaped(result.name), result.error);
-    html += fmt::format("<figcaption><b>{}</b><br>{}</figcaption></figure>\n", escaped(result.name),
-                        escaped(result.details));
-  }
-  return html + "</div>\n";
+  PicturedSweep pictured;
+  const Image& reference = sweep.reference.mean;
+  const std::size_t noisy = page.add_image({"noisy input", input.name}),
+                    truth = page.add_image({"reference", sweep.reference_name, true});
+  pictured.complete =
+      add_picture(page, noisy, input.beauty, &reference) && add_picture(page, truth, reference, nullptr);
+  const auto add = [&](const std::string& name, const std::string& details, const Image& beauty,
+                       std::map<std::size_t, std::size_t>& images, std::size_t index) {
+    if (!pictured.complete) return;
+    const std::size_t image = page.add_image({name, details});
+    pictured.complete = add_picture(page, image, beauty, &reference);
+    if (pictured.complete) images[index] = image;
+  };
+  const auto add_trial = [&](std::size_t i) {
+    if (pictured.trials.count(i) == 0)
+      add(input.trials[i].name, details_of(input.trials[i]), input.trials[i].beauty, pictured.trials, i);
+  };
+  for (const std::size_t i : front_of(input)) add_trial(i);
+  for (std::size_t i = 0; i < sweep.peers.size(); ++i)
+    add(sweep.peers[i].name, details_of(sweep.peers[i]), sweep.peers[i].beauty, pictured.peers, i);
+  for (std::size_t i = 0; i < input.trials.size(); ++i) add_trial(i);
+  if (!pictured.complete)
+    page.add_note(
+        "Some pictures were left out, as the page would be larger than --max-size: their points have no link.");
+  return pictured;
 }
 
-std::string row_of(const Trial& trial, const Trial& standard, bool on_front) {
+std::string row_of(const Trial& trial, const Trial& standard, bool on_front, const std::string& address) {
   return fmt::format(
       "<tr{}><td>{}</td><td class='text'>{}</td><td>{:.3g}</td><td>{:.2f}</td><td>{:.4g}</td><td>{:.3f}</td>"
       "<td>{:.4g}</td><td>{:+.3f} %</td><td>{:.4g}</td></tr>\n",
-      on_front ? " class='front'" : "", escaped(trial.name), escaped(trial.group), trial.seconds,
+      on_front ? " class='front'" : "", linked(trial.name, address), escaped(trial.group), trial.seconds,
       trial.seconds / standard.seconds, trial.score.relative_mse,
       trial.score.relative_mse / standard.score.relative_mse, trial.score.trimmed, 100 * trial.score.energy,
       trial.estimated_relative_mse);
 }
 
-std::string figures_section(const Sweep& sweep) {
+std::string figures_section(const Sweep& sweep, const PicturedSweep& pictured) {
   std::string html;
   for (const SweptInput& input : sweep.inputs) {
     html += fmt::format("<h2>All figures: {}</h2>\n", escaped(input.name));
@@ -230,7 +229,17 @@ std::string figures_section(const Sweep& sweep) {
         "<th>estimated</th></tr>\n";
     const std::vector<std::size_t> front = front_of(input);
     for (std::size_t i = 0; i < input.trials.size(); ++i)
-      html += row_of(input.trials[i], input.trials.front(), std::find(front.begin(), front.end(), i) != front.end());
+      html += row_of(input.trials[i], input.trials.front(), std::find(front.begin(), front.end(), i) != front.end(),
+                     &input == &sweep.inputs.front() ? address_of(pictured.trials, i) : std::string());
+    for (std::size_t i = 0; i < sweep.peers.size() && &input == &sweep.inputs.front(); ++i) {
+      const Peer& peer = sweep.peers[i];
+      html += fmt::format(
+          "<tr><td>{}</td><td class='text'>other program</td><td>{:.3g}</td><td>{:.2f}</td><td>{:.4g}</td>"
+          "<td>{:.3f}</td><td>{:.4g}</td><td>{:+.3f} %</td><td></td></tr>\n",
+          linked(peer.name, address_of(pictured.peers, i)), peer.seconds, peer.seconds / input.trials.front().seconds,
+          peer.score.relative_mse, peer.score.relative_mse / input.trials.front().score.relative_mse,
+          peer.score.trimmed, 100 * peer.score.energy);
+    }
     html += fmt::format(
         "<tr><td>noisy input</td><td class='text'></td><td></td><td></td><td>{:.4g}</td><td>{:.3f}</td>"
         "<td>{:.4g}</td><td>{:+.3f} %</td><td></td></tr>\n</table></div>\n",
@@ -242,10 +251,17 @@ std::string figures_section(const Sweep& sweep) {
 
 }  // namespace
 
-std::string page_of(const Sweep& sweep, const std::string& version) {
+std::string page_of(const Sweep& sweep, const std::string& version, std::size_t max_bytes) {
   const SweptInput& input = sweep.inputs.front();
-  return header(sweep, version) + front_section(sweep) + price_section(input) + samples_section(sweep) +
-         phases_section(input) + pictures_section(sweep) + figures_section(sweep) + page_end();
+  ViewerPage page("What accuracy costs: " + input.name, {}, max_bytes);
+  const PicturedSweep pictured = add_pictures(page, sweep);
+  const std::string subtitle = fmt::format(
+      "{} x {} pixels{}; measured against {}; polyrecon {}, {} threads; seconds of the reconstruction, "
+      "without files",
+      input.beauty.width(), input.beauty.height(), input.samples > 0 ? ", " + samples_text(input.samples) : "",
+      sweep.reference_name, version, sweep.threads);
+  return page.html(subtitle, front_section(sweep, pictured) + price_section(input) + samples_section(sweep) +
+                                 phases_section(input) + figures_section(sweep, pictured));
 }
 
 }  // namespace polyrecon

@@ -10,4 +10,11 @@ void add_display_options(CLI::App& app, DisplayParams& display) {
       ->type_name("STOPS");
 }
 
+void add_page_size(CLI::App& app, std::size_t& bytes) {
+  app.add_option("--max-size", bytes,
+                 "Largest size of the pictures in the page, in bytes or as 200M, 1G; default: 512M")
+      ->transform(CLI::AsSizeValue(false).description(""))
+      ->type_name("SIZE");
+}
+
 }  // namespace polyrecon

@@ -37,6 +37,38 @@ std::string comparison_text(const std::vector<Comparison>& comparisons) {
   return text;
 }
 
+SequenceFigures sequence_figures(const std::vector<const Comparison*>& frames) {
+  SequenceFigures sum;
+  double changes = 0;
+  for (const Comparison* c : frames) {
+    const auto count = static_cast<double>(frames.size());
+    sum.relative_mse += c->score.relative_mse / count;
+    sum.trimmed += c->score.trimmed / count;
+    sum.energy += c->score.energy / count;
+    sum.flip += c->flip / count;
+    sum.bad += c->score.bad;
+    if (!c->flicker) continue;
+    sum.flicker = sum.flicker.value_or(0) + *c->flicker;
+    ++changes;
+  }
+  if (sum.flicker) *sum.flicker /= changes;
+  return sum;
+}
+
+std::string sequences_text(const std::string& image, const std::vector<Comparison>& comparisons) {
+  std::string text;
+  for (const std::string& layer : layers_of(comparisons)) {
+    std::vector<const Comparison*> frames;
+    for (const Comparison& c : comparisons)
+      if (c.layer == layer) frames.push_back(&c);
+    const SequenceFigures f = sequence_figures(frames);
+    text += text_line("{}: {}  {} frames  relMSE {:.5f}  trimmed {:.5f}  energy {:+.5f}  FLIP {:.4f}  bad {}{}", image,
+                      shown_layer(*frames.front()), frames.size(), f.relative_mse, f.trimmed, f.energy, f.flip, f.bad,
+                      f.flicker ? fmt::format("  flicker {:.6f}", *f.flicker) : std::string());
+  }
+  return text;
+}
+
 Json comparison_json(const std::string& reference, const std::vector<Comparison>& comparisons) {
   Json results = Json::array();
   for (const Comparison& c : comparisons)
@@ -46,7 +78,9 @@ Json comparison_json(const std::string& reference, const std::vector<Comparison>
                        {"trimmed", number(c.score.trimmed)},
                        {"energy", number(c.score.energy)},
                        {"FLIP", number(c.flip)},
-                       {"bad", c.score.bad}});
+                       {"bad", c.score.bad},
+                       {"frame", c.frame ? Json(*c.frame) : Json()},
+                       {"flicker", c.flicker ? number(*c.flicker) : Json()}});
   return {{"reference", reference}, {"results", results}, {"notes", notes_of(comparisons)}};
 }
 

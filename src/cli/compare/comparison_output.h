@@ -1,6 +1,7 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,19 @@ std::string comparison_text(const std::vector<Comparison>& comparisons);
 
 /// The same as JSON (docs/reference/compare.md). Figures that are not finite are null.
 nlohmann::ordered_json comparison_json(const std::string& reference, const std::vector<Comparison>& comparisons);
+
+/// Means over the frames of an image; bad is a sum.
+struct SequenceFigures {
+  double relative_mse = 0, trimmed = 0, energy = 0, flip = 0;
+  std::size_t bad = 0;
+  std::optional<double> flicker;  ///< Nothing where no frame has one.
+};
+
+/// frames: the comparisons of one image and layer, at least one.
+SequenceFigures sequence_figures(const std::vector<const Comparison*>& frames);
+
+/// A line with them for each layer. comparisons: of all frames of one image.
+std::string sequences_text(const std::string& image, const std::vector<Comparison>& comparisons);
 
 /// The names of the layers, each once, in their order.
 std::vector<std::string> layers_of(const std::vector<Comparison>& comparisons);

@@ -4,150 +4,260 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <vector>
+#include <numeric>
+#include <utility>
 
+#include "cli/common/sequence_arguments.h"
 #include "cli/compare/comparison_output.h"
 #include "core/relmse.h"
-#include "core/resample.h"
-#include "html/page.h"
-#include "io/pictures/false_color.h"
-#include "io/pictures/png_file.h"
+#include "html/escaped.h"
+#include "html/plot.h"
 
 namespace polyrecon {
 namespace {
 
-constexpr int widest = 1920;  // pixels of a picture
+constexpr std::size_t worst_count = 8;  // of each image and frame
+constexpr int worst_distance = 6;       // pixels
 
-constexpr int page_width = 1280;  // CSS pixels
+std::vector<std::string> texts(const std::vector<int>& frames) {
+  std::vector<std::string> out;
+  for (const int frame : frames) out.push_back(std::to_string(frame));
+  return out;
+}
 
-constexpr const char* rules = R"(
-td.best{font-weight:700}
-.viewer{display:flex;flex-wrap:wrap;gap:.3rem;margin-top:.8rem}
-.viewer input{position:absolute;opacity:0}
-.viewer label{padding:.15rem .7rem;border:1px solid var(--line);border-radius:4px;cursor:pointer}
-.viewer input:checked+label{background:var(--text);color:var(--ground)}
-.viewer input:focus-visible+label{outline:2px solid #3b82f6;outline-offset:2px}
-.shown{flex-basis:100%;display:grid}
-.shown figure{grid-area:1/1;margin:0;visibility:hidden}
-.shown img{width:100%;display:block;image-rendering:pixelated}
-.shown .scale{height:.7rem;margin-top:.4rem}
-.ends{display:flex;justify-content:space-between}
-)";
+/// The slot of a map of a layer.
+std::string map_slot(const char* map, const std::string& layer, bool main) {
+  return main ? std::string(map) : fmt::format("{} of {}", map, layer);
+}
 
-std::string file_name(const std::string& path) { return std::filesystem::path(path).filename().string(); }
+std::string title(const std::vector<std::string>& names) {
+  return names.size() == 2 ? fmt::format("{} against {}", names[0], names[1])
+                           : fmt::format("{} images against {}", names.size() - 1, names.back());
+}
 
-/// A picture that the viewer can show.
-struct View {
-  std::string name, picture;  ///< picture: a data URI.
-  std::string below;          ///< HTML below it: the scale of a picture in false colours.
+struct Column {
+  const char* name;
+  const char* format;
+  double (*value)(const SequenceFigures&);
 };
 
-/// A bar of colours, the values of its ends, and what the values are.
-std::string scale(const Image& colors, const std::string& low, const std::string& high, const std::string& meaning) {
-  return fmt::format(
-      "<img class='scale' alt='' src='{}'><div class='ends soft'><span>{}</span><span>{}</span><span>{}</span></div>",
-      png_data_uri(colors), low, meaning, high);
-}
-
-/// 256 values from low to high, evenly spaced or evenly spaced in their logarithm.
-Image ramp(double low, double high, bool logarithmic) {
-  Image values(256, 1, 1);
-  for (int i = 0; i < 256; ++i)
-    values.at(i, 0, 0) =
-        static_cast<Real>(logarithmic ? low * std::pow(high / low, i / 255.0) : low + (high - low) * i / 255);
-  return values;
-}
-
-std::string error_scale(const LogRange& range) {
-  if (range.high <= 0) return "<p class='soft'>no difference</p>";
-  return scale(false_color(ramp(range.low, range.high, true), range), fmt::format("{:.3g}", range.low),
-               fmt::format("{:.3g}", range.high), "squared relative error, logarithmic");
-}
-
-/// The reference, the images, then the differences: one press of an arrow key shows the next one.
-std::vector<View> views_of(const std::vector<const Comparison*>& images, const LogRange& range,
-                           const DisplayParams& display) {
-  const auto picture = [](const Image& rgb) { return png_data_uri(at_most_wide(rgb, widest)); };
-  std::vector<View> views{{"reference", picture(to_display(images.front()->reference, display)), {}}};
-  for (const Comparison* c : images)
-    views.push_back({file_name(c->image), picture(to_display(c->picture, display)), {}});
-  const std::string flip_scale = scale(flip_color(ramp(0, 1, false)), "0", "1", "FLIP");
-  const std::string relative_scale = error_scale(range);
-  for (const Comparison* c : images) {
-    const std::string name = images.size() > 1 ? " of " + file_name(c->image) : "";
-    views.push_back({"FLIP" + name, picture(flip_color(c->flip_map)), flip_scale});
-    views.push_back({"error" + name, picture(false_color(c->error, range)), relative_scale});
-  }
-  return views;
-}
-
-/// Radio buttons above the picture of the selected one. The style sheet switches the pictures, without a script.
-std::string viewer(const std::vector<View>& views, std::size_t section) {
-  std::string buttons, figures, choices;
-  for (std::size_t i = 0; i < views.size(); ++i) {
-    const std::string id = fmt::format("view{}-{}", section, i);
-    buttons += fmt::format("<input type='radio' name='view{0}' id='{1}'{2}><label for='{1}'>{3}</label>\n", section, id,
-                           i == 0 ? " checked" : "", escaped(views[i].name));
-    figures += fmt::format("<figure><img alt='{}' src='{}'>{}</figure>\n", escaped(views[i].name), views[i].picture,
-                           views[i].below);
-    choices += fmt::format("#{}:checked~.shown figure:nth-child({}){{visibility:visible}}\n", id, i + 1);
-  }
-  return fmt::format("<style>{}</style>\n<div class='viewer'>{}<div class='shown'>{}</div></div>\n", choices, buttons,
-                     figures);
-}
-
-/// A row of figures for each image. Where there are several, the best figure of each column stands out.
-std::string table(const std::vector<const Comparison*>& images) {
-  struct Column {
-    const char* name;
-    const char* format;
-    double (*value)(const Comparison&);
-  };
-  static const std::vector<Column> columns{
-      {"relMSE", "{:.5f}", [](const Comparison& c) { return c.score.relative_mse; }},
-      {"trimmed", "{:.5f}", [](const Comparison& c) { return c.score.trimmed; }},
-      {"energy", "{:+.5f}", [](const Comparison& c) { return c.score.energy; }},
-      {"FLIP", "{:.4f}", [](const Comparison& c) { return c.flip; }},
-      {"bad pixels", "{:.0f}", [](const Comparison& c) { return static_cast<double>(c.score.bad); }}};
-  std::string head, rows;
-  for (const Column& column : columns) head += fmt::format("<th>{}</th>", column.name);
-  for (const Comparison* c : images) {
-    rows += fmt::format("<tr><td>{}</td>", escaped(c->image));
-    for (const Column& column : columns) {
-      const double value = std::abs(column.value(*c));
-      const bool best = images.size() > 1 && std::none_of(images.begin(), images.end(), [&](const Comparison* other) {
-                          return std::abs(column.value(*other)) < value;
-                        });
-      rows += fmt::format("<td{}>{}</td>", best ? " class='best'" : "",
-                          fmt::format(fmt::runtime(column.format), column.value(*c)));
-    }
-    rows += "</tr>\n";
-  }
-  return fmt::format("<div class='table'><table><tr><th>image</th>{}</tr>\n{}</table></div>\n", head, rows);
+const std::vector<Column>& columns() {
+  static const std::vector<Column> all{
+      {"relMSE", "{:.5f}", [](const SequenceFigures& f) { return f.relative_mse; }},
+      {"trimmed", "{:.5f}", [](const SequenceFigures& f) { return f.trimmed; }},
+      {"energy", "{:+.5f}", [](const SequenceFigures& f) { return f.energy; }},
+      {"FLIP", "{:.4f}", [](const SequenceFigures& f) { return f.flip; }},
+      {"bad pixels", "{:.0f}", [](const SequenceFigures& f) { return static_cast<double>(f.bad); }},
+      {"flicker", "{:.6f}", [](const SequenceFigures& f) { return f.flicker.value_or(std::nan("")); }}};
+  return all;
 }
 
 }  // namespace
 
-std::string comparison_page(const std::string& reference, const std::vector<Comparison>& comparisons,
-                            const DisplayParams& display) {
-  const std::string title = "Against " + reference;
-  std::string html =
-      page_head(title, page_width, rules) + "<h1>" + escaped(title) +
-      fmt::format("</h1>\n<p class='soft'>relMSE: mean of ((x - r)² - Var r) / (r² + {:g}); ", relmse_floor) +
-      "trimmed: without the 0.1 % worst pixels; energy: mean(x) / mean(r) - 1; FLIP: the difference that a viewer "
-      "notices when the pictures alternate, "
-      "0 "
-      "to 1. Arrow keys alternate the pictures.</p>\n";
-  std::size_t section = 0;
-  for (const std::string& layer : layers_of(comparisons)) {
-    std::vector<const Comparison*> images;
-    for (const Comparison& c : comparisons)
-      if (c.layer == layer) images.push_back(&c);
-    html += fmt::format("<h2>{}</h2>\n", escaped(shown_layer(*images.front()))) + table(images);
-    html += viewer(views_of(images, error_range(comparisons, layer), display), section++);
+ComparisonPage::ComparisonPage(const std::vector<std::string>& images, const std::vector<int>& frames,
+                               bool one_reference, const DisplayParams& display, std::size_t max_bytes)
+    : names_(short_names(images)),
+      frames_(frames),
+      page_(title(names_), display, max_bytes),
+      one_reference_(one_reference),
+      reference_layers_(one_reference ? 1 : frames.size()) {
+  if (!frames.empty()) page_.set_frames("frame", texts(frames));
+  for (std::size_t i = 0; i < images.size(); ++i) page_.add_image({names_[i], images[i], i + 1 == images.size()});
+}
+
+void ComparisonPage::put(std::size_t image, const std::vector<std::size_t>& frames, const ViewedLayer& layer,
+                         const Image& values) {
+  if (!page_.add_layer(image, frames, layer, values, false)) ++left_out_;
+}
+
+void ComparisonPage::add_reference(std::size_t frame, const ViewedLayer& layer, const Image& values) {
+  std::vector<std::string>& known = reference_layers_[one_reference_ ? 0 : frame];
+  if (std::find(known.begin(), known.end(), layer.slot) != known.end()) return;
+  known.push_back(layer.slot);
+  std::vector<std::size_t> frames{frame};
+  if (one_reference_) {
+    frames.resize(std::max<std::size_t>(frames_.size(), 1));
+    std::iota(frames.begin(), frames.end(), std::size_t{0});
   }
-  return html + page_end();
+  put(reference(), frames, layer, values);
+}
+
+void ComparisonPage::add(std::size_t image, std::size_t frame, const std::vector<Comparison>& comparisons,
+                         const Image& estimated) {
+  static const std::vector<std::string> rgb{"R", "G", "B"};
+  for (const Comparison& c : comparisons) {
+    const bool main = &c == &comparisons.front();
+    ViewedLayer picture{main ? "" : c.layer, shown_layer(c), rgb, c.x, c.y};
+    put(image, {frame}, picture, c.picture);
+    add_reference(frame, picture, c.reference);
+    ViewedLayer error{
+        map_slot("relMSE", c.layer, main), map_slot("relative error", c.layer, main), {"Y"}, c.x, c.y, true};
+    if (const LogRange range = log_range(c.error); range.high > range.low)
+      error.scale = MapScale{range.low, range.high, true};
+    error.listed = main;
+    put(image, {frame}, error, c.error);
+    ViewedLayer flip{map_slot("FLIP", c.layer, main),
+                     map_slot("FLIP", c.layer, main),
+                     {"Y"},
+                     c.x,
+                     c.y,
+                     true,
+                     MapScale{0, 1, false},
+                     MapColors::Magma};
+    flip.listed = main;
+    put(image, {frame}, flip, c.flip_map);
+  }
+  const Comparison& main = comparisons.front();
+  for (const WorstPixel& pixel : worst_pixels(main.error, worst_count, worst_distance))
+    worst_.push_back({image, frame, main.x + pixel.x, main.y + pixel.y, pixel.value});
+  if (estimated.empty()) return;
+  ViewedLayer map{"estimated", "estimated relative error", {"Y"}, main.x, main.y, true};
+  if (const LogRange range = log_range(estimated); range.high > range.low)
+    map.scale = MapScale{range.low, range.high, true};
+  map.listed = true;
+  put(image, {frame}, map, estimated);
+  reliability_.push_back({image, frame, reliability(estimated, main.picture, main.reference, main.reference_variance)});
+}
+
+std::string ComparisonPage::link(std::size_t image, std::size_t frame, const std::string& more) const {
+  return fmt::format("#a={}&amp;b={}{}{}", image, reference(), frame > 0 ? fmt::format("&amp;frame={}", frame) : "",
+                     more);
+}
+
+/// A row of figures for each image. Where there are several, the best figure of each column stands out.
+std::string ComparisonPage::figures(const std::vector<std::vector<Comparison>>& comparisons,
+                                    const std::string& layer) const {
+  std::vector<std::pair<std::size_t, SequenceFigures>> rows;
+  bool flickers = false, main = true;
+  std::string shown;
+  for (std::size_t i = 0; i < comparisons.size(); ++i) {
+    std::vector<const Comparison*> frames;
+    for (const Comparison& c : comparisons[i])
+      if (c.layer == layer) frames.push_back(&c);
+    if (frames.empty()) continue;
+    shown = shown_layer(*frames.front());
+    main = main && &comparisons[i].front() == frames.front();
+    rows.emplace_back(i, sequence_figures(frames));
+    flickers = flickers || rows.back().second.flicker;
+  }
+  std::string html = fmt::format("<h2>{}</h2>\n<div class=\"table\"><table><tr><th>image</th>", escaped(shown));
+  for (const Column& column : columns())
+    if (flickers || column.name != std::string("flicker")) html += fmt::format("<th>{}</th>", column.name);
+  html += "</tr>\n";
+  for (const auto& [image, figures] : rows) {
+    const auto to = [&](const char* what) -> std::string {
+      if (what == std::string("relMSE") || what == std::string("FLIP"))
+        return main ? link(image, 0, fmt::format("&amp;layer={}", what)) : "";
+      if (what == std::string("energy")) return main ? link(image, 0, "&amp;mode=difference&amp;kind=relative") : "";
+      return "";
+    };
+    html += main ? fmt::format("<tr><td><a href=\"{}\">{}</a></td>", link(image, 0, ""), escaped(names_[image]))
+                 : fmt::format("<tr><td>{}</td>", escaped(names_[image]));
+    for (const Column& column : columns()) {
+      if (!flickers && column.name == std::string("flicker")) continue;
+      const double value = column.value(figures);
+      const bool best = rows.size() > 1 && std::none_of(rows.begin(), rows.end(), [&](const auto& other) {
+                          return std::abs(column.value(other.second)) < std::abs(value);
+                        });
+      const std::string text = fmt::format(fmt::runtime(column.format), value), address = to(column.name);
+      html += fmt::format("<td{}>{}</td>", best ? " class=\"best\"" : "",
+                          address.empty() ? text : fmt::format("<a href=\"{}\">{}</a>", address, text));
+    }
+    html += "</tr>\n";
+  }
+  return html + "</table></div>\n";
+}
+
+std::string ComparisonPage::over_time(const std::vector<std::vector<Comparison>>& comparisons) const {
+  if (frames_.size() < 2) return {};
+  FramePlot error{"frame", "relMSE", {}}, flicker_plot{"frame", "flicker", {}};
+  for (std::size_t i = 0; i < comparisons.size(); ++i) {
+    if (comparisons[i].empty()) continue;
+    FramePlot::Series errors{names_[i], plot_color(i), {}}, flickers{names_[i], plot_color(i), {}};
+    for (const Comparison& c : comparisons[i]) {
+      if (c.layer != comparisons[i].front().layer) continue;
+      const auto at = std::find(frames_.begin(), frames_.end(), *c.frame) - frames_.begin();
+      const std::string address = link(i, static_cast<std::size_t>(at), "");
+      errors.points.push_back({*c.frame, c.score.relative_mse, address});
+      if (c.flicker) flickers.points.push_back({*c.frame, *c.flicker, address});
+    }
+    error.series.push_back(std::move(errors));
+    if (!flickers.points.empty()) flicker_plot.series.push_back(std::move(flickers));
+  }
+  return "<h2>Error over time</h2>\n" + svg_of(error) +
+         (flicker_plot.series.empty() ? std::string()
+                                      : "<h2>Flicker</h2>\n<p class=\"soft\">Half the mean squared change of the "
+                                        "relative error since the frame "
+                                        "before, without what the reference's noise adds.</p>\n" +
+                                            svg_of(flicker_plot));
+}
+
+std::string ComparisonPage::worst_section() const {
+  std::vector<Worst> worst = worst_;
+  std::stable_sort(worst.begin(), worst.end(), [](const Worst& a, const Worst& b) { return a.value > b.value; });
+  std::string html =
+      "<h2>Worst pixels</h2>\n<p class=\"soft\">The largest relative errors of each image, at most one within 6 "
+      "pixels. A "
+      "link goes there.</p>\n<div class=\"lists\">\n";
+  for (std::size_t image = 0; image < reference(); ++image) {
+    html += fmt::format("<div><h3>{}</h3><ol>", escaped(names_[image]));
+    std::size_t count = 0;
+    for (const Worst& pixel : worst) {
+      if (pixel.image != image || count == worst_count) continue;
+      ++count;
+      html += fmt::format(
+          "<li><a href=\"{}\">{}{}, {}</a>: {:.4g}</li>",
+          link(image, pixel.frame,
+               fmt::format("&amp;pixel=[{0},{1}]&amp;x={0}.5&amp;y={1}.5&amp;zoom=24", pixel.x, pixel.y)),
+          frames_.empty() ? "" : fmt::format("frame {}: ", frames_[pixel.frame]), pixel.x, pixel.y, pixel.value);
+    }
+    html += count == 0 ? "<li>no difference</li></ol></div>\n" : "</ol></div>\n";
+  }
+  return html + "</div>\n";
+}
+
+std::string ComparisonPage::reliability_section() const {
+  if (reliability_.empty()) return {};
+  LogPlot plot{"estimated relative error", "true relative error", {}, {}, {}};
+  double low = INFINITY, high = 0;
+  for (const Reliability& one : reliability_) {
+    const std::string name =
+        frames_.empty() ? names_[one.image] : fmt::format("{}, frame {}", names_[one.image], frames_[one.frame]);
+    PlotSeries series{name, plot_color(plot.series.size()), Marker::Disc, true, {}};
+    for (std::size_t k = 0; k < one.deciles.size(); ++k) {
+      const ReliabilityDecile& decile = one.deciles[k];
+      series.points.push_back(
+          {decile.estimated, decile.measured, "",
+           fmt::format("tenth {}: estimated {:.3g}, true {:.3g}", k + 1, decile.estimated, decile.measured)});
+      if (!(decile.estimated > 0) || !(decile.measured > 0)) continue;
+      low = std::min({low, decile.estimated, decile.measured});
+      high = std::max({high, decile.estimated, decile.measured});
+    }
+    plot.series.push_back(std::move(series));
+  }
+  if (high > low) plot.front = {{low, low}, {high, high}};
+  return "<h2>Reliability of the error map</h2>\n<p class=\"soft\">A point for each tenth of the pixels, from the "
+         "lowest "
+         "estimates to the highest. On the grey line the estimate is right; above it, the error is larger than "
+         "estimated.</p>\n" +
+         svg_of(plot);
+}
+
+std::string ComparisonPage::html(const std::vector<std::vector<Comparison>>& comparisons) {
+  if (left_out_ > 0)
+    page_.add_note(
+        fmt::format("{} pictures and maps were left out, as the page would be larger than --max-size.", left_out_));
+  std::vector<std::string> layers;
+  for (const std::vector<Comparison>& of_image : comparisons)
+    for (const Comparison& c : of_image)
+      if (std::find(layers.begin(), layers.end(), c.layer) == layers.end()) layers.push_back(c.layer);
+  std::string report =
+      fmt::format("<p class=\"soft\">relMSE: mean of ((x - r)² - Var r) / (r² + {:g}); ", relmse_floor) +
+      "trimmed: without the 0.1 % worst pixels; energy: mean(x) / mean(r) - 1; FLIP: the difference that a viewer "
+      "notices when the pictures alternate, 0 to 1. The links show the figures of each pixel.</p>\n";
+  for (const std::string& layer : layers) report += figures(comparisons, layer);
+  report += worst_section() + over_time(comparisons) + reliability_section();
+  return page_.html("polyrecon compare", report);
 }
 
 }  // namespace polyrecon

@@ -50,9 +50,13 @@ colorspaces:
           master: {control_points: [0, 0, 0.25, 0.03, 0.45, 0.19, 0.606, 0.46, 0.75, 0.75, 0.88, 0.93, 1, 1]}
 )";
 
-ocio::ConstConfigRcPtr current_config() {
+bool has_config() {
   const char* path = std::getenv("OCIO");
-  if (path && *path) return ocio::Config::CreateFromEnv();
+  return path && *path;
+}
+
+ocio::ConstConfigRcPtr current_config() {
+  if (has_config()) return ocio::Config::CreateFromEnv();
   std::istringstream text(built_in_config);
   return ocio::Config::CreateFromStream(text);
 }
@@ -105,6 +109,39 @@ Image to_display(const Image& linear, const DisplayParams& params) {
     throw Error(ExitCode::BadInput, std::string("OpenColorIO (check $OCIO): ") + e.what());
   }
   return out;
+}
+
+DisplayViews display_views(const std::string& wanted) {
+  try {
+    const ocio::ConstConfigRcPtr config = current_config();
+    const std::string display = config->getDefaultDisplay();
+    DisplayViews views;
+    for (int i = 0; i < config->getNumViews(display.c_str()); ++i)
+      views.names.emplace_back(config->getView(display.c_str(), i));
+    views.chosen = view_of(*config, display, wanted);
+    if (!has_config()) views.plain_srgb = "Standard";
+    return views;
+  } catch (const ocio::Exception& e) {
+    throw Error(ExitCode::BadInput, std::string("OpenColorIO (check $OCIO): ") + e.what());
+  }
+}
+
+DisplayTable display_table(const std::string& view) {
+  // From 0 to 2^10 in steps of less than half a stop: between them a curve for displays is as good as straight.
+  constexpr int size = 48;
+  constexpr double scale = 4096;
+  DisplayTable table{size, scale, std::log2(1024 * scale + 1), Image(size * size, size, 3)};
+  const auto level = [&](int i) { return static_cast<Real>((std::exp2(table.length * i / (size - 1)) - 1) / scale); };
+  for (int blue = 0; blue < size; ++blue)
+    for (int green = 0; green < size; ++green)
+      for (int red = 0; red < size; ++red) {
+        const int x = green * size + red;
+        table.colors.at(x, blue, 0) = level(red);
+        table.colors.at(x, blue, 1) = level(green);
+        table.colors.at(x, blue, 2) = level(blue);
+      }
+  table.colors = to_display(table.colors, {0, view});
+  return table;
 }
 
 LogRange log_range(const Image& values) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "polyrecon/image.h"
 
@@ -17,6 +18,27 @@ struct DisplayParams {
 /// "Filmic" (16.5 stops under a soft shoulder). Pixels that are not finite come out magenta.
 /// Throws Error{BadInput} where $OCIO cannot be used, Error{Usage} for an unknown view, naming the known ones.
 Image to_display(const Image& linear, const DisplayParams& params);
+
+/// The views of the default display of the configuration that to_display uses.
+struct DisplayViews {
+  std::vector<std::string> names;
+  std::string chosen;  ///< The requested one, else the default view.
+  std::string
+      plain_srgb;  ///< The one that is the plain sRGB curve, if it is known: that of the built-in configuration.
+};
+
+/// wanted: as DisplayParams::view. Throws like to_display.
+DisplayViews display_views(const std::string& wanted);
+
+/// A view as a table: what it makes of radiances between which the rest is interpolated.
+struct DisplayTable {
+  int size = 0;  ///< Levels of each channel. Level i is (2^(length * i / (size - 1)) - 1) / scale.
+  double scale = 0, length = 0;
+  Image colors;  ///< 3 channels, 0 to 1; size * size wide: red runs fastest, then green; size high: blue.
+};
+
+/// Throws like to_display.
+DisplayTable display_table(const std::string& view);
 
 /// The values at the ends of a false-colour scale; logarithmic between.
 struct LogRange {

@@ -10,7 +10,4 @@ namespace polyrecon {
 /// Throws Error{CannotWrite}; an older file is then untouched.
 void write_png(const std::string& target, const Image& rgb);
 
-/// rgb (3 channels, 0..1) as 8-bit PNG in a data URI: what a web page shows without a file next to it.
-std::string png_data_uri(const Image& rgb);
-
 }  // namespace polyrecon

@@ -1,0 +1,229 @@
+'use strict';
+// The data of the page: its description, and its layers, which are unpacked when they are first needed.
+
+const scene = JSON.parse(document.getElementById('scene').textContent);
+
+/** Luminance of linear Rec. 709 colours. */
+const luminanceWeights = [0.2126, 0.7152, 0.0722];
+
+/** Added to the squared reference that relative errors divide by, as in relMSE. */
+const relativeFloor = scene.relativeFloor;
+
+/** The values of all 65536 half floats. */
+const halfValues = (() => {
+  const values = new Float32Array(65536);
+  for (let code = 0; code < 65536; ++code) {
+    const exponent = (code >> 10) & 31;
+    const fraction = code & 1023;
+    let size = exponent ? 2 ** (exponent - 15) * (1 + fraction / 1024) : 2 ** -14 * (fraction / 1024);
+    if (exponent === 31) size = fraction ? NaN : Infinity;
+    values[code] = code & 32768 ? -size : size;
+  }
+  return values;
+})();
+
+/** A half float that is close to a number: histograms count these. */
+const nearHalf = (() => {
+  const number = new Float32Array(1);
+  const bits = new Uint32Array(number.buffer);
+  return (value) => {
+    number[0] = value;
+    const sign = (bits[0] >>> 16) & 32768;
+    const exponent = ((bits[0] >>> 23) & 255) - 112;
+    if (exponent === 143) return sign | 31744 | (bits[0] & 8388607 ? 512 : 0);
+    if (exponent >= 31) return sign | 31743;
+    return exponent <= 0 ? sign | Math.round(Math.abs(value) * 2 ** 24) : sign | (exponent << 10) | ((bits[0] >>> 13) & 1023);
+  };
+})();
+
+/** The text of a block. The page's script runs before the blocks are parsed, so that the first picture does not wait for
+ * the others. A block is whole once something follows it. */
+async function blockText(id) {
+  for (;;) {
+    const element = document.getElementById(id);
+    if (document.readyState !== 'loading' || element?.nextElementSibling) return element.textContent;
+    await new Promise((resolve) => setTimeout(resolve, 20));
+  }
+}
+
+/** The bytes of a block of the page. */
+async function inflated(id) {
+  const text = await blockText(id);
+  const packed = Uint8Array.fromBase64
+    ? Uint8Array.fromBase64(text)
+    : Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
+  const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream('deflate'));
+  return new Uint8Array(await new Response(stream).arrayBuffer());
+}
+
+/** What Layer.marks says of a pixel. */
+const Mark = { NaN: 1, Infinite: 2 };
+
+/**
+ * One layer of one image in one frame, unpacked. Halves stay halves; a sample's place in its plane is
+ * (y - this.y) * width + (x - this.x).
+ */
+class Layer {
+  constructor(info, bytes) {
+    [this.x, this.y, this.width, this.height] = info.window;
+    this.info = info;
+    this.half = info.type === 'half';
+    this.pixels = this.width * this.height;
+    this.marks = null; // Where it is not finite; null: nowhere.
+    this.planes = info.channels.map((_, c) => (this.half ? this.#halves(bytes, c) : this.#floats(bytes, c)));
+    this.bytes = this.planes.length * this.pixels * (this.half ? 2 : 4);
+  }
+
+  // A plane is stored as differences of successive bit patterns, first all their high bytes, then all the lower ones:
+  // so zlib packs it better.
+  #halves(bytes, channel) {
+    const out = new Uint16Array(this.pixels);
+    const high = 2 * channel * this.pixels;
+    const low = high + this.pixels;
+    for (let i = 0, value = 0; i < this.pixels; ++i) {
+      value = (value + (bytes[high + i] << 8) + bytes[low + i]) & 65535;
+      out[i] = value;
+      if ((value & 31744) === 31744) this.#mark(i, value & 1023);
+    }
+    return out;
+  }
+
+  #floats(bytes, channel) {
+    const out = new Float32Array(this.pixels);
+    const bits = new Uint32Array(out.buffer);
+    const n = this.pixels;
+    const at = 4 * channel * n;
+    for (let i = 0, value = 0; i < n; ++i) {
+      value = (value + (bytes[at + i] << 24) + (bytes[at + n + i] << 16) + (bytes[at + 2 * n + i] << 8) + bytes[at + 3 * n + i]) | 0;
+      bits[i] = value;
+      if ((value & 0x7f800000) === 0x7f800000) this.#mark(i, value & 0x7fffff);
+    }
+    return out;
+  }
+
+  #mark(at, fraction) {
+    this.marks ??= new Uint8Array(this.pixels);
+    this.marks[at] = fraction || this.marks[at] === Mark.NaN ? Mark.NaN : Mark.Infinite;
+  }
+
+  contains(x, y) {
+    return x >= this.x && y >= this.y && x < this.x + this.width && y < this.y + this.height;
+  }
+
+  at(channel, x, y) {
+    const sample = this.planes[channel][(y - this.y) * this.width + (x - this.x)];
+    return this.half ? halfValues[sample] : sample;
+  }
+
+  /** The values of a pixel, one for each channel; null outside. */
+  values(x, y) {
+    return this.contains(x, y) ? this.planes.map((_, c) => this.at(c, x, y)) : null;
+  }
+
+  /** The planes that are shown as red, green and blue. */
+  rgbPlanes() {
+    return this.planes.length === 3 ? [0, 1, 2] : [0, 0, 0];
+  }
+}
+
+/** Unpacks layers once and keeps the ones used last, up to a limit of memory. */
+class LayerCache {
+  #limit = 1.5e9; // bytes
+  #promises = new Map();
+  #ready = new Map();
+
+  /** The layer if it is unpacked already. */
+  get(index) {
+    const layer = this.#ready.get(index);
+    if (layer) {
+      this.#ready.delete(index); // moves it to the end: it was used last
+      this.#ready.set(index, layer);
+    }
+    return layer;
+  }
+
+  load(index) {
+    const ready = this.get(index);
+    if (ready) return Promise.resolve(ready);
+    if (!this.#promises.has(index)) this.#promises.set(index, this.#unpack(index));
+    return this.#promises.get(index);
+  }
+
+  async #unpack(index) {
+    const layer = new Layer(scene.layers[index], await inflated(scene.layers[index].block));
+    this.#promises.delete(index);
+    this.#ready.set(index, layer);
+    let bytes = 0;
+    for (const one of this.#ready.values()) bytes += one.bytes;
+    for (const [old, one] of this.#ready) {
+      if (bytes <= this.#limit || old === index) break;
+      bytes -= one.bytes;
+      this.#ready.delete(old);
+    }
+    return layer;
+  }
+}
+
+const layers = new LayerCache();
+
+/** Indices of an image's layers in a frame; empty where it has none. */
+const layersOf = (image, frame) => scene.images[image]?.frames[frame] ?? [];
+
+/** The layer of an image that is shown for a slot, as an index: the one of that slot, else its first; -1: none. */
+function layerFor(image, frame, slot) {
+  const all = layersOf(image, frame);
+  return all.find((index) => scene.layers[index].slot === slot) ?? all[0] ?? -1;
+}
+
+/** The slots of all images in a frame, each once, with the text for people. */
+function slotsOf(frame) {
+  const found = new Map();
+  scene.images.forEach((_, image) => {
+    for (const index of layersOf(image, frame)) {
+      const { slot, label } = scene.layers[index];
+      if (!found.has(slot)) found.set(slot, label);
+    }
+  });
+  return found;
+}
+
+/** The rectangle that holds all layers of a frame: [x, y, width, height]. */
+function extentOf(frame) {
+  const windows = scene.images.flatMap((_, image) => layersOf(image, frame).map((index) => scene.layers[index].window));
+  if (!windows.length) return [0, 0, 1, 1];
+  const x0 = Math.min(...windows.map((w) => w[0]));
+  const y0 = Math.min(...windows.map((w) => w[1]));
+  const x1 = Math.max(...windows.map((w) => w[0] + w[2]));
+  const y1 = Math.max(...windows.map((w) => w[1] + w[3]));
+  return [x0, y0, x1 - x0, y1 - y0];
+}
+
+const referenceImage = scene.images.findIndex((image) => image.reference);
+
+const luminance = (rgb) => rgb[0] * luminanceWeights[0] + rgb[1] * luminanceWeights[1] + rgb[2] * luminanceWeights[2];
+
+/** The kinds of difference of A and B: of two samples, and whether it has a sign. The shader has the same formulas. */
+const differences = {
+  signed: { label: 'A - B', signed: true, of: (a, b) => a - b },
+  absolute: { label: '|A - B|', signed: false, of: (a, b) => Math.abs(a - b) },
+  relative: { label: '(A - B) / B', signed: true, of: (a, b) => (a - b) / Math.sqrt(b * b + relativeFloor) },
+  squared: { label: 'squared relative', signed: false, of: (a, b) => ((a - b) * (a - b)) / (b * b + relativeFloor) },
+};
+
+/** Mean over the channels of a difference of two pixels. */
+function difference(kind, a, b) {
+  const n = Math.min(a.length, b.length);
+  let sum = 0;
+  for (let c = 0; c < n; ++c) sum += differences[kind].of(a[c], b[c]);
+  return sum / n;
+}
+
+/** A number in few letters. */
+function short(value, digits = 4) {
+  if (!Number.isFinite(value)) return Number.isNaN(value) ? 'NaN' : value > 0 ? '+Inf' : '-Inf';
+  if (value === 0) return '0';
+  const size = Math.abs(value);
+  if (size >= 1e6 || size < 1e-4) return value.toExponential(digits - 2).replace('e+', 'e');
+  if (Number.isInteger(value)) return String(value);
+  return value.toPrecision(digits);
+}
