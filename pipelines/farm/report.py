@@ -4,6 +4,8 @@
 import collections
 import concurrent.futures
 import dataclasses
+import html
+import json
 import math
 import pathlib
 import re
@@ -18,9 +20,11 @@ from ..common import process
 from ..common.arguments import Parser, add_program
 from ..common.decode import InvalidFileError, decode, read_json
 from ..common.errors import DriverError, ExitCode, run_main
-from ..common.frame_names import parse_ranges, ranges_text
-from ..common.polyrecon_cli import find_polyrecon
-from ..common.terminal import print_lines
+from ..common.files import write_text
+from ..common.frame_names import frame_path, parse_ranges, ranges_text
+from ..common.polyrecon_cli import Polyrecon, find_polyrecon
+from ..common.terminal import print_lines, printable
+from ..common.work_folder import WorkFolder
 from .job import FRAME_ERROR, RECORDS, REPORT_FILE, Job, chunks, write_json
 
 EXAMPLES = """\
@@ -28,6 +32,7 @@ examples:
   %(prog)s out/polyrecon_farm/shot                 # folder of a job, at any time
   %(prog)s -i shot.####.exr -o out/shot.####.exr --frames 1-100 -- --quality best
 """
+PAGE_FRAMES = 24  # in a page: at half their size, input and result of as many HD frames stay below view's --max-size
 FINISHED = re.compile(r"frame (-?\d+): .*, finished already: skipped")
 
 
@@ -167,7 +172,30 @@ def lines_of(found):
     return lines
 
 
-def make_report(job, folder, processes, openjd):
+def write_page(job, finished, found, page):
+    """A page (docs/reference/view.md) with finished frames to look into, above the lines of the report."""
+    frames = sorted(finished)
+    if len(frames) > PAGE_FRAMES:
+        frames = [frames[k * (len(frames) - 1) // (PAGE_FRAMES - 1)] for k in range(PAGE_FRAMES)]
+    patterns = {"input": job.input, "result": job.output} if frames else {}
+    lines = "".join(f"<li>{html.escape(printable(line))}</li>" for line in lines_of(found))
+    description = {
+        "title": f"{pathlib.Path(job.output).name}: {found['finished']} of {found['frames']} frames",
+        "subtitle": f"{len(frames)} of them are in the page, at half their size",
+        "frames": [str(frame) for frame in frames],
+        "images": [
+            {"name": name, "files": [str(frame_path(pattern, frame)) for frame in frames]}
+            for name, pattern in patterns.items()
+        ],
+        "first_layers_only": True,
+        "report": f"<h2>Report</h2><ul>{lines}</ul>",
+    }
+    with WorkFolder("report") as work:
+        write_text(work / "page.json", json.dumps(description))
+        Polyrecon(job.polyrecon).run("view", "--page", work / "page.json", "-o", page, "--scale", "2")
+
+
+def make_report(job, folder, processes, openjd, page=None):
     def report_progress(checked):
         if openjd:
             print_lines(f"openjd_progress: {100 * checked / len(job.frames):.1f}")
@@ -177,6 +205,8 @@ def make_report(job, folder, processes, openjd):
     if folder:
         write_json(pathlib.Path(folder) / REPORT_FILE, found)
     print_lines(*lines_of(found))
+    if page:
+        write_page(job, finished, found, page)
     if openjd:
         print_lines(f"openjd_status: {found['finished']} of {found['frames']} frames are finished")
     if found["unfinished"]:
@@ -202,6 +232,9 @@ def arguments(words):
         default="none",
         help="openjd: lines for an Open Job Description session",
     )
+    parser.add_argument(
+        "--html", metavar="FILE", help=f"write a page too, in which to look at up to {PAGE_FRAMES} finished frames"
+    )
     add_program(parser)
     parser.add_argument(
         "options", nargs="*", metavar="-- OPTION", help="further options that the frames were denoised with"
@@ -225,7 +258,7 @@ def main(words=None):
             frames = parse_ranges(options.frames)
             program = str(find_polyrecon(options.polyrecon))
             job = Job(options.input, options.output, frames, program, options.options)
-        make_report(job, options.folder, max(1, options.processes), options.progress == "openjd")
+        make_report(job, options.folder, max(1, options.processes), options.progress == "openjd", options.html)
 
     return run_main("polyrecon-farm", work, words)
 

@@ -1,8 +1,7 @@
 """The report of a loop: a page, and a few lines for the terminal."""
 
-import base64
+import json
 import math
-import os
 import pathlib
 
 import jinja2
@@ -17,7 +16,7 @@ from .folder import PassFolder
 
 TEMPLATE = pathlib.Path(__file__).with_name("report.html.j2")
 FEW_SAMPLES = 64  # per pixel: up to here a network's picture is worth its seconds (docs/guide/second_opinion.md)
-CURVE = {"width": 640, "height": 240, "margin": 48}  # Pixels
+CURVE = {"width": 1000, "height": 300, "left": 74, "right": 984, "top": 14, "bottom": 250}  # Pixels
 
 
 def lines(result, settings, verbose):
@@ -64,8 +63,8 @@ def _advice(result, settings):
 
 
 def write(result, settings, polyrecon, pages):
-    """Writes the report to each path of `pages`. It holds its pictures and loads nothing. Where these cannot be made, a
-    note says so."""
+    """Writes the report to each path of `pages`: a viewer with what each round knew, and figures. It holds its
+    pictures and loads nothing. Where these cannot be made, a note says so."""
     environment = jinja2.Environment(
         autoescape=True,
         trim_blocks=True,
@@ -74,27 +73,47 @@ def write(result, settings, polyrecon, pages):
         finalize=lambda value: printable(value) if isinstance(value, str) else value,
     )
     environment.filters["error_text"] = _error_text
-    passes = PassFolder(settings.files.passes)
-    rounds = result.state.rounds
+    template = environment.from_string(TEMPLATE.read_text(encoding="utf-8"))
     with WorkFolder("report") as folder:
-        files = [_files_of(entry.round, passes) for entry in rounds]
-        files.append([result.merged, settings.files.output, result.error_map])
         try:
-            *pictures, final = _pictures(polyrecon, files, folder)
+            page = _make_page(result, settings, polyrecon, template, _images(result, settings), folder)
         except DriverError as error:  # The frame is finished, so it does not fail for a page's pictures.
             result.audit.notes.append(f"the report has no pictures: {error}")
-            pictures, final = [None] * len(rounds), None
-    page = environment.from_string(TEMPLATE.read_text(encoding="utf-8")).render(
-        result=result,
-        settings=settings,
-        program=polyrecon.describe(),
-        rounds=list(zip(rounds, pictures)),
-        final=final,
-        curve=_curve(result),
-        size=CURVE,
-    )
+            page = _make_page(result, settings, polyrecon, template, [], folder)
     for path in pages:
         write_text(path, page)
+
+
+def _make_page(result, settings, polyrecon, template, images, folder):
+    """The text of the page, which the program makes from a description (docs/reference/view.md)."""
+    files = settings.files
+    description = {
+        "title": files.output.name + ("" if files.number is None else f", frame {files.number}"),
+        "subtitle": f"{result.renderer}, {polyrecon.describe()}, {result.audit.width} x {result.audit.height}",
+        "frame_name": "round",
+        "frames": [f"{entry.round}: {entry.samples:.3g} spp" for entry in result.state.rounds] + ["result"],
+        "images": images,
+        "report": template.render(result=result, settings=settings, curve=_curve(result), size=CURVE),
+    }
+    write_text(folder / "page.json", json.dumps(description))
+    polyrecon.run("view", "--page", folder / "page.json", "-o", folder / "page.html")
+    return (folder / "page.html").read_text(encoding="utf-8")
+
+
+def _images(result, settings):
+    """What was known after each round, and at the end: the images of the page, with a file for each."""
+    passes, rounds = PassFolder(settings.files.passes), result.state.rounds
+    in_rounds = [
+        ("input", "noisy", 0, result.merged),
+        ("result", "clean", 0, settings.files.output),
+        ("estimated error", "error", 0, result.error_map),
+        ("samples that followed", "samples", 1, None),
+    ]
+    images = []
+    for name, file, later, at_the_end in in_rounds:
+        files = [passes.in_round(entry.round + later, file) for entry in rounds] + [at_the_end]
+        images.append({"name": name, "files": [str(path) if path and path.exists() else None for path in files]})
+    return images
 
 
 def _seconds_text(seconds):
@@ -105,38 +124,43 @@ def _error_text(error):
     return "unknown" if error is None or not math.isfinite(error) else f"{error:.3g}"
 
 
-def _files_of(number, passes):
-    """The knowledge after a round, and the samples that followed."""
-    following = passes.in_round(number + 1, "samples")
-    files = [passes.in_round(number, name) for name in ("noisy", "clean", "error")]
-    return [*files, following] if following.exists() else files
-
-
-def _pictures(polyrecon, file_lists, folder):
-    """A PNG in base64 for each list of files. As many programs run at once as there are processors."""
-    targets = [folder / f"{number}.png" for number in range(len(file_lists))]
-    words = [[*files, "-o", target] for files, target in zip(file_lists, targets)]
-    for begin in range(0, len(words), step := os.cpu_count() or 1):
-        polyrecon.run_side_by_side("preview", words[begin : begin + step])
-    return [base64.b64encode(target.read_bytes()).decode() for target in targets]
-
-
 def _curve(result):
-    """Points of the estimated error against seconds, both logarithmic, in pixels of the drawing: [{x, y, label}]."""
-    points = [(entry.seconds, entry.error) for entry in result.state.rounds] + [(result.seconds, result.error)]
-    points = [(x, y) for x, y in points if y is not None and math.isfinite(y) and y > 0]
-    across = _scaled([math.log(max(x, 1e-3)) for x, _ in points], CURVE["width"])
-    upwards = _scaled([math.log(y) for _, y in points], CURVE["height"])
-    return [
-        {"x": round(left, 1), "y": round(CURVE["height"] - up, 1), "label": f"{x:.3g} s, {y:.3g}"}
-        for (x, y), left, up in zip(points, across, upwards)
+    """The estimated error against seconds, both logarithmic, in pixels of the drawing: points, and the ticks of both
+    axes. `frame` of a point is its place among the frames of the viewer."""
+    found = [(entry.seconds, entry.error) for entry in result.state.rounds] + [(result.seconds, result.error)]
+    points = [
+        (frame, max(x, 1e-3), y) for frame, (x, y) in enumerate(found) if y is not None and math.isfinite(y) and y > 0
     ]
+    if not points:
+        return {"points": [], "across": [], "upwards": []}
+    across = _LogAxis([x for _, x, _ in points], CURVE["left"], CURVE["right"])
+    upwards = _LogAxis([y for _, _, y in points], CURVE["bottom"], CURVE["top"])
+    return {
+        "points": [
+            {"x": across.at(x), "y": upwards.at(y), "label": f"{x:.3g} s, {y:.3g}", "frame": frame}
+            for frame, x, y in points
+        ],
+        "across": across.ticks(),
+        "upwards": upwards.ticks(),
+    }
 
 
-def _scaled(values, length):
-    """Values as places between the margins of an axis."""
-    if not values:
-        return []
-    low, high = min(values), max(values)
-    scale = (length - 2 * CURVE["margin"]) / ((high - low) or 1)
-    return [CURVE["margin"] + (value - low) * scale for value in values]
+class _LogAxis:
+    """A logarithmic axis over some values, with room at both ends, from one pixel of the drawing to another."""
+
+    def __init__(self, values, begin, end):
+        room = max((max(values) / min(values)) ** 0.06, 1.1)
+        self.low, self.high = math.log(min(values) / room), math.log(max(values) * room)
+        self.begin, self.end = begin, end
+
+    def at(self, value):
+        part = (math.log(value) - self.low) / (self.high - self.low)
+        return round(self.begin + (self.end - self.begin) * part, 1)
+
+    def ticks(self):
+        """1, 2 and 5 times the powers of ten, more on a short axis: where each is, and its text."""
+        decades = (self.high - self.low) / math.log(10)
+        digits = (1,) if decades > 4 else (1, 2, 5) if decades > 1 else (1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 8)
+        powers = range(math.floor(self.low / math.log(10)), math.ceil(self.high / math.log(10)) + 1)
+        values = [digit * 10.0**power for power in powers for digit in digits]
+        return [{"at": self.at(v), "text": f"{v:g}"} for v in values if self.low <= math.log(v) <= self.high]

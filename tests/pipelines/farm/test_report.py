@@ -4,6 +4,7 @@ import contextlib
 import io
 import json
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -67,6 +68,20 @@ class Reports(unittest.TestCase):
         (self.folder / RECORDS / "x.json").write_bytes(b"[" * 100000)
         os.mkfifo(self.folder / RECORDS / "y.json")
         self.assertEqual(len(report.records_of(self.folder)), 2)
+
+    def test_a_page_shows_finished_frames(self):
+        make_shot(self.folder, [1, 2])
+        job = Job(str(self.folder / "shot.####.exr"), str(self.folder / "out.####.exr"), [1, 2, 3], POLYRECON, [])
+        subprocess.run(job.words([1, 2]), check=True, capture_output=True)
+        page = self.folder / "page.html"
+        with contextlib.redirect_stdout(io.StringIO()), self.assertRaises(DriverError):
+            report.make_report(job, self.folder, 1, False, page)
+        text = page.read_text(encoding="utf-8")
+        scene = json.loads(re.search('<script type="application/json" id="scene">(.*)</script>', text)[1])
+        self.assertEqual(scene["frames"], ["1", "2"])
+        self.assertEqual([image["name"] for image in scene["images"]], ["input", "result"])
+        self.assertEqual([layer["window"][2:] for layer in scene["layers"]], [[32, 18]] * 4)
+        self.assertIn("<li>2 of 3 frames are finished</li>", text)
 
     def test_jobs_that_are_edited_are_refused(self):
         self.job.save(self.folder)

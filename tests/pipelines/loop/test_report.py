@@ -1,3 +1,5 @@
+import json
+import re
 import tempfile
 import unittest
 from pathlib import Path
@@ -11,11 +13,16 @@ from pipelines.loop.budget import Budget
 from tests.pipelines.loop.synthetic import loop
 
 
-class WithoutPreview(Polyrecon):
+class WithoutPictures(Polyrecon):
     def run_side_by_side(self, command, word_lists):
-        if command == "preview":
-            raise DriverError(ExitCode.MISSING, "polyrecon preview: no library for pictures")
+        if command == "view" and json.loads(Path(word_lists[0][1]).read_text(encoding="utf-8"))["images"]:
+            raise DriverError(ExitCode.MEMORY, "polyrecon view: not enough memory")
         return super().run_side_by_side(command, word_lists)
+
+
+def scene(page):
+    """What the page says of its images."""
+    return json.loads(re.search('<script type="application/json" id="scene">(.*)</script>', page)[1])
 
 
 class Report(unittest.TestCase):
@@ -25,12 +32,20 @@ class Report(unittest.TestCase):
             _, result = loop(folder, budget)
             settings = Settings(Frame(None, Path(folder, "passes"), Path(folder, "out.exr")), budget)
             pages = [Path(folder, "pages", "a.html"), Path(folder, "b.html")]
-            for polyrecon, pictures in ((Polyrecon(), 2), (WithoutPreview(), 0)):
-                report.write(result, settings, polyrecon, pages)
-                for page in pages:
-                    self.assertEqual(page.read_text(encoding="utf-8").count("<img"), pictures)
-            note = "the report has no pictures: polyrecon preview: no library for pictures"
-            self.assertIn(f"<p>{note}</p>", pages[0].read_text(encoding="utf-8"))
+            report.write(result, settings, Polyrecon(), pages)
+            text = pages[0].read_text(encoding="utf-8")
+            self.assertEqual(text, pages[1].read_text(encoding="utf-8"))
+            shown = scene(text)
+            rounds = len(result.state.rounds)
+            self.assertEqual(len(shown["frames"]), rounds + 1)
+            self.assertEqual([image["name"] for image in shown["images"][:3]], ["input", "result", "estimated error"])
+            self.assertTrue(all(frame for image in shown["images"][:3] for frame in image["frames"]))
+            self.assertEqual(text.count("<circle"), rounds + 1)
+            report.write(result, settings, WithoutPictures(), pages)
+            text = pages[0].read_text(encoding="utf-8")
+            self.assertEqual(scene(text)["images"], [])
+            note = "the report has no pictures: polyrecon view: not enough memory"
+            self.assertIn(f"<p>{note}</p>", text)
             self.assertIn(note, result.audit.notes)
 
     def test_a_frame_ends_in_three_lines(self):
