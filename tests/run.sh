@@ -42,7 +42,7 @@ oidn=$(find "$PWD"/build/venv/lib -path '*/pyoidn/oidn/lib/libOpenImageDenoise.s
 export POLYRECON_OIDN=$oidn
 
 echo "== unit tests"
-for program in unit_tests command_line_tests program_tests; do
+for program in unit_tests command_line_tests program_tests library_tests; do
   in_shares "build/dev/tests/$program"
 done
 

@@ -3,6 +3,7 @@
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <memory>
@@ -40,7 +41,8 @@ int processors() { return tbb::info::default_concurrency(); }
 
 int threads() {
   const std::size_t limit = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
-  return static_cast<int>(std::min(limit, static_cast<std::size_t>(processors())));
+  const int most = std::min(processors(), tbb::this_task_arena::max_concurrency());
+  return static_cast<int>(std::min(limit, static_cast<std::size_t>(most)));
 }
 
 void set_thread_limit(int threads) {

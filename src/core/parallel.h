@@ -25,7 +25,8 @@ double ordered_sum(std::size_t count, const std::function<double(std::size_t)>& 
 /// Number of processors that the process may use; at least 1.
 int processors();
 
-/// Number of threads that work at the same time: that of set_thread_limit, else of the processors.
+/// Number of threads that work at the same time: that of set_thread_limit or of the current TBB arena, else of the
+/// processors.
 int threads();
 
 /// Limits the number of threads of this process; 0 means all processors.

@@ -4,27 +4,19 @@
 
 #include <dlfcn.h>
 #include <fmt/format.h>
-#include <sys/auxv.h>
 
-#include <filesystem>
+#include <string>
 
+#include "module/module_folder.h"
 #include "module/picture_functions.h"
 #include "polyrecon/error.h"
 
 namespace polyrecon {
 namespace {
 
-/// The module has a fixed place relative to the program, so that both can be moved together. The program's path is not
-/// taken from /proc/self/exe, because /proc may not be mounted.
-std::string module_path() {
-  // NOLINTNEXTLINE(performance-no-int-to-ptr): the system returns the address as a number
-  const auto* program = reinterpret_cast<const char*>(::getauxval(AT_EXECFN));
-  const auto folder = std::filesystem::canonical(program).parent_path();
-  return (folder / POLYRECON_PICTURES).lexically_normal().string();
-}
-
 const PictureFunctions& load() {
-  void* module = ::dlopen(module_path().c_str(), RTLD_NOW | RTLD_LOCAL);
+  const std::string path = (module_folder() / POLYRECON_PICTURES).lexically_normal().string();
+  void* module = ::dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
   const void* functions = module ? ::dlsym(module, "polyrecon_picture_functions") : nullptr;
   if (!functions)
     throw Error(ExitCode::Missing,

@@ -1,6 +1,7 @@
 # cpack runs this script on the files before it packs them. Debian wants manuals and changelogs compressed (gzip -n gives
 # the same bits in every build), and the zsh completions of packages in the folder vendor-completions.
 file(GLOB_RECURSE documents "${CPACK_TEMPORARY_DIRECTORY}/*.1" "${CPACK_TEMPORARY_DIRECTORY}/changelog")
+list(FILTER documents EXCLUDE REGEX "[.]so[.]")  # libpolyrecon.so.1 is no manual
 foreach(document IN LISTS documents)
   execute_process(COMMAND gzip -9n ${document} COMMAND_ERROR_IS_FATAL ANY)
 endforeach()

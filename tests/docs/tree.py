@@ -7,7 +7,7 @@ import re
 import tokenize
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-FOLDERS = ("docs", "include", "pipelines", "samples", "src", "tests")
+FOLDERS = ("docs", "include", "pipelines", "python", "samples", "src", "tests")
 SCRIPTS = {".cmake", ".sh", ".toml", ".yaml", ".txt", ""}
 
 

@@ -17,6 +17,7 @@ import unittest
 PROGRAM, BUILD, SAMPLES = (pathlib.Path(word).resolve() for word in sys.argv[1:4])
 MODULE = "polyrecon_pictures.so"
 CONSUMER = pathlib.Path(__file__).resolve().parent / "consumer"
+EXAMPLE = pathlib.Path(__file__).resolve().parents[2] / "docs" / "guide" / "examples" / "denoise.c"
 INCLUDE = pathlib.Path(__file__).resolve().parents[2] / "include"
 
 
@@ -48,6 +49,25 @@ class Install(Folder):
         self.assertGreater(
             float(re.search(r"relMSE (\S+)", run(PROGRAM, "compare", noisy, theirs)).group(1)), 1e-4, "nothing changed"
         )
+
+    def test_programs_in_c_build_against_the_shared_library_alone(self):
+        prefix = self.folder / "prefix"
+        for component in ("runtime", "library"):
+            run("cmake", "--install", BUILD, "--prefix", prefix, "--component", component)
+        for archive in prefix.rglob("*.a"):
+            archive.unlink()
+        (pkg_config,) = prefix.rglob("polyrecon.pc")
+        environment = {**os.environ, "PKG_CONFIG_PATH": str(pkg_config.parent)}
+        words = ["pkg-config", "--cflags", "--libs", "polyrecon"]
+        told = subprocess.run(words, env=environment, capture_output=True, text=True, check=True).stdout.split()
+        rpath = f"-Wl,-rpath,{pkg_config.parents[1]}"
+        run("cc", EXAMPLE, "-o", self.folder / "by_pkg_config", *told, rpath)
+        build = self.folder / "build"
+        run("cmake", "-S", CONSUMER / "c", "-B", build, "-G", "Ninja", f"-DCMAKE_PREFIX_PATH={prefix}")
+        run("cmake", "--build", build)
+        for name, program in {"a.exr": self.folder / "by_pkg_config", "b.exr": build / "consumer"}.items():
+            run(program, SAMPLES / "study_small_0.exr", self.folder / name)
+        run("/usr/bin/oiiotool", "-a", "--fail", "0", self.folder / "a.exr", self.folder / "b.exr", "--diff")
 
     def test_the_installed_headers_are_the_public_ones(self):
         run("cmake", "--install", BUILD, "--prefix", self.folder, "--component", "library")
@@ -95,14 +115,15 @@ class DebianPackages(Folder):
         return self.folder / "root/usr/bin/polyrecon", module
 
     def test_files_are_where_debian_expects_them(self):
-        self.assertEqual(sorted(self.packages), ["libpolyrecon-dev", "polyrecon"])
+        self.assertEqual(sorted(self.packages), ["libpolyrecon-dev", "libpolyrecon1", "polyrecon"])
         names = {}
         for package, path in self.packages.items():
             lines = [line.split(None, 5) for line in run("dpkg-deb", "--contents", path).splitlines()]
             names[package] = [line[5].lstrip(".") for line in lines]
             for line in lines:
                 self.assertEqual(line[1], "root/root", line)
-                self.assertNotEqual(line[0][8], "w", line)
+                if not line[0].startswith("l"):  # links have all rights
+                    self.assertNotEqual(line[0][8], "w", line)
             for document in ("copyright", "changelog.gz"):
                 self.assertIn(f"/usr/share/doc/{package}/{document}", names[package])
             self.assertIn("md5sums", run("dpkg-deb", "--ctrl-tarfile", path))
@@ -122,7 +143,14 @@ class DebianPackages(Folder):
         self.assertIn("/usr/include/polyrecon/reconstruct.h", library)
         self.assertTrue(any(name.endswith("/libpolyrecon_core.a") for name in library), library)
         self.assertTrue(any(name.endswith("/polyreconConfig.cmake") for name in library), library)
-        self.assertFalse(set(names["polyrecon"]) & {name for name in library if not name.endswith("/")})
+        self.assertTrue(any(name.endswith("/pkgconfig/polyrecon.pc") for name in library), library)
+        shared = names["libpolyrecon1"]
+        self.assertTrue(any("/libpolyrecon.so.1 " in f"{name} " for name in shared), shared)
+        files = [{name for name in names[package] if not name.endswith("/")} for package in names]
+        self.assertEqual(sum(map(len, files)), len(set().union(*files)), "a file is in two packages")
+        control = run("dpkg-deb", "--ctrl-tarfile", self.packages["libpolyrecon1"])
+        self.assertIn("shlibs", control)
+        self.assertIn("ldconfig", control)
 
     def test_dependencies_are_debian_packages_and_complete(self):
         depends = run("dpkg-deb", "--field", self.packages["polyrecon"], "Depends")

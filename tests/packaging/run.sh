@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs the two Debian packages in a fresh Debian 12, denoises a frame there and builds a program against the library.
+# Installs the three Debian packages in a fresh Debian 12, denoises a frame there and builds programs against the libraries.
 # Needs root, debootstrap and the network. Takes minutes, so tests/run.sh does not run it.
 #
 #     tests/packaging/run.sh [FOLDER]      # FOLDER: for the Debian system; default build/debian
@@ -24,7 +24,7 @@ echo "== a fresh Debian in $root"
 rm -rf "$root/try"
 mkdir -p "$root/try"
 cp build/packages/*.deb samples/glass_16.exr samples/glass_ref.exr "$root/try/"
-cp -r tests/packaging/consumer "$root/try/"
+cp -r tests/packaging/consumer docs/guide/examples/denoise.c "$root/try/"
 cp /etc/resolv.conf "$root/etc/resolv.conf"
 
 # Runs a command in the Debian system, with an empty environment: ours may name programs that are not installed there.
@@ -41,10 +41,17 @@ inside 'polyrecon --version
   polyrecon preview clean.exr error.exr -o look.png
   test -s look.png'
 echo "== the library"
-inside 'apt-get install -y -qq --no-install-recommends g++ cmake ninja-build ./libpolyrecon-dev_*.deb >/dev/null
+inside 'apt-get install -y -qq --no-install-recommends g++ cmake ninja-build ./libpolyrecon1_*.deb ./libpolyrecon-dev_*.deb \
+    >/dev/null
   rm -rf build; cmake -S consumer -B build -G Ninja >/dev/null; cmake --build build >/dev/null
   build/consumer glass_16.exr theirs.exr
   oiiotool -a --fail 0 --hardfail 0 theirs.exr clean.exr --diff'
+echo "== the C library alone"
+inside 'dpkg --purge polyrecon libpolyrecon-dev >/dev/null
+  apt-get install -y -qq --no-install-recommends ./libpolyrecon1_*.deb ./libpolyrecon-dev_*.deb pkg-config >/dev/null
+  cc denoise.c -o denoise $(pkg-config --cflags --libs polyrecon)
+  ./denoise glass_16.exr by_c.exr
+  oiiotool -a --fail 0 --hardfail 0 by_c.exr theirs.exr --diff'
 echo "== removing"
-inside 'dpkg --purge polyrecon libpolyrecon-dev >/dev/null; test ! -e /usr/bin/polyrecon; test ! -e /usr/include/polyrecon'
+inside 'dpkg --purge libpolyrecon1 libpolyrecon-dev >/dev/null; test ! -e /usr/bin/polyrecon; test ! -e /usr/include/polyrecon'
 echo "done: the packages are in build/packages, their results in $root/try"

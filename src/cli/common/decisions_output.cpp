@@ -10,11 +10,4 @@ std::string decision_text(const Decision& decision) {
   return text;
 }
 
-nlohmann::ordered_json decisions_json(const std::vector<Decision>& decisions) {
-  auto list = nlohmann::ordered_json::array();
-  for (const Decision& d : decisions)
-    list.push_back({{"step", d.step}, {"run", d.run}, {"reason", d.reason}, {"saved_seconds", d.saved_seconds}});
-  return list;
-}
-
 }  // namespace polyrecon

@@ -1,8 +1,6 @@
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <string>
-#include <vector>
 
 #include "polyrecon/report.h"
 
@@ -10,8 +8,5 @@ namespace polyrecon {
 
 /// "yes: REASON" or "no: REASON", and the seconds that were saved.
 std::string decision_text(const Decision& decision);
-
-/// All decisions as JSON (docs/reference/report.md).
-nlohmann::ordered_json decisions_json(const std::vector<Decision>& decisions);
 
 }  // namespace polyrecon

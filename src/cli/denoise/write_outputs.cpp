@@ -5,32 +5,17 @@
 #include <algorithm>
 
 #include "cli/common/map_files.h"
-#include "io/layers/channel_names.h"
-#include "io/renderers/renderers.h"
+#include "io/layers/result_layers.h"
 #include "polyrecon/error.h"
 #include "polyrecon/write_result.h"
 
 namespace polyrecon {
 namespace {
 
-/// Whether a layer of the input file holds the picture: a prior that was named on the command line, or that stands in
-/// another file, is no part of it.
-bool is_picture(const Layer& layer, Role role) {
-  return layer.file == 0 && (role == Role::Beauty || (layer.rank != rank_by_hand && layer.rank != rank_of_made_prior));
-}
-
-/// The layer that takes the result: the denoised one where the renderer's own denoiser wrote both, since people and
-/// compositors look for the result there; else the noisy one.
+/// The layer that takes the result: a layer with windows of its own is replaced itself.
 std::string result_layer(const DonePicture& done) {
-  const ReadResult& in = done.in;
-  if (!done.report.picture.layer.empty()) return in.frame.beauty.name;
-  for (const Role role : {Role::Prior, Role::Beauty})
-    for (const RoleChoice& choice : in.source.chosen) {
-      if (choice.role != role || choice.companion != Companion::Mean) continue;
-      for (const Layer& layer : in.source.layers)
-        if (layer.name == choice.layer && is_picture(layer, role)) return layer.name;
-    }
-  return in.frame.beauty.name;
+  if (!done.report.picture.layer.empty()) return done.in.frame.beauty.name;
+  return result_layer(done.in.source, done.in.frame.beauty.name);
 }
 
 MapWindows windows_of(const ReadResult& in, const std::string& layer_name) {
@@ -38,15 +23,6 @@ MapWindows windows_of(const ReadResult& in, const std::string& layer_name) {
     if (layer.name == layer_name && layer.file == 0)
       return {in.frame.data_window, in.source.files[0].parts[static_cast<std::size_t>(layer.part)].display_window};
   return {in.frame.data_window, in.frame.data_window};
-}
-
-/// The layer that takes the alpha: the picture's, where the beauty's came with it, so that picture and alpha stay
-/// together; else the one that it was read from.
-std::string alpha_layer(const ReadResult& in, const std::string& picture) {
-  if (in.source.alpha_layer != in.frame.beauty.name) return in.source.alpha_layer;
-  for (const Layer& layer : in.source.layers)
-    if (layer.name == picture && layer.file == 0 && !layer.alpha.empty()) return picture;
-  return in.source.alpha_layer;
 }
 
 /// Why alpha is not written though it was requested; empty where it is.
@@ -74,7 +50,7 @@ void add_replacements(const DonePicture& done, bool with_alpha, std::vector<Repl
   for (std::size_t i = 0; i < done.result.aovs.size(); ++i)
     list.push_back({in.frame.aovs[i].name, done.result.aovs[i], false, window});
   if (with_alpha && alpha_note(in, done.result).empty())
-    list.push_back({alpha_layer(in, picture), done.result.alpha, true, window});
+    list.push_back({alpha_layer(in.source, in.frame.beauty.name, picture), done.result.alpha, true, window});
 }
 
 /// The source of the first picture with the layers that were added for the others.

@@ -1,7 +1,7 @@
-#include "cli/common/decisions_output.h"
 #include "cli/common/roles_output.h"
 #include "cli/inspect/report.h"
 #include "io/layers/channel_names.h"
+#include "pipeline/report_json.h"
 
 namespace polyrecon {
 namespace {

@@ -1,0 +1,91 @@
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "c_api/memory_image.h"
+#include "polyrecon/error.h"
+#include "polyrecon/image.h"
+#include "polyrecon/progress.h"
+
+namespace polyrecon {
+
+/// A parameter of a filter. Exactly one of the three functions is set.
+struct Parameter {
+  std::function<void(double)> number;            ///< Takes the value.
+  std::function<void(const std::string*)> text;  ///< Takes the value; null: the default.
+  std::vector<std::string>* texts = nullptr;     ///< Gets one more value with each call.
+
+  /// A number from least to most, whole unless `fraction`.
+  static Parameter of(double& value, double least, double most, bool fraction = false);
+  static Parameter of(bool& value);
+  static Parameter of(std::string& value);
+  static Parameter of(std::vector<std::string>& values);
+};
+
+/// A kind of work of the C interface (include/polyrecon/polyrecon.h). It throws Error where the interface returns one.
+class Filter {
+ public:
+  virtual ~Filter() = default;
+  Filter(const Filter&) = delete;
+  Filter& operator=(const Filter&) = delete;
+
+  /// Takes an input image, or takes it away (no data). Throws Error{Usage} for a name that the filter does not have and
+  /// for an image that cannot be.
+  void set_image(const std::string& name, const MemoryImage& image);
+  void set_text(const std::string& name, const std::string* value);
+  void set_number(const std::string& name, double value);
+
+  /// Threads to use; 0: as many as there are processors.
+  int threads() const { return static_cast<int>(threads_); }
+
+  /// Does the work. Nothing is left of results before where it throws.
+  void execute(Progress& progress);
+
+  const std::vector<NamedImage>& images() const { return images_; }
+  const Image& image(const std::string& name) const;
+  const std::string& report() const { return report_; }
+
+ protected:
+  Filter();
+
+  /// What run made.
+  struct Made {
+    std::vector<NamedImage> images;
+    nlohmann::ordered_json report = nlohmann::ordered_json::object();
+  };
+
+  /// Throws Error{Usage} unless the filter takes an image of this name.
+  virtual void check_image(const std::string& name) const = 0;
+  virtual Made run(Progress& progress) = 0;
+
+  void add(const std::string& name, Parameter parameter) { parameters_.emplace(name, std::move(parameter)); }
+  const std::map<std::string, MemoryImage>& inputs() const { return inputs_; }
+  /// The image of this name; empty without one.
+  Image input(const std::string& name) const;
+
+ private:
+  Parameter& parameter(const std::string& name);
+
+  std::map<std::string, Parameter> parameters_;
+  std::map<std::string, MemoryImage> inputs_;
+  std::vector<NamedImage> images_;
+  std::string report_;
+  double threads_ = 0;
+};
+
+/// The kinds of filters by name.
+const std::map<std::string, std::function<std::unique_ptr<Filter>()>>& filter_kinds();
+
+std::unique_ptr<Filter> make_denoise_filter();
+std::unique_ptr<Filter> make_sample_map_filter();
+std::unique_ptr<Filter> make_read_filter();
+std::unique_ptr<Filter> make_write_filter();
+std::unique_ptr<Filter> make_merge_filter();
+
+}  // namespace polyrecon

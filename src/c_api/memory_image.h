@@ -1,0 +1,32 @@
+#pragma once
+
+#include <string>
+
+#include "polyrecon/image.h"
+#include "polyrecon/polyrecon.h"
+
+namespace polyrecon {
+
+/// An image in the memory of a caller, with strides.
+using MemoryImage = polyrecon_image;
+
+/// An image with its name, as users of the C interface get it.
+struct NamedImage {
+  std::string name;
+  Image image;
+};
+
+/// Throws Error{Usage} where the description cannot be: no data, no pixels, more pixels than the program reads
+/// (ReadLimits), strides of 0 next to others, an unknown format.
+void check(const std::string& name, const MemoryImage& image);
+
+/// The message about an image that should have the size of `image`, and has not.
+std::string size_conflict(const std::string& name, const Image& image, const MemoryImage& other);
+
+/// Copies the samples. The description must have passed `check`.
+Image read_memory(const MemoryImage& from);
+
+/// Copies the samples of an image of the same size into memory that passed `check`. Half samples saturate.
+void write_memory(const Image& image, const MemoryImage& to);
+
+}  // namespace polyrecon
