@@ -18,7 +18,6 @@ memory order; float64 is converted. Colours are linear radiance. Whatever fails 
 from ._arrays import Images, Result
 from ._calls import denoise, merge, read, sample_map, write
 from ._library import Error, StoppedError, library_path, version
-from ._program import program
 
 __version__ = version()
 
@@ -31,7 +30,6 @@ __all__ = [
     "denoise",
     "library_path",
     "merge",
-    "program",
     "read",
     "sample_map",
     "write",

@@ -5,7 +5,6 @@ from __future__ import annotations
 import ctypes
 import json
 import os
-import pathlib
 import threading
 from typing import Any, Callable, Optional
 
@@ -52,11 +51,8 @@ _FORMATS = {np.dtype(np.float32): 1, np.dtype(np.float16): 2}
 
 
 def library_path() -> str:
-    """The file that is loaded: $POLYRECON_LIBRARY, else the one in this package, else the system's."""
-    if named := os.environ.get("POLYRECON_LIBRARY"):
-        return named
-    own = pathlib.Path(__file__).parent / "lib" / FILE
-    return str(own) if own.exists() else FILE
+    """The file that is loaded: $POLYRECON_LIBRARY, else the system's."""
+    return os.environ.get("POLYRECON_LIBRARY") or FILE
 
 
 def _load() -> ctypes.CDLL:
@@ -64,7 +60,7 @@ def _load() -> ctypes.CDLL:
         library = ctypes.CDLL(library_path())
     except OSError as error:
         raise ImportError(
-            f"libpolyrecon cannot be loaded ({error}); install the wheel or the Debian package libpolyrecon1, or name "
+            f"libpolyrecon cannot be loaded ({error}); install the Debian package libpolyrecon1, or name "
             "the library in $POLYRECON_LIBRARY"
         ) from error
     handle, text, image = ctypes.c_void_p, ctypes.c_char_p, ctypes.POINTER(_Image)

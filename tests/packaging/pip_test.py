@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""Installs the drivers with `pip install .` in a fresh environment: pip_test.py SOURCE_FOLDER PROGRAM"""
+"""Installs the Python package with `pip install .` in a fresh environment: pip_test.py SOURCE_FOLDER PROGRAM LIBRARY"""
 
 import ast
+import os
 import pathlib
 import shutil
 import subprocess
@@ -12,7 +13,8 @@ import venv
 
 import tomllib
 
-SOURCE, PROGRAM = (pathlib.Path(word).resolve() for word in sys.argv[1:3])
+SOURCE, PROGRAM, LIBRARY = (pathlib.Path(word).resolve() for word in sys.argv[1:4])
+PACKAGE = SOURCE / "python" / "polyrecon"
 PIPELINES = SOURCE / "pipelines"
 PROJECT = tomllib.loads((SOURCE / "pyproject.toml").read_text())["project"]
 GIVEN_BY_THE_RENDERER = {"_cycles", "bpy", "mathutils", "oslquery", "cycles"}
@@ -40,7 +42,8 @@ class Installed(unittest.TestCase):
         source.mkdir()
         for name in ("pyproject.toml", "README.md", "LICENSE"):
             shutil.copy(SOURCE / name, source)
-        shutil.copytree(PIPELINES, source / "pipelines", ignore=shutil.ignore_patterns("__pycache__"))
+        for folder in ("pipelines", "python"):
+            shutil.copytree(SOURCE / folder, source / folder, ignore=shutil.ignore_patterns("__pycache__"))
         environment = cls.folder / "environment"
         venv.create(environment, with_pip=True, system_site_packages=True)
         cls.bin = environment / "bin"
@@ -53,6 +56,23 @@ class Installed(unittest.TestCase):
         self.assertTrue(installed.is_relative_to(self.folder), installed)
         self.assertEqual(files_below(installed), files_below(PIPELINES))
 
+    def test_the_module_calls_the_library(self):
+        code = f"""if True:
+            import pathlib, polyrecon
+            print(pathlib.Path(polyrecon.__file__).parent)
+            render = polyrecon.read({str(SOURCE / "samples" / "study_small_0.exr")!r})
+            assert polyrecon.denoise(render, quality="draft").image.shape == render["beauty"].shape"""
+        environment = {**os.environ, "POLYRECON_LIBRARY": str(LIBRARY)}
+        words = [self.bin / "python3", "-c", code]
+        done = subprocess.run(words, env=environment, capture_output=True, text=True)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        installed = pathlib.Path(done.stdout.strip())
+        self.assertTrue(installed.is_relative_to(self.folder), installed)
+        self.assertEqual(files_below(installed), files_below(PACKAGE))
+        environment["POLYRECON_LIBRARY"] = "/nowhere/libpolyrecon.so.1"
+        done = subprocess.run(words, env=environment, capture_output=True, text=True)
+        self.assertRegex(done.stderr, r"ImportError: libpolyrecon cannot be loaded \(.*libpolyrecon1")
+
     def test_every_command_has_help(self):
         self.assertTrue(PROJECT["scripts"])
         for command in PROJECT["scripts"]:
@@ -63,7 +83,7 @@ class Installed(unittest.TestCase):
 
     def test_what_is_imported_is_declared(self):
         imported = set()
-        for path in PIPELINES.rglob("*.py"):
+        for path in [*PIPELINES.rglob("*.py"), *PACKAGE.rglob("*.py")]:
             for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"), path)):
                 if isinstance(node, ast.Import):
                     imported |= {alias.name.split(".")[0] for alias in node.names}

@@ -1,6 +1,6 @@
 """Mitsuba 3 renders, polyrecon denoises: denoise_mitsuba.py [--samples N] [--size PIXELS] [--reference N]
 
-    pip install polyrecon mitsuba
+    pip install mitsuba
 
 The frame is rendered eight times with different random seeds. Their merge knows the noise of every pixel, which one
 render does not, and costs no more than a render of the sum of the samples.

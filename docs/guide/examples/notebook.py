@@ -1,6 +1,6 @@
 # %% [markdown]
 # # polyrecon in a notebook
-# Editors and Jupyter (by jupytext) open this file as cells. `pip install polyrecon matplotlib`
+# Editors and Jupyter (by jupytext) open this file as cells. Pictures need matplotlib.
 
 # %%
 import pathlib
