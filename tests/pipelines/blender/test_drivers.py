@@ -299,6 +299,7 @@ class Hostile(SceneTest):
                 scene,
                 "-o",
                 out,
+                "--overwrite",
                 "--budget-spp",
                 8,
                 "--first-pass",
