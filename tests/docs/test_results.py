@@ -52,6 +52,11 @@ class Results(unittest.TestCase):
         written += [("pictures.md", "figures"), ("pictures.md", "crops")]
         self.assertEqual(sorted(written), sorted(names))
 
+    def test_each_commit_is_a_hash(self):
+        for page in [*sorted(RESULTS.glob("*.md")), INPUTS]:
+            for commit in re.findall(r"\bcommit\s+(\w+)\)", page.read_text(encoding="utf-8")):
+                self.assertRegex(commit, r"^[0-9a-f]{7,40}$", page)
+
     def test_every_kind_of_file_has_a_row(self):
         [(_, _, text, _)] = MARK.findall(INPUTS.read_text(encoding="utf-8"))
         rows = [line.strip("| ").split(" | ")[0] for line in text.splitlines()[2:]]
