@@ -119,7 +119,7 @@ class BlenderRenderer(Renderer):
         )
 
     def _working_layers(self):
-        """The layers of the parts that the file does not ask for. The first part alone knows a sample count of its own,
+        """The layers of the parts that the file does not request. The first part alone knows a sample count of its own,
         which says nothing about the frame."""
         wanted = set()
         if self.opened["denoising_data"]:

@@ -66,13 +66,13 @@ class Notes:
     """Prints each note once, although every frame has it."""
 
     def __init__(self, quiet):
-        self.quiet, self.told = quiet, set()
+        self.quiet, self.printed = quiet, set()
 
     def tell(self, notes):
         for note in notes:
-            if not self.quiet and note not in self.told:
+            if not self.quiet and note not in self.printed:
                 print_lines(f"note: {note}")
-            self.told.add(note)
+            self.printed.add(note)
 
 
 def each_frame(options, renderer, work, may_exist=False):

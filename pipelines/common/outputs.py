@@ -1,4 +1,4 @@
-"""The files that a user asked for: their endings, what may not be overwritten, and the picture that is delivered."""
+"""The files that a user requested: their endings, what may not be overwritten, and the picture that is delivered."""
 
 import os
 import pathlib

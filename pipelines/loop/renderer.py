@@ -34,7 +34,7 @@ class Switch:
     setting: str  # "off"
     reason: str  # "nothing moves within the shutter"
     saves: str = ""  # "one synchronisation a pass"
-    changes_picture: bool = False  # What the scene asks for is missing in the result.
+    changes_picture: bool = False  # The result lacks what the scene requests.
 
     def __str__(self):
         return f"{self.effect} {self.setting}: {self.reason}"
@@ -53,8 +53,8 @@ class Audit:
     details: list[str] = dataclasses.field(default_factory=list)  # What was found, for who wants to know
     method: str = ""  # How extra samples are rendered, in a few words
     features: list[str] = dataclasses.field(default_factory=list)  # What guides the reconstruction: "albedo"
-    working: list[str] = dataclasses.field(default_factory=list)  # Layers of the parts that the user did not ask for
-    float_colours: bool = False  # Whether the scene asks for a picture of 32-bit floats
+    working: list[str] = dataclasses.field(default_factory=list)  # Layers of the parts that the user did not request
+    float_colours: bool = False  # Whether the scene requests a picture of 32-bit floats
     compression: str = "zip"  # Of the picture: that of the scene's own output, in OpenImageIO's words
     inputs: dict[str, str] = dataclasses.field(
         default_factory=dict

@@ -15,7 +15,7 @@ from .budget import CONVERGENCE_RATE
 from .folder import PassFolder
 
 TEMPLATE = pathlib.Path(__file__).with_name("report.html.j2")
-FEW_SAMPLES = 64  # per pixel: up to here a network's picture is worth its seconds (docs/guide/second_opinion.md)
+FEW_SAMPLES = 64  # per pixel; with more, --with-prior does not pay (docs/guide/adaptive.md)
 CURVE = {"width": 1000, "height": 300, "left": 74, "right": 984, "top": 14, "bottom": 250}  # Pixels
 
 

@@ -200,7 +200,7 @@ POLYRECON_SIMD void within_bound(const Window& window, const Image& other, const
     const auto i = static_cast<std::size_t>(offset[j]);
     const Real r = fit[0] - red[i], g = fit[1] - green[i], b = fit[2] - blue[i];
     const Real excess = (r * r + g * g + b * b) / (bounds[i] + tiny) - 1;
-    // Beyond `most` windows that contradict less still count more.
+    // The exponential ends at `most`; this factor falls further, so that windows that contradict less count more.
     const Real ratio = excess > most ? most / excess : 1, beyond = ratio * ratio;
     const auto factor =
         beyond * static_cast<Real>(exp_minus(static_cast<float>(excess > 0 ? excess < most ? excess : most : 0)));
@@ -392,7 +392,7 @@ std::vector<unsigned char> needed_centers(const std::vector<unsigned char>& acti
 }  // namespace
 
 std::size_t blended_fit_channels(std::size_t color_channels) {
-  return color_channels + constants - 1;  // of the weight no image is made
+  return color_channels + constants - 1;  // all sums but the weight, which they are divided by
 }
 
 std::size_t blend_sums_channels(std::size_t color_channels) { return color_channels + constants; }

@@ -326,7 +326,7 @@ class FrameBuilder {
     return pass;
   }
 
-  /// A picture is made of its halves, so those of another picture would replace it.
+  /// Drops halves that contradict the mean: the result is made of the halves, so it would be another picture.
   void drop_contradicting_halves(const PassChoice& choice, Pass& pass) {
     if (!pass.has_halves() || !contradict(pass.mean, pass.half_a, pass.half_b)) return;
     result_.notes.push_back(

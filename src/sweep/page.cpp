@@ -37,13 +37,13 @@ std::string price_text(const CostPoint& cheap, const CostPoint& dear, const char
                      : fmt::format("10 % less error costs {:.3g}x the {}", price, what);
 }
 
-/// What the viewer shows: which image each trial and each peer is, where it is in the page.
+/// The images of the viewer: the index of each trial's and each peer's, as far as the page has room for them.
 struct PicturedSweep {
   std::map<std::size_t, std::size_t> trials, peers;
   bool complete = true;
 };
 
-/// The address of an image beside the reference, which is the second image of the page; empty where it is not in it.
+/// The address that shows an image next to the reference, the second image of the page; empty where the page lacks it.
 std::string address_of(const std::map<std::size_t, std::size_t>& images, std::size_t index) {
   const auto at = images.find(index);
   return at == images.end() ? std::string() : fmt::format("#a={}&amp;b=1", at->second);
@@ -85,7 +85,7 @@ std::string front_section(const Sweep& sweep, const PicturedSweep& pictured) {
   return "<h2>Accuracy against time</h2>\n<p class='soft'>Further left is faster, further down is more accurate. The "
          "line "
          "connects the settings that no other one beats in both. Each setting but the presets differs from "
-         "standard in one thing. A click on a point shows its picture above, beside the reference.</p>\n" +
+         "standard in one thing. A click on a point shows its picture above, next to the reference.</p>\n" +
          svg_of(plot);
 }
 

@@ -117,7 +117,7 @@ class Session:
             cycles.seed = self.file_seed
 
     def output_of(self, settings):
-        """How the file asks for its pictures: in 32-bit floats or not, and with which compression."""
+        """The format of the scene's output: whether pictures are 32-bit floats, and their compression."""
         if not settings.file_format.startswith("OPEN_EXR"):
             return {"float": False, "compression": "zip"}
         return {"float": settings.color_depth == "32", "compression": settings.exr_codec.lower()}

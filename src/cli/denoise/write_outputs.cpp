@@ -78,7 +78,7 @@ std::vector<std::string> write_maps_of(const Job& job, const FrameFiles& files, 
                                                      sample_map_for(job, files), progress)};
 }
 
-/// The identity of the input of all pictures. Each was read for itself.
+/// The identity of the input of all pictures, each of which was read separately.
 std::string input_identity(const std::vector<DonePicture>& pictures) {
   const DonePicture& first = pictures.front();
   const auto all = [&](const auto& has) { return std::all_of(pictures.begin(), pictures.end(), has); };

@@ -176,7 +176,7 @@ class GlPainter {
       gl.texParameteri(gl.TEXTURE_2D, filter, gl.NEAREST);
   }
 
-  /** ground: grey of what is beside the pictures, 0 to 1. */
+  /** ground: grey of what is outside of the pictures, 0 to 1. */
   begin(ground) {
     const gl = this.#gl;
     gl.disable(gl.SCISSOR_TEST);

@@ -984,7 +984,7 @@ function listenToPointer() {
     const found = hit(x, y);
     const [x0, y0, w, h] = extentOf(state.frame);
     const [px, py] = [Math.floor(found.x), Math.floor(found.y)];
-    // Beside the picture the last pixel stays, so that nothing in the panels moves under the pointer.
+    // Outside of the picture the last pixel stays, so that nothing in the panels moves under the pointer.
     if (px >= x0 && py >= y0 && px < x0 + w && py < y0 + h) pointer = [px, py];
     changed();
   });

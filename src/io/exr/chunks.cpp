@@ -40,7 +40,7 @@ std::uint64_t lines_per_chunk(Imf::Compression compression) {
       break;
   }
 #if OPENEXR_VERSION_MAJOR > 3 || OPENEXR_VERSION_MINOR >= 3
-  return static_cast<std::uint64_t>(Imf::getCompressionNumScanlines(compression));  // what came later
+  return static_cast<std::uint64_t>(Imf::getCompressionNumScanlines(compression));  // compressions of later releases
 #else
   return 1;
 #endif
