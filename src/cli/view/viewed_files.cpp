@@ -31,9 +31,14 @@ struct Wanted {
   bool is_picture = false;  ///< The file's main picture.
 };
 
-/// The layer that preview shows, too: the picture, else the main layer of a map, else the first layer.
+bool is_error_map(const LayeredFile& file) { return find_layer(file, "relmse") != nullptr; }
+
+/// The picture of a file; nullptr for an error map, whose only colours are errors.
+const Layer* picture_of(const LayeredFile& file) { return is_error_map(file) ? nullptr : color_layer(file); }
+
+/// The picture, else the main layer of a map, else the first layer.
 const Layer& main_layer(const LayeredFile& file) {
-  if (const Layer* color = color_layer(file)) return *color;
+  if (const Layer* color = picture_of(file)) return *color;
   for (const char* name : {"relmse", "samples", "order"})
     if (const Layer* map = find_layer(file, name)) return *map;
   if (file.layers.empty()) throw Error(ExitCode::Missing, file.info.path + ": has no layer to show");
@@ -44,15 +49,15 @@ bool readable(const LayeredFile& file, const Layer& layer) {
   return file.info.parts[static_cast<std::size_t>(layer.part)].readable() && !layer.channels.empty();
 }
 
-/// Three channels of anything but a variance look like a picture.
-bool is_map(const Layer& layer) {
-  return is_variance(layer.companion) || (!is_color(layer) && layer.channels.size() != 3);
+/// Three channels of anything but a variance or an error look like a picture.
+bool is_map(const LayeredFile& file, const Layer& layer) {
+  return is_error_map(file) || is_variance(layer.companion) || (!is_color(layer) && layer.channels.size() != 3);
 }
 
 /// The wanted layers of a file, the one that is shown first at the beginning.
 std::vector<Wanted> wanted_layers(const LayeredFile& file, const std::vector<std::string>& names) {
   std::vector<Wanted> found;
-  const Layer* picture = color_layer(file);
+  const Layer* picture = picture_of(file);
   if (names.empty()) {
     const Layer& main = main_layer(file);
     if (!readable(file, main))
@@ -61,7 +66,7 @@ std::vector<Wanted> wanted_layers(const LayeredFile& file, const std::vector<std
     found.push_back({&main, Importance::First, &main == picture});
     for (const Layer& layer : file.layers)
       if (&layer != &main && readable(file, layer))
-        found.push_back({&layer, is_map(layer) ? Importance::Maps : Importance::Rest, false});
+        found.push_back({&layer, is_map(file, layer) ? Importance::Maps : Importance::Rest, false});
     return found;
   }
   for (const std::string& name : names)
@@ -129,11 +134,11 @@ ViewedLayer viewed_layer(const LayeredFile& file, const Wanted& wanted, const Pl
                      layer.channels,
                      placed.x,
                      placed.y,
-                     is_map(layer)};
+                     is_map(file, layer)};
   if (!wanted.is_picture && viewed.slot.empty()) viewed.slot = "RGB";
   if (viewed.is_map) viewed.scale = scale_of(layer, placed.image);
   // What tells most about a pixel of the picture: its noise, its samples, and the maps of a file that has no picture.
-  const Layer* picture = color_layer(file);
+  const Layer* picture = picture_of(file);
   viewed.listed =
       !picture || layer.role == Role::SampleCount || (is_variance(layer.companion) && layer.of == picture->name);
   viewed.is_variance = layer.companion == Companion::VarianceOfMean;
