@@ -70,7 +70,7 @@ void setup_merge(CLI::App& app, Command& chosen) {
   sub->add_option(
          "--samples", o->merge.samples,
          "Samples per pixel of each render, if the files are wrong: subsets by Blender 5 contain the number of "
-         "the whole")
+         "the whole sequence")
       ->check(above_zero())
       ->type_name("N");
   OptionSet set(*sub);

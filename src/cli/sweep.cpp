@@ -148,7 +148,7 @@ void setup_sweep(CLI::App& app, Command& chosen) {
   sub->add_option("--reference", o->reference, "Converged render of the frame")->required()->type_name("FILE");
   sub->add_option("-o,--output", o->output, "Report to write, an HTML page")->required()->type_name("FILE");
   sub->add_option("--csv", o->csv, "Write all figures as CSV too")->type_name("FILE");
-  sub->add_option("--also", o->also, "Result of another program to compare with (repeatable)")
+  sub->add_option("--also", o->also, "Result of another program to compare with, as NAME=FILE:SECONDS (repeatable)")
       ->expected(1)
       ->take_all()
       ->type_name("NAME=FILE:SECONDS");

@@ -25,8 +25,8 @@ const std::map<std::string, ProgressStyle> progress_styles{{"none", ProgressStyl
 /// Returns --sample-map, which other options need.
 CLI::Option* add_files(OptionSet& set, DenoiseOptions& o) {
   set.add(Changes::Run, "-i,--input", o.inputs,
-          "Noisy render: EXR, or another format that OpenImageIO reads; a sequence as shot.####.exr or shot.%04d.exr, "
-          "or a list of files")
+          "Noisy render: EXR, PFM, Radiance HDR or TIFF; a sequence as shot.####.exr or shot.%04d.exr, or a list of "
+          "files")
       ->required()
       ->type_name("FILE");
   set.add(Changes::Run, "-o,--output", o.outputs.picture,
