@@ -171,7 +171,8 @@ class Attacks(SceneTest):
             scene = self.scene("simulating", f"{len(blender)}.blend", blender)
             for folder in ("elsewhere", f"blendcache_{scene.stem}"):
                 shutil.rmtree(self.folder / folder, ignore_errors=True)
-            words = [scene, "-o", "s_#.exr", "--spp", 2, "--parts", 2, "--frames", "1-4", "--blender", blender]
+            words = [scene, "-o", "s_#.exr", "--overwrite", "--spp", 2, "--parts", 2, "--frames", "1-4"]
+            words += ["--blender", blender]
             before = set(self.folder.iterdir())
             done = self.driver("render_passes.py", *words, TMPDIR=str(self.temporary))
             self.assertEqual(done.returncode, 0, done.stderr)
