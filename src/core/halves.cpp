@@ -73,6 +73,19 @@ constexpr int block_side = 8;              // pixels; small enough to see a buck
 constexpr double surely_not_noise = 5;     // standard deviations; the pixel filter correlates neighbours by about 2
 constexpr double smallest_half = 0x1p-24;  // steps in which half floats are rounded in the dark
 
+/// The error that half floats may have made of a small value; 0 where they hold no value of the image.
+double rounding_in_the_dark(const Image& image) {
+  std::vector<double> rows(static_cast<std::size_t>(image.height()), 0.0);
+  for_rows(image.height(), [&](int y) {
+    double& largest = rows[static_cast<std::size_t>(y)];
+    for (int c = 0; c < image.channels(); ++c)
+      for (int x = 0; x < image.width(); ++x)
+        if (const Real v = image.at(x, y, c); usable(v)) largest = std::max(largest, std::abs(static_cast<double>(v)));
+  });
+  const double largest = rows.empty() ? 0 : *std::max_element(rows.begin(), rows.end());
+  return largest < smallest_half ? 0 : smallest_half;
+}
+
 /// Sums over pixels of one channel.
 struct Disagreement {
   double rest = 0;     ///< mean - (A + B) / 2
@@ -81,11 +94,11 @@ struct Disagreement {
   double energy = 0;   ///< |mean|
   double rounding = 0;
 
-  void add(Real mean, Real a, Real b) {
+  void add(Real mean, Real a, Real b, double rounding_of_pixel) {
     if (!usable(mean)) return;
     const double m = static_cast<double>(mean);
     energy += std::abs(m);
-    rounding += smallest_half;
+    rounding += rounding_of_pixel;
     const bool known = usable(a) && usable(b);
     const double from_a = known ? static_cast<double>(a) : 0, from_b = known ? static_cast<double>(b) : 0,
                  difference = (from_a - from_b) / 2;
@@ -111,14 +124,15 @@ struct BlockRow {
   bool exceeds = false;  ///< In some block.
 };
 
-BlockRow block_row(const Image& mean, const Image& half_a, const Image& half_b, int c, int first_row) {
+BlockRow block_row(const Image& mean, const Image& half_a, const Image& half_b, double rounding_of_pixel, int c,
+                   int first_row) {
   BlockRow out;
   const int end_row = std::min(first_row + block_side, mean.height());
   for (int first = 0; first < mean.width(); first += block_side) {
     Disagreement block;
     for (int y = first_row; y < end_row; ++y)
       for (int x = first; x < std::min(first + block_side, mean.width()); ++x)
-        block.add(mean.at(x, y, c), half_a.at(x, y, c), half_b.at(x, y, c));
+        block.add(mean.at(x, y, c), half_a.at(x, y, c), half_b.at(x, y, c), rounding_of_pixel);
     out.exceeds |= block.exceeds(block.spread);
     out.all.add(block);
   }
@@ -139,9 +153,11 @@ bool contradict(const Image& mean, const Image& half_a, const Image& half_b) {
   const Share share = share_of(mean, half_a, half_b);
   if (share.exact && !is_share(share.of_a)) return true;
   const auto rows = static_cast<std::size_t>((mean.height() + block_side - 1) / block_side);
+  const double rounding_of_pixel = rounding_in_the_dark(mean);
   std::vector<BlockRow> blocks(rows * static_cast<std::size_t>(mean.channels()));
   in_parallel(blocks.size(), [&](std::size_t k) {
-    blocks[k] = block_row(mean, half_a, half_b, static_cast<int>(k / rows), static_cast<int>(k % rows) * block_side);
+    blocks[k] = block_row(mean, half_a, half_b, rounding_of_pixel, static_cast<int>(k / rows),
+                          static_cast<int>(k % rows) * block_side);
   });
   for (auto channel = blocks.begin(); channel != blocks.end(); channel += static_cast<std::ptrdiff_t>(rows)) {
     Disagreement all;

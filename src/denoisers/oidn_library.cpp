@@ -121,7 +121,8 @@ std::vector<fs::path> python_modules() {
 
 /// The file that --oidn or $POLYRECON_OIDN means.
 std::string file_of(const std::string& path) {
-  return fs::is_directory(path) ? (fs::path(path) / library_file).string() : path;
+  std::error_code ignored;
+  return fs::is_directory(path, ignored) ? (fs::path(path) / library_file).string() : path;
 }
 
 /// The file that a symbol of the library was loaded from.
@@ -170,6 +171,8 @@ struct OidnLibrary::Loaded {
 
   /// Loads the library and makes a device. Returns the reason where that is not possible, else nothing.
   std::string open(const std::string& file, int type) {
+    // The system's loader would wait for a pipe.
+    if (std::error_code ignored; fs::is_other(fs::status(file, ignored))) return file + " is not a file";
     void* library = ::dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);  // stays loaded: its threads may still be running
     if (!library) return ::dlerror();
     if (!load(library, call)) return file + " is no Open Image Denoise of version 2";

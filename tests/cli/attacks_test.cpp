@@ -219,6 +219,24 @@ TEST_F(Attacks, PipesDevicesAndFoldersAreNoInput) {
   }
 }
 
+TEST_F(Attacks, PipesAndDevicesAreNoLibrary) {
+  ::mkfifo(path("pipe.so").c_str(), 0600);
+  fs::create_symlink("/dev/zero", path("device.so"));
+  render("r.exr");
+  for (const std::string library : {"pipe.so", "device.so"}) {
+    in_child_ = [] { ::alarm(60); };
+    const Outcome o = denoise("r.exr", "o.exr", {"--prior", "oidn", "--oidn", path(library)});
+    EXPECT_EQ(o.code, 4) << o.err;
+    EXPECT_THAT(o.err, HasSubstr(library + " is not a file"));
+    in_child_ = [] { ::alarm(60); };
+    EXPECT_EQ(run({"inspect", "r.exr", "--oidn", path(library)}).code, 0);
+  }
+  fs::create_symlink("loop.so", path("loop.so"));
+  const Outcome loop = denoise("r.exr", "o.exr", {"--prior", "oidn", "--oidn", path("loop.so")});
+  EXPECT_EQ(loop.code, 4) << loop.err;
+  EXPECT_THAT(loop.err, HasSubstr("loop.so"));
+}
+
 TEST_F(Attacks, FoldersThatLookLikePatternsAreFolders) {
   for (const std::string folder : {"job #3", "####", "%04d", "a %d b"}) {
     fs::create_directory(path(folder));
@@ -515,6 +533,14 @@ TEST_F(Attacks, AVarianceThatThePictureContradictsIsTold) {
     EXPECT_EQ(o.out.find("--variance-kind sample") != std::string::npos, factor > 1) << factor;
     EXPECT_EQ(run({"inspect", "in.exr"}).out.find("--variance-kind sample") != std::string::npos, factor > 1) << factor;
   }
+}
+
+TEST_F(Attacks, NegativeVariancesHideNoOther) {
+  render("in.exr", [](int x, int, const std::string& c, float v) {
+    if (c.find("Variance") > 99) return v;
+    return x == 3 ? -1000.F : 1e4F * v;
+  });
+  EXPECT_THAT(denoise("in.exr", "out.exr").out, HasSubstr("--variance-kind sample"));
 }
 
 }  // namespace

@@ -53,6 +53,33 @@ TEST_F(Usage, NumbersHaveToBeFiniteAndAboveZero) {
   }
 }
 
+TEST_F(Usage, EveryOptionRefusesWhatIsNoNumber) {
+  const std::vector<std::string> denoise{"denoise", "-i", "in.exr", "-o", "out.exr"},
+      map{"samplemap", "-e", "error.exr", "-o", "samples.exr", "--budget", "4"};
+  const std::vector<std::pair<std::vector<std::string>, std::vector<std::string>>> calls{
+      {denoise,
+       {"--samples", "--frame-radius", "--wait", "--stages", "--order", "--time-budget", "--target", "--threads",
+        "--max-memory", "--max-pixels", "--max-channels"}},
+      {{"denoise", "-i", "in.exr", "-o", "out.exr", "--sample-map", "samples.exr", "--target", "1"},
+       {"--max-samples", "--frame", "--seed"}},
+      {{"inspect", "in.exr"}, {"--max-memory", "--max-pixels", "--max-channels"}},
+      {{"merge", "in.exr", "other.exr", "-o", "out.exr"}, {"--samples", "--max-memory"}},
+      {map, {"--samples", "--max-samples", "--frame", "--seed", "--max-memory"}},
+      {{"preview", "in.exr", "-o", "out.png"}, {"--exposure", "--max-memory"}},
+      {{"compare", "in.exr", "reference.exr"}, {"--exposure", "--max-memory"}},
+      {{"sweep", "-i", "in.exr", "--reference", "r.exr", "-o", "page.html"}, {"--threads", "--max-memory"}}};
+  for (const auto& [call, options] : calls)
+    for (const std::string& option : options)
+      for (const char* number : {"nan", "-nan", "inf", "-inf", "1e400", "1x", " "}) {
+        std::vector<std::string> arguments = call;
+        arguments.push_back(option + "=" + number);
+        const Outcome o = run(arguments);
+        EXPECT_EQ(o.code, 2) << option << "=" << number << ": " << o.err;
+        EXPECT_TRUE(is_one_error_line(o.err)) << o.err;
+        EXPECT_THAT(o.err, ::testing::HasSubstr(option)) << number;
+      }
+}
+
 TEST_F(Usage, ResultsAreNotNamedAsOtherPictures) {
   testing::write_exr(path("in.exr"), 4, 4, {"R", "G", "B"}, [](int, int, int) { return 0.5; });
   const std::vector<std::vector<std::string>> calls{

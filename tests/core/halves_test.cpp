@@ -137,5 +137,14 @@ TEST(Contradict, RoundingToHalfFloatsDoesNot) {
   }
 }
 
+TEST(Contradict, NoPictureIsTooDark) {
+  for (const double radiance : {1e-8, 1e-20, 1e-30}) {
+    const NoisyHalves h = noisy_halves(8, 8, 0.3, 5);
+    const auto scaled = [&](const Image& image) { return test::times(image, radiance); };
+    EXPECT_FALSE(contradict(scaled(h.mean), scaled(h.a), scaled(h.b))) << radiance;
+    EXPECT_TRUE(contradict(scaled(h.mean), test::times(h.a, 0), scaled(h.b))) << radiance;
+  }
+}
+
 }  // namespace
 }  // namespace polyrecon

@@ -94,7 +94,7 @@ void add_sequence_options(OptionSet& set, DenoiseOptions& o) {
                "Skip frames whose result was made from the same input by the same settings and version");
   set.add(Changes::Run, "--wait", o.run.wait,
           "Seconds to wait for an input that is missing or incomplete, counted from its last change")
-      ->check(CLI::NonNegativeNumber)
+      ->check(zero_or_more())
       ->type_name("SECONDS");
   set.add_flag(Changes::Run, "--strict", o.run.strict, "Stop at the first frame that is missing or damaged");
   set.add_flag(Changes::Run, "--dry-run", o.run.dry_run, "List what would be done, and check that the inputs exist");

@@ -85,7 +85,7 @@ PairSums pairs_of_row(const Image& mean, const Image& variance, int c, int y) {
   PairSums sums;
   for (int x = 0; x + 1 < mean.width(); ++x) {
     const double a = static_cast<double>(m[x]), b = static_cast<double>(m[x + 1]),
-                 stated = (static_cast<double>(v[x]) + static_cast<double>(v[x + 1])) / 2,
+                 stated = (std::max(static_cast<double>(v[x]), 0.0) + std::max(static_cast<double>(v[x + 1]), 0.0)) / 2,
                  shown = (a - b) * (a - b) / 2, scale = relmse_denominator((a + b) / 2);
     if (!std::isfinite(stated / scale) || !std::isfinite(shown / scale)) continue;
     sums.stated += stated / scale;
