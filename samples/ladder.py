@@ -54,7 +54,7 @@ def step(tools, scene, samples, reference, options):
     )
     noisy = tools.merge(pieces, f"ladder_{scene}_{samples}.exr", samples)
     clean = tools.work / f"ladder_{scene}_{samples}_clean.exr"
-    run([tools.polyrecon, "denoise", "-i", str(noisy), "-o", str(clean), "--quiet", *options])
+    run([tools.polyrecon, "denoise", "-i", str(noisy), "-o", str(clean), "--overwrite", "--quiet", *options])
     return [
         (*error, flip(file, reference))
         for file, error in zip((noisy, clean), relative_mse(tools, (noisy, clean), reference))

@@ -38,7 +38,7 @@ class Tools:
         target = self.work / name
         # Blender 5 writes the number of samples of the whole sequence into each subset.
         each = samples // len(files)
-        run([self.polyrecon, "merge", *map(str, files), "-o", str(target), "--samples", str(each)])
+        run([self.polyrecon, "merge", *map(str, files), "-o", str(target), "--overwrite", "--samples", str(each)])
         return target
 
 

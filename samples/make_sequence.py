@@ -51,7 +51,18 @@ def render(options, name, count, *words):
 def merge(options, name, merged, samples):
     for frame in FRAMES:
         target = options.work / f"{merged}.{frame:04d}.exr"
-        run([options.polyrecon, "merge", *parts(options.work / name, frame, 8), "-o", target, "--samples", samples])
+        run(
+            [
+                options.polyrecon,
+                "merge",
+                *parts(options.work / name, frame, 8),
+                "-o",
+                target,
+                "--overwrite",
+                "--samples",
+                samples,
+            ]
+        )
 
 
 def main():

@@ -18,10 +18,10 @@ for sample in study glass lighthouse; do
   echo
   echo "== $sample (described in samples/README.md)"
   "$polyrecon" denoise -i "$noisy" -o "$out/clean.exr" --error-map "$out/error.exr" \
-    --sample-map "$out/samples.exr" --budget 16 --report "$out/report.json"
+    --sample-map "$out/samples.exr" --budget 16 --report "$out/report.json" --overwrite
   echo "input and result, compared with the reference:"
   "$polyrecon" compare "$noisy" "$out/clean.exr" "$reference"
-  "$polyrecon" preview "$noisy" "$out/clean.exr" "$reference" "$out/error.exr" -o "$out/comparison.png"
+  "$polyrecon" preview "$noisy" "$out/clean.exr" "$reference" "$out/error.exr" -o "$out/comparison.png" --overwrite
 done
 oiiotool out/{study,glass,lighthouse}/comparison.png --mosaic 1x3 --ch R,G,B -o out/samples.png
 echo

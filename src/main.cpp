@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 #include <sys/resource.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <csignal>
 #include <cstdio>
@@ -13,10 +12,11 @@
 #include <malloc.h>
 #endif
 
-#include "cli/app.h"
 #include "cli/common/current_error.h"
 #include "cli/common/printed_text.h"
+#include "cli/common/progress_output.h"
 #include "cli/common/signals.h"
+#include "cli/parse.h"
 #include "io/files/atomic_file.h"
 #include "polyrecon/error.h"
 
@@ -28,27 +28,9 @@ using polyrecon::ExitCode;
 /// Prints the message as one line; messages of libraries may contain line breaks.
 int fail(ExitCode code, std::string message) {
   std::replace(message.begin(), message.end(), '\n', ' ');
+  polyrecon::end_progress_line();
   std::fputs(polyrecon::text_line("polyrecon: {}", message).c_str(), stderr);
   return static_cast<int>(code);
-}
-
-/// Parses the command line. The command is empty after --help and --version, which need no work.
-Command parse(int argc, char** argv) {
-  CLI::App app;
-  Command chosen;
-  polyrecon::setup_app(app, chosen);
-  const auto known = app.get_subcommands([&](const CLI::App* sub) { return argc > 1 && sub->get_name() == argv[1]; });
-  if (argc > 1 && argv[1][0] != '-' && known.empty())
-    throw polyrecon::Error(ExitCode::Usage,
-                           fmt::format("'{}' is no command (polyrecon --help lists the commands)", argv[1]));
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& e) {
-    if (e.get_exit_code() != 0)
-      throw polyrecon::Error(ExitCode::Usage, std::string(e.what()) + " (polyrecon COMMAND --help shows the options)");
-    app.exit(e);
-  }
-  return chosen;
 }
 
 /// Keeps freed memory in the process: images are allocated and freed by the dozen, and the system clears memory that it
@@ -100,11 +82,11 @@ int main(int argc, char** argv) {
   std::set_terminate(end_at_once);
   try {
     require_open_files();
-    const Command command = parse(argc, argv);
+    const Command command = polyrecon::parse_command_line({argv + (argc > 0 ? 1 : 0), argv + argc});
     polyrecon::catch_signals();
-    if (command) command();
+    const int code = command.run ? command.run() : static_cast<int>(ExitCode::Done);
     polyrecon::require_output_written();
-    return static_cast<int>(ExitCode::Done);
+    return code;
   } catch (const std::exception&) {
     const polyrecon::Error error = polyrecon::current_error();
     return fail(code_of(error), error.what());

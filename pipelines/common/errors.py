@@ -19,6 +19,7 @@ class ExitCode(enum.IntEnum):
     OUTPUT = 5
     CHECK = 6
     RENDERER = 7
+    MISSED = 8
     MEMORY = 33
     INTERRUPTED = 130
     TERMINATED = 143

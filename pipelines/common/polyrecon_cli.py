@@ -8,6 +8,7 @@ from . import process
 from .errors import DriverError, ExitCode
 
 BUILDS = ("release", "dev")
+WRITING = ("denoise", "merge", "preview", "samplemap", "view")  # Commands with --overwrite.
 
 
 def find_polyrecon(given=None):
@@ -50,8 +51,10 @@ class Polyrecon:
         return self.run_side_by_side(command, [words])[0]
 
     def run_side_by_side(self, command, word_lists):
-        """Runs one sub-command concurrently with each list of words; returns the standard outputs."""
-        results = process.run_side_by_side([[self.program, command, *words] for words in word_lists])
+        """Runs one sub-command concurrently with each list of words; returns the standard outputs. Files that exist are
+        replaced: a driver checks its own outputs before it begins."""
+        overwrite = ["--overwrite"] if command in WRITING else []
+        results = process.run_side_by_side([[self.program, command, *words, *overwrite] for words in word_lists])
         for code, _, errors in results:
             if code != 0:
                 lines = [line for line in process.lines_of(errors) if line.strip()] or [f"ended with code {code}"]

@@ -5,9 +5,16 @@
 
 namespace polyrecon {
 
-/// The work of the command that was parsed. It runs after the parsing, so that its errors are not reported as the
-/// parser's.
-using Command = std::function<void()>;
+/// The exit code of a run whose --time-budget or --target was missed, with --on-miss fail: all outputs are written, so
+/// it is no Error.
+constexpr int exit_code_missed = 8;
+
+/// The command that was parsed. Its work runs after the parsing, so that its errors are not reported as the parser's.
+struct Command {
+  std::function<int()> run;  ///< Returns the exit code where nothing went wrong.
+  /// Throws Error{Usage} where the options contradict each other; looks at no file. May be empty.
+  std::function<void()> check_options;
+};
 
 /// Each adds one command to app, with its options and examples. Parsing that command sets `chosen`.
 void setup_denoise(CLI::App& app, Command& chosen);

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cstdio>
-#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -15,6 +14,7 @@
 #include "cli/common/option_set.h"
 #include "cli/common/printed_text.h"
 #include "cli/common/read_limits.h"
+#include "cli/common/verbosity.h"
 #include "core/parallel.h"
 #include "io/files/file.h"
 #include "polyrecon/error.h"
@@ -26,26 +26,33 @@ struct MergeCommandOptions {
   std::vector<std::string> inputs;
   std::string output;
   MergeOptions merge;
-  bool quiet = false;
-  std::size_t max_memory = default_memory;
+  bool overwrite = false;
+  Verbosity verbosity = Verbosity::Short;
+  std::size_t max_memory = default_memory();
 };
+
+void check(const MergeCommandOptions& o) {
+  if (o.inputs.size() + o.merge.half_b.size() < 2) throw Error(ExitCode::Usage, "merge needs at least two renders");
+  require_endings({{"-o", o.output}});
+}
 
 void run(const MergeCommandOptions& o) {
   limit_memory(o.max_memory);
+  check(o);
   std::vector<std::string> inputs = o.inputs;
   inputs.insert(inputs.end(), o.merge.half_b.begin(), o.merge.half_b.end());
-  if (inputs.size() < 2) throw Error(ExitCode::Usage, "merge needs at least two renders");
   for (const std::string& input : inputs) require_readable(input);
-  require_exr_name({"-o", o.output});
-  require_outputs(inputs, {{"-o", o.output}});
+  require_outputs(inputs, {{"-o", o.output}}, o.overwrite);
   set_codec_threads(processors());
   const MergeResult result = merge(o.inputs, o.output, o.merge);
-  if (o.quiet) return;
+  if (o.verbosity == Verbosity::Quiet) return;
   const std::string samples = result.samples > 0 ? fmt::format(", {:g} samples per pixel", result.samples) : "";
   std::string text = text_line("{}: {} renders{}", o.output, result.files, samples);
-  text += text_line("  {:<26} {}",
-                    result.joined ? "joined:" : "mean, variance and halves:", fmt::join(result.merged, ", "));
-  if (!result.kept.empty()) text += text_line("  from the first file:       {}", fmt::join(result.kept, ", "));
+  const bool all = o.verbosity == Verbosity::Full;
+  if (all)
+    text += text_line("  {:<26} {}",
+                      result.joined ? "joined:" : "mean, variance and halves:", fmt::join(result.merged, ", "));
+  if (all && !result.kept.empty()) text += text_line("  from the first file:       {}", fmt::join(result.kept, ", "));
   if (!result.dropped.empty()) text += text_line("  not merged:                {}", fmt::join(result.dropped, ", "));
   for (const std::string& note : result.notes) text += text_line("  note: {}", note);
   std::fputs(text.c_str(), stdout);
@@ -74,10 +81,11 @@ void setup_merge(CLI::App& app, Command& chosen) {
       ->check(above_zero())
       ->type_name("N");
   OptionSet set(*sub);
-  const std::map<std::string, bool> compressions{{"zip", true}, {"none", false}};
+  const Choices<bool> compressions{{"zip", true}, {"none", false}};
   set.add_choice(Changes::Result, "--compression", o->merge.compress, compressions,
                  "Compression of the output: zip, or none for a file that is deleted soon");
-  sub->add_flag("-q,--quiet", o->quiet, "Print nothing but errors");
+  add_overwrite(*sub, o->overwrite);
+  add_verbosity(*sub, o->verbosity);
   add_memory_limit(*sub, o->max_memory);
   add_read_limits(set, o->merge.limits);
   sub->footer(
@@ -85,7 +93,13 @@ void setup_merge(CLI::App& app, Command& chosen) {
       "  polyrecon merge part*.exr -o merged.exr\n"
       "  polyrecon merge subset*.exr -o merged.exr --samples 2\n"
       "  polyrecon merge a*.exr --half-b b*.exr -o merged.exr");
-  sub->callback([o, &chosen] { chosen = [o] { run(*o); }; });
+  sub->callback([o, &chosen] {
+    chosen = {[o] {
+                run(*o);
+                return 0;
+              },
+              [o] { check(*o); }};
+  });
 }
 
 }  // namespace polyrecon

@@ -15,9 +15,11 @@
 #include "cli/common/display_options.h"
 #include "cli/common/layers.h"
 #include "cli/common/memory_limit.h"
+#include "core/nearest.h"
+#include "io/layers/layer_words.h"
 #include "io/pictures/color.h"
 #include "io/pictures/false_color.h"
-#include "io/pictures/png_file.h"
+#include "io/pictures/picture_file.h"
 #include "polyrecon/error.h"
 
 namespace polyrecon {
@@ -27,8 +29,8 @@ struct PreviewOptions {
   std::vector<std::string> inputs;
   std::string output, layer;
   DisplayParams display;
-  bool false_color = false;
-  std::size_t max_memory = default_memory;
+  bool false_color = false, overwrite = false;
+  std::size_t max_memory = default_memory();
 };
 
 /// The layer to show unless one was named: the picture, else the main layer of a map, else the first layer.
@@ -40,11 +42,33 @@ const Layer& main_layer(const LayeredFile& file) {
   return file.layers.front();
 }
 
-const Layer& wanted_layer(const LayeredFile& file, const std::string& name) {
-  if (name.empty()) return main_layer(file);
-  if (const Layer* layer = find_layer(file, name)) return *layer;
-  throw Error(ExitCode::Missing,
-              fmt::format("{}: has no layer '{}' (polyrecon inspect lists the layers)", file.info.path, name));
+/// The layer of a whole name, or of a name within the view layer; nullptr without one.
+const Layer* layer_named(const LayeredFile& file, const std::string& name) {
+  if (const Layer* layer = find_layer(file, name)) return layer;
+  const auto found =
+      std::find_if(file.layers.begin(), file.layers.end(), [&](const Layer& layer) { return layer.pass == name; });
+  return found == file.layers.end() ? nullptr : &*found;
+}
+
+/// The layers that a text names as --aov of denoise takes it: names, patterns, "all" for the light AOVs.
+std::vector<const Layer*> wanted_layers(const LayeredFile& file, const std::string& text) {
+  if (text.empty()) return {&main_layer(file)};
+  std::vector<const Layer*> wanted;
+  for (const std::string& word : layer_words(text, file.layers)) {
+    const std::size_t before = wanted.size();
+    if (const Layer* layer = layer_named(file, word))
+      wanted.push_back(layer);
+    else
+      for (const Layer& other : file.layers)
+        if (word == "all" ? is_light_aov(other) : is_layer_pattern(word) && fits_pattern(other, word))
+          wanted.push_back(&other);
+    if (wanted.size() > before) continue;
+    std::vector<std::string> names;
+    for (const Layer& layer : file.layers) names.insert(names.end(), {layer.name, layer.pass});
+    throw Error(ExitCode::Missing, fmt::format("{}: has no layer '{}'{} (polyrecon inspect lists the layers)",
+                                               file.info.path, word, did_you_mean(word, names)));
+  }
+  return wanted;
 }
 
 Image mean_of_channels(const Image& image) {
@@ -56,9 +80,7 @@ Image mean_of_channels(const Image& image) {
 }
 
 /// Radiance and layers of three channels are shown as pictures, all others in false colours, as on request are all.
-Panel make_panel(const std::string& path, const PreviewOptions& o) {
-  const LayeredFile file = open_layers(path);
-  const Layer& layer = wanted_layer(file, o.layer);
+Panel make_panel(const LayeredFile& file, const Layer& layer, bool several_layers, const PreviewOptions& o) {
   const Image image = is_color(layer) ? read_radiance(file, layer) : read_layer(file, layer);
   Panel panel;
   if (image.channels() == 3 && !o.false_color) {
@@ -68,20 +90,26 @@ Panel make_panel(const std::string& path, const PreviewOptions& o) {
     panel.range = log_range(values);
     panel.rgb = false_color(values, panel.range);
   }
-  const std::string name = std::filesystem::path(path).filename().string();
-  if (o.inputs.size() > 1 || panel.range.high > 0)
-    panel.caption = image.channels() == 3 ? name : fmt::format("{}: {}", name, layer.name);
+  const std::string name = std::filesystem::path(file.info.path).filename().string();
+  if (o.inputs.size() > 1 || several_layers || panel.range.high > 0)
+    panel.caption = image.channels() == 3 && !several_layers ? name : fmt::format("{}: {}", name, layer.name);
   return panel;
 }
+
+void check(const PreviewOptions& o) { require_endings({{"-o", o.output, FileKind::Picture}}); }
 
 void run(const PreviewOptions& o) {
   limit_memory(o.max_memory);
   for (const std::string& input : o.inputs) require_readable(input);
-  require_outputs(o.inputs, {{"-o", o.output}});
+  require_outputs(o.inputs, {{"-o", o.output, FileKind::Picture}}, o.overwrite);
   std::vector<Panel> panels;
   panels.reserve(o.inputs.size());
-  for (const std::string& input : o.inputs) panels.push_back(make_panel(input, o));
-  write_png(o.output, compose(panels));
+  for (const std::string& input : o.inputs) {
+    const LayeredFile file = open_layers(input);
+    const std::vector<const Layer*> wanted = wanted_layers(file, o.layer);
+    for (const Layer* layer : wanted) panels.push_back(make_panel(file, *layer, wanted.size() > 1, o));
+  }
+  write_picture(o.output, compose(panels));
   if (!has_font())
     std::fputs("polyrecon: found no font, so the picture has no captions; install DejaVu Sans (fonts-dejavu-core)\n",
                stderr);
@@ -91,10 +119,13 @@ void run(const PreviewOptions& o) {
 
 void setup_preview(CLI::App& app, Command& chosen) {
   const auto o = std::make_shared<PreviewOptions>();
-  CLI::App* sub = app.add_subcommand("preview", "Makes a PNG of layers or maps, of several files side by side");
+  CLI::App* sub =
+      app.add_subcommand("preview", "Makes a picture to look at of layers or maps, of several files side by side");
   sub->add_option("inputs", o->inputs, "Images or maps")->required()->type_name("FILE...");
-  sub->add_option("-o,--output", o->output, "PNG to write")->required()->type_name("FILE");
-  sub->add_option("--layer", o->layer, "Layer to show in place of the beauty")->type_name("NAME");
+  sub->add_option("-o,--output", o->output, "Picture to write: .png, .jpg or .tif")->required()->type_name("FILE");
+  sub->add_option("--layer", o->layer, "Layers to show in place of the beauty, as --aov of denoise takes them")
+      ->type_name("LAYER");
+  add_overwrite(*sub, o->overwrite);
   add_display_options(*sub, o->display);
   add_memory_limit(*sub, o->max_memory);
   sub->add_flag("--false-colour,--false-color", o->false_color,
@@ -105,7 +136,13 @@ void setup_preview(CLI::App& app, Command& chosen) {
       "  polyrecon preview clean.exr -o clean.png --view Filmic --exposure 1\n"
       "  polyrecon preview noisy.exr clean.exr reference.exr error.exr -o compared.png\n"
       "  polyrecon preview error.exr -o error.png --layer mse --false-colour");
-  sub->callback([o, &chosen] { chosen = [o] { run(*o); }; });
+  sub->callback([o, &chosen] {
+    chosen = {[o] {
+                run(*o);
+                return 0;
+              },
+              [o] { check(*o); }};
+  });
 }
 
 }  // namespace polyrecon

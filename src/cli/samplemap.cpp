@@ -13,6 +13,7 @@
 #include "cli/common/printed_text.h"
 #include "cli/common/progress_output.h"
 #include "cli/common/sample_map_options.h"
+#include "cli/common/verbosity.h"
 
 namespace polyrecon {
 namespace {
@@ -21,17 +22,22 @@ struct SamplemapOptions {
   std::string error_map, output;
   SampleMapOptions map;
   double samples = 0;  ///< Samples per pixel so far; 0: those in the error map.
-  bool quiet = false;
-  std::size_t max_memory = default_memory;
+  bool overwrite = false;
+  Verbosity verbosity = Verbosity::Short;
+  std::size_t max_memory = default_memory();
 };
+
+void check(const SamplemapOptions& o) {
+  check_sample_map_options(o.map);
+  require_endings({{"-o", o.output}});
+}
 
 void run(const SamplemapOptions& o) {
   limit_memory(o.max_memory);
-  check_sample_map_options(o.map);
+  check(o);
   require_readable(o.error_map);
   if (!o.map.cost.empty()) require_readable(o.map.cost);
-  require_exr_name({"-o", o.output});
-  require_outputs({o.error_map, o.map.cost}, {{"-o", o.output}});
+  require_outputs({o.error_map, o.map.cost}, {{"-o", o.output}}, o.overwrite);
   ErrorMapFile error = read_error_map(o.error_map);
   const Image& map = error.map.relative_mse;
   if (error.sample_count.empty() && o.samples > 0)
@@ -39,7 +45,7 @@ void run(const SamplemapOptions& o) {
   const auto progress = make_progress(ProgressStyle::None);
   const std::string text =
       make_and_write_sample_map(o.output, error.map, error.sample_count, error.windows, o.map, *progress);
-  if (!o.quiet) std::fputs(text_line("{}: {}", o.output, text).c_str(), stdout);
+  if (o.verbosity != Verbosity::Quiet) std::fputs(text_line("{}: {}", o.output, text).c_str(), stdout);
 }
 
 }  // namespace
@@ -52,7 +58,8 @@ void setup_samplemap(CLI::App& app, Command& chosen) {
   sub->add_option("-o,--output", o->output, "Sample map to write")->required()->type_name("FILE");
   sub->add_option("--samples", o->samples, "Samples per pixel so far, if the error map does not contain them")
       ->check(above_zero());
-  sub->add_flag("-q,--quiet", o->quiet, "Print nothing but errors");
+  add_overwrite(*sub, o->overwrite);
+  add_quiet(*sub, o->verbosity);
   add_memory_limit(*sub, o->max_memory);
   OptionSet set(*sub);
   add_sample_map_options(set, o->map);
@@ -61,7 +68,13 @@ void setup_samplemap(CLI::App& app, Command& chosen) {
       "  polyrecon samplemap --error-map error.exr --budget 32 -o samples.exr\n"
       "  polyrecon samplemap --error-map error.exr --target 0.002 -o samples.exr\n"
       "  polyrecon samplemap --error-map error.exr --budget 16 --export appleseed -o samples.exr");
-  sub->callback([o, &chosen] { chosen = [o] { run(*o); }; });
+  sub->callback([o, &chosen] {
+    chosen = {[o] {
+                run(*o);
+                return 0;
+              },
+              [o] { check(*o); }};
+  });
 }
 
 }  // namespace polyrecon

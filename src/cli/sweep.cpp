@@ -15,8 +15,10 @@
 #include "cli/common/display_options.h"
 #include "cli/common/layers.h"
 #include "cli/common/memory_limit.h"
+#include "cli/common/option_set.h"
 #include "cli/common/printed_text.h"
 #include "cli/common/progress_output.h"
+#include "cli/common/verbosity.h"
 #include "core/parallel.h"
 #include "io/files/atomic_file.h"
 #include "io/layers/channel_names.h"
@@ -39,9 +41,10 @@ struct SweepOptions {
   std::string reference, output, csv;
   std::vector<std::string> groups = trade_groups();
   int threads = 0;
-  bool quiet = false;
+  bool overwrite = false;
+  Verbosity verbosity = Verbosity::Short;
   std::size_t max_size = default_page_size;
-  std::size_t max_memory = default_memory;
+  std::size_t max_memory = default_memory();
 };
 
 /// The value of --also, "NAME=FILE:SECONDS". FILE may contain colons; NAME contains no equals sign.
@@ -100,19 +103,33 @@ SweepInput read_input(const std::string& path, const Image& reference) {
   return {file_name(path), samples, std::move(read.frame)};
 }
 
-void check(const SweepOptions& o, const std::vector<PeerFile>& peers) {
+std::vector<PeerFile> peers_of(const SweepOptions& o) {
+  std::vector<PeerFile> peers;
+  for (const std::string& text : o.also) peers.push_back(parse_peer(text));
+  return peers;
+}
+
+std::vector<NamedPath> outputs_of(const SweepOptions& o) {
+  return {{"-o", o.output, FileKind::Page}, {"--csv", o.csv, FileKind::Csv}};
+}
+
+void check(const SweepOptions& o) {
+  peers_of(o);
+  require_endings(outputs_of(o));
+}
+
+void check_files(const SweepOptions& o, const std::vector<PeerFile>& peers) {
   std::vector<std::string> files = o.inputs;
   files.push_back(o.reference);
   for (const PeerFile& peer : peers) files.push_back(peer.file);
   for (const std::string& file : files) require_readable(file);
-  require_outputs(files, {{"-o", o.output}, {"--csv", o.csv}});
+  require_outputs(files, outputs_of(o), o.overwrite);
 }
 
 void run(const SweepOptions& o) {
   limit_memory(o.max_memory);
-  std::vector<PeerFile> peer_files;
-  for (const std::string& text : o.also) peer_files.push_back(parse_peer(text));
-  check(o, peer_files);
+  const std::vector<PeerFile> peer_files = peers_of(o);
+  check_files(o, peer_files);
   set_thread_limit(o.threads);
   const Reference reference = read_reference(o.reference);
   std::vector<SweepInput> inputs;
@@ -120,13 +137,13 @@ void run(const SweepOptions& o) {
   std::vector<Peer> peers;
   for (const PeerFile& peer : peer_files)
     peers.push_back({peer.name, peer.seconds, read_color(open_layers(peer.file), reference.mean), {}});
-  const auto progress = make_progress(o.quiet ? ProgressStyle::None : ProgressStyle::Auto);
+  const auto progress = make_progress(o.verbosity == Verbosity::Quiet ? ProgressStyle::None : ProgressStyle::Bar);
   Sweep sweep = run_sweep(inputs, o.groups, reference, std::move(peers), *progress);
   sweep.reference_name = file_name(o.reference);
   if (o.threads > 0) sweep.threads = o.threads;
   write_bytes(o.output, page_of(sweep, POLYRECON_VERSION, o.max_size));
   if (!o.csv.empty()) write_bytes(o.csv, csv_of(sweep));
-  if (o.quiet) return;
+  if (o.verbosity == Verbosity::Quiet) return;
   for (const Trial& trial : sweep.inputs.front().trials)
     std::fputs(
         text_line("{:<32} {:8.2f} s  relMSE {:.5f}", trial.name, trial.seconds, trial.score.relative_mse).c_str(),
@@ -156,14 +173,15 @@ void setup_sweep(CLI::App& app, Command& chosen) {
                   "Parameters to vary; default: all but ablation. There are " +
                       fmt::format("{}", fmt::join(setting_groups(), ", ")))
       ->delimiter(',')
-      ->check(CLI::IsMember(setting_groups()).description(""))
+      ->check(one_of(setting_groups()))
       ->type_name("GROUP,...");
   sub->add_option("-t,--threads", o->threads, "Threads to use; 0: one for each processor")
       ->check(CLI::Range(0, 4096))
       ->capture_default_str();
   add_page_size(*sub, o->max_size);
   add_memory_limit(*sub, o->max_memory);
-  sub->add_flag("-q,--quiet", o->quiet, "Print nothing but errors");
+  add_overwrite(*sub, o->overwrite);
+  add_quiet(*sub, o->verbosity);
   sub->footer(
       "Short runs are repeated, up to three times and two seconds; the median counts. The group \"ablation\" disables "
       "one "
@@ -173,7 +191,13 @@ void setup_sweep(CLI::App& app, Command& chosen) {
       "  polyrecon sweep -i render.exr --reference ref.exr -o report.html --csv figures.csv\n"
       "  polyrecon sweep -i 16.exr -i 64.exr -i 256.exr --reference ref.exr -o report.html --vary quality\n"
       "  polyrecon sweep -i render.exr --reference ref.exr -o report.html --also OIDN=oidn.exr:0.9");
-  sub->callback([o, &chosen] { chosen = [o] { run(*o); }; });
+  sub->callback([o, &chosen] {
+    chosen = {[o] {
+                run(*o);
+                return 0;
+              },
+              [o] { check(*o); }};
+  });
 }
 
 }  // namespace polyrecon

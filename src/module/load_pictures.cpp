@@ -47,6 +47,6 @@ Image stack(const std::vector<Image>& rows) { return loaded().stack(rows); }
 
 bool has_font() { return loaded().has_font(); }
 
-std::string encode_png(const Image& rgb) { return loaded().encode_png(rgb); }
+std::string encode_picture(const Image& rgb, const std::string& format) { return loaded().encode_picture(rgb, format); }
 
 }  // namespace polyrecon

@@ -15,7 +15,7 @@ struct PictureFunctions {
   decltype(&polyrecon::compose) compose;
   decltype(&polyrecon::stack) stack;
   decltype(&polyrecon::has_font) has_font;
-  decltype(&polyrecon::encode_png) encode_png;
+  decltype(&polyrecon::encode_picture) encode_picture;
 };
 
 /// The symbol that the program looks up in the module.

@@ -63,7 +63,12 @@ def sweep(options, sample):
     table = options.out / f"{sample}.csv"
     if options.only is None or sample in options.only:
         command = [options.polyrecon, "sweep", "-i", ROOT / "samples" / f"{sample}_16.exr", "--reference"]
-        command += [ROOT / "samples" / f"{SAMPLES[sample]}_ref.exr", "-o", options.out / f"{sample}.html"]
+        command += [
+            ROOT / "samples" / f"{SAMPLES[sample]}_ref.exr",
+            "-o",
+            options.out / f"{sample}.html",
+            "--overwrite",
+        ]
         groups = (
             "quality,presets,stages,levels,stride,radius,order,coverage,patch,bandwidths,features,halves,prior,ablation"
         )

@@ -67,7 +67,8 @@ def seconds_of_oidn(frame, size, prefilter, folder):
 def seconds_of_polyrecon(program, frame, quality, folder):
     begin = time.perf_counter()
     subprocess.run(
-        [program, "denoise", "-i", frame, "-o", folder / "ours.exr", "--quality", quality, "--quiet"], check=True
+        [program, "denoise", "-i", frame, "-o", folder / "ours.exr", "--overwrite", "--quality", quality, "-q"],
+        check=True,
     )
     return time.perf_counter() - begin
 

@@ -35,7 +35,7 @@ LAYER = "ViewLayer.Combined"  # of the samples
 
 def denoise(program, render, folder, name):
     target = folder / f"{name}.exr"
-    subprocess.run([program, "denoise", "-i", render, "-o", target, "--quiet"], check=True)
+    subprocess.run([program, "denoise", "-i", render, "-o", target, "--overwrite", "-q"], check=True)
     return target
 
 

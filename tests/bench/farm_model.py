@@ -67,7 +67,7 @@ def write_layout(sample, path, wanted, copies):
 
 
 def command(program, folder, quality, threads, radius=0):
-    words = [program, "denoise", "-i", folder / "in.####.exr", "-o", folder / "out.####.exr"]
+    words = [program, "denoise", "-i", folder / "in.####.exr", "-o", folder / "out.####.exr", "--overwrite"]
     words += ["--frames", f"1-{frames_of(radius)}", "--frame-radius", radius]
     return [*words, "--quality", quality, "--threads", threads, "--max-memory", "1T", "--progress", "none", "--quiet"]
 

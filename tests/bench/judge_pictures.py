@@ -38,9 +38,9 @@ def main():
         folder = pathlib.Path(name)
         clean, error, look, judged = (folder / file for file in ("clean.exr", "error.exr", "look.html", "judged.html"))
         for words in (
-            ["denoise", "-i", noisy, "-o", clean, "--error-map", error, "--quiet"],
-            ["view", noisy, clean, error, "--reference", reference, "-o", look],
-            ["compare", noisy, clean, reference, "--html", judged],
+            ["denoise", "-i", noisy, "-o", clean, "--error-map", error, "--overwrite", "-q"],
+            ["view", noisy, clean, error, "--reference", reference, "-o", look, "--overwrite"],
+            ["compare", noisy, clean, reference, "--html", judged, "--overwrite"],
         ):
             subprocess.run([program, *map(str, words)], check=True, stdout=subprocess.DEVNULL)
         page.open(look, "#a=0&b=1&mode=wipe&pixel=[152,58]")

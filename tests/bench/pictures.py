@@ -89,7 +89,17 @@ def measure(options, render, reference):
         pictures = {"noisy": noisy}
         for quality in options.quality:
             pictures[quality] = folder / f"{quality}.exr"
-            command = [options.polyrecon, "denoise", "-i", noisy, "-o", pictures[quality], "--quality", quality]
+            command = [
+                options.polyrecon,
+                "denoise",
+                "-i",
+                noisy,
+                "-o",
+                pictures[quality],
+                "--overwrite",
+                "--quality",
+                quality,
+            ]
             subprocess.run([*command, "--quiet", *options.words], check=True)
         for peer in options.peer:
             picture = render.with_name(f"{render.stem}_{peer}.exr")

@@ -32,7 +32,8 @@ def run(program, file, folder, steps):
     folder = pathlib.Path(tempfile.mkdtemp(dir=folder))
     clean, error = folder / "clean.exr", folder / "error.exr"
     subprocess.run(
-        [program, "denoise", "-i", file, "-o", clean, "--error-map", error, "--quiet", "--steps", steps], check=True
+        [program, "denoise", "-i", file, "-o", clean, "--error-map", error, "--overwrite", "-q", "--steps", steps],
+        check=True,
     )
     return read(clean, "ViewLayer.Combined"), read(error, "mse")
 

@@ -126,7 +126,7 @@ def pixel_hash(path):
 
 
 def denoise_command(args, frame, quality, clean):
-    command = [args.program, "denoise", "-i", frame, "-o", clean, "--quality", quality]
+    command = [args.program, "denoise", "-i", frame, "-o", clean, "--overwrite", "--quality", quality]
     command += ["--progress", "none", "--quiet", "--threads", str(args.threads)]
     prior = prior_of(frame)
     return [*command, "--prior", prior] if prior.exists() else command

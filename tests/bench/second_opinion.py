@@ -63,7 +63,9 @@ def scores(picture, reference, variance):
 def denoised(program, render, quality, more, folder):
     begin = time.perf_counter()
     out = folder / "out.exr"
-    subprocess.run([program, "denoise", "-i", render, "-o", out, "--quality", quality, "--quiet", *more], check=True)
+    subprocess.run(
+        [program, "denoise", "-i", render, "-o", out, "--overwrite", "--quality", quality, "-q", *more], check=True
+    )
     seconds = time.perf_counter() - begin
     return layer(exr.read(str(out)), "Combined"), seconds
 

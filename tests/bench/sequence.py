@@ -46,7 +46,15 @@ def measure(folder, results):
 def denoise(options, spp, radius):
     target = options.work / "bench" / f"{spp}_radius{radius}"
     target.mkdir(parents=True, exist_ok=True)
-    command = [options.polyrecon, "denoise", "-i", options.work / f"parade_{spp}.####.exr", "-o", target / "####.exr"]
+    command = [
+        options.polyrecon,
+        "denoise",
+        "-i",
+        options.work / f"parade_{spp}.####.exr",
+        "-o",
+        target / "####.exr",
+        "--overwrite",
+    ]
     subprocess.run(list(map(str, [*command, "--quiet", "--frame-radius", radius, *options.words])), check=True)
     return lambda frame: target / f"{frame:04d}.exr"
 

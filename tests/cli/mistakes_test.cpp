@@ -22,7 +22,7 @@ class Mistakes : public ProgramTest {
   void SetUp() override { write_render(path("in.exr")); }
 
   Outcome denoise(const std::string& in, const std::string& out, std::vector<std::string> more = {}) const {
-    more.insert(more.begin(), {"denoise", "-i", in, "-o", out, "--quality", "draft"});
+    more.insert(more.begin(), {"denoise", "-i", in, "-o", out, "--overwrite", "--quality", "draft"});
     return run(more);
   }
 };

@@ -51,7 +51,7 @@ class Pictures : public testing::ProgramTest {
   }
 
   Outcome denoise(const std::string& in, const std::string& out, std::vector<std::string> more = {}) const {
-    more.insert(more.begin(), {"denoise", "-i", in, "-o", out, "--quality", "draft"});
+    more.insert(more.begin(), {"denoise", "-i", in, "-o", out, "--overwrite", "--quality", "draft"});
     return run(more);
   }
 

@@ -22,7 +22,7 @@ class Samplemap : public ProgramTest {
     ASSERT_EQ(run({"denoise", "-i", "in.exr", "-o", "out.exr", "--error-map", "error.exr", "-q"}).code, 0);
   }
   Outcome samplemap(std::vector<std::string> more) const {
-    std::vector<std::string> arguments{"samplemap", "--error-map", "error.exr", "-o", "map.exr"};
+    std::vector<std::string> arguments{"samplemap", "--error-map", "error.exr", "-o", "map.exr", "--overwrite"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return run(arguments);
   }

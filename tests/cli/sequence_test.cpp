@@ -31,8 +31,8 @@ class Sequence : public ProgramTest {
   }
 
   Outcome denoise(const std::vector<std::string>& more) const {
-    std::vector<std::string> arguments{"denoise",           "-i",        "shot.####.exr", "-o",
-                                       "out/shot.####.exr", "--quality", "draft"};
+    std::vector<std::string> arguments{"denoise",           "-i",          "shot.####.exr", "-o",
+                                       "out/shot.####.exr", "--overwrite", "--quality",     "draft"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return run(arguments);
   }
@@ -224,7 +224,8 @@ TEST_F(Sequence, TwoNeighboursOnEachSideJoinUnlessAFileIsOnItsOwn) {
   ASSERT_EQ(denoise({"--frame-radius", "0", "--frames", "2"}).code, 0);
   const std::string alone = read_text(path("out/shot.0002.exr"));
   EXPECT_NE(alone, joined);
-  ASSERT_EQ(run({"denoise", "-i", "shot.0002.exr", "-o", "out/shot.0002.exr", "--quality", "draft"}).code, 0);
+  ASSERT_EQ(
+      run({"denoise", "-i", "shot.0002.exr", "-o", "out/shot.0002.exr", "--overwrite", "--quality", "draft"}).code, 0);
   EXPECT_EQ(read_text(path("out/shot.0002.exr")), alone);
 }
 
@@ -312,7 +313,7 @@ TEST_F(SequenceOfFiles, AMappedFileTakesTheNumberOfTheFrame) {
   }
   // A list of files, and one file, take the number in each input's name.
   ASSERT_EQ(run({"denoise", "-i", "shot.0003.exr", "shot.0002.exr", "-o", "out", "--map", "albedo=colours.####.exr",
-                 "--report", "out/####.json", "--quality", "draft"})
+                 "--overwrite", "--report", "out/####.json", "--quality", "draft"})
                 .code,
             0);
   EXPECT_EQ(layer_of("albedo", 3), name("colours", 3));
@@ -334,7 +335,7 @@ TEST_F(SequenceOfFiles, AFileForAllFramesIsNoted) {
   ASSERT_EQ(denoise({"--map", "albedo=colours.0001.exr", "--report", "out/####.json"}).code, 0);
   EXPECT_THAT(notes_of(2), HasSubstr("colours.0001.exr is used for every frame"));
   ASSERT_EQ(run({"denoise", "-i", "shot.0002.exr", "-o", "out/a.exr", "--map", "albedo=colours.0001.exr", "--report",
-                 "out/0002.json", "--quality", "draft"})
+                 "out/0002.json", "--overwrite", "--quality", "draft"})
                 .code,
             0);
   EXPECT_THAT(notes_of(2), ::testing::Not(HasSubstr("every frame")));

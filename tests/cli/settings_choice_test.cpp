@@ -14,7 +14,7 @@ class SettingsChosen : public ProgramTest {
  protected:
   json report_of(const std::vector<std::string>& options) {
     write_render(path("in.exr"));
-    std::vector<std::string> arguments{"denoise", "-i", "in.exr", "-o", "out.exr", "--report", "r.json"};
+    std::vector<std::string> arguments{"denoise", "-i", "in.exr", "-o", "out.exr", "--overwrite", "--report", "r.json"};
     arguments.insert(arguments.end(), options.begin(), options.end());
     const Outcome done = run(arguments);
     EXPECT_EQ(done.code, 0) << done.err;
@@ -63,8 +63,9 @@ TEST_F(SettingsChosen, ARequestAndInspectTakeWhatDenoiseTakes) {
             [&](int x, int y, int c) { return x >= 64 || y >= 64 ? nan : 1 + 0.01 * ((x * 7 + y * 13 + c) % 11); });
   for (const std::vector<std::string>& more :
        {std::vector<std::string>{}, {"--time-budget", "100"}, {"--target", "0.1"}}) {
-    std::vector<std::string> arguments{"denoise", "-i", "in.exr", "-o", "out.exr", "--quality", "draft"};
-    if (!more.empty()) arguments.resize(5);
+    std::vector<std::string> arguments{"denoise",     "-i", "in.exr",    "-o",   "out.exr",
+                                       "--overwrite", "-v", "--quality", "draft"};
+    if (!more.empty()) arguments.resize(7);
     arguments.insert(arguments.end(), more.begin(), more.end());
     const Outcome done = run(arguments);
     EXPECT_EQ(done.code, 0) << done.err;

@@ -96,7 +96,7 @@ class Keys(unittest.TestCase):
 
     def denoise(self, *options):
         report = self.folder / "report.json"
-        run("denoise", "-i", SMALL, "-o", self.folder / "clean.exr", "--report", report, "--quiet", *options)
+        run("denoise", "-i", SMALL, "-o", self.folder / "clean.exr", "--report", report, "--overwrite", "-q", *options)
         return json.loads(report.read_text())
 
     def test_report_of_denoise(self):

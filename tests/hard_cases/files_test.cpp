@@ -47,7 +47,7 @@ class HardFiles : public testing::ProgramTest {
  protected:
   static std::vector<std::string> denoise(const std::string& in, const std::string& out,
                                           const std::vector<std::string>& more = {}) {
-    std::vector<std::string> arguments{"denoise", "-i", in, "-o", out, "--quality", "draft", "-q"};
+    std::vector<std::string> arguments{"denoise", "-i", in, "-o", out, "--overwrite", "--quality", "draft", "-q"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return arguments;
   }

@@ -74,7 +74,7 @@ class POLYRECON_OT_denoise(_Start, bpy.types.Operator):
         error_map = results["ERROR"].with_suffix(".exr")
         report = pathlib.Path(bpy.app.tempdir) / "polyrecon_report.json"
         denoise = [program, "denoise", "-i", results["NOISY"], "-o", clean, "--error-map", error_map]
-        denoise += ["--report", report, "--progress", "json"]
+        denoise += ["--report", report, "--overwrite", "--progress", "json"]
         jobs.start("Denoise", [denoise, _error_picture(program, error_map, results)], results, report)
 
 
@@ -88,7 +88,7 @@ def _results(clean):
 
 
 def _error_picture(program, error_map, results):
-    return [program, "preview", error_map, "-o", results["ERROR"]]
+    return [program, "preview", error_map, "-o", results["ERROR"], "--overwrite"]
 
 
 def _save_render(scene, path):

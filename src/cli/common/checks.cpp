@@ -1,11 +1,13 @@
 #include "cli/common/checks.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <set>
 #include <utility>
 
@@ -24,6 +26,29 @@ bool same_file(const std::string& a, const std::string& b) {
   const fs::path first = fs::weakly_canonical(fs::absolute(a, error), error);
   const fs::path second = fs::weakly_canonical(fs::absolute(b, error), error);
   return !error && first == second;
+}
+
+/// The endings of a kind of file, in lower case.
+struct Endings {
+  const char* what;  ///< "an EXR file"
+  std::vector<std::string> endings;
+};
+
+const Endings& endings_of(FileKind kind) {
+  static const std::map<FileKind, Endings> endings{
+      {FileKind::Exr, {"an EXR file", {".exr"}}},
+      {FileKind::Picture, {"a picture", {".png", ".jpg", ".jpeg", ".tif", ".tiff"}}},
+      {FileKind::Page, {"an HTML page", {".html", ".htm"}}},
+      {FileKind::Csv, {"a table", {".csv"}}},
+      {FileKind::Json, {"JSON", {".json"}}}};
+  return endings.at(kind);
+}
+
+std::string ending_of(const std::string& path) {
+  std::string ending = fs::path(path).extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return ending;
 }
 
 }  // namespace
@@ -51,20 +76,44 @@ void require_different_files(const std::vector<std::string>& inputs, const std::
   }
 }
 
-bool names_another_format(const std::string& path) {
-  static const std::set<std::string> others{".png", ".jpg", ".jpeg", ".tif", ".tiff",
-                                            ".hdr", ".pfm", ".dpx",  ".tga", ".bmp"};
-  std::string ending = std::filesystem::path(path).extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return others.count(ending) > 0;
+bool has_ending_of(FileKind kind, const std::string& path) {
+  const std::vector<std::string>& endings = endings_of(kind).endings;
+  return std::find(endings.begin(), endings.end(), ending_of(path)) != endings.end();
 }
 
-void require_exr_name(const NamedPath& output) {
-  if (names_another_format(output.path))
-    throw Error(ExitCode::Usage,
-                fmt::format("{} {}: an EXR file is written; give it the ending .exr (polyrecon preview makes PNG)",
-                            output.option, output.path));
+bool names_another_format(const std::string& path) {
+  static const std::set<std::string> others{".hdr", ".pfm", ".dpx", ".tga", ".bmp"};
+  return has_ending_of(FileKind::Picture, path) || others.count(ending_of(path)) > 0;
+}
+
+void require_endings(const std::vector<NamedPath>& outputs) {
+  for (const NamedPath& output : outputs) {
+    if (output.path.empty() || has_ending_of(output.kind, output.path)) continue;
+    const Endings& endings = endings_of(output.kind);
+    const bool is_picture = output.kind == FileKind::Exr && names_another_format(output.path);
+    throw Error(ExitCode::Usage, fmt::format("{} {}: {} is written; give it the ending {}{}", output.option,
+                                             output.path, endings.what, fmt::join(endings.endings, ", "),
+                                             is_picture ? " (polyrecon preview makes pictures to look at)" : ""));
+  }
+}
+
+void require_new(const std::vector<std::string>& outputs) {
+  const std::string* first = nullptr;
+  std::size_t others = 0;
+  for (const std::string& output : outputs) {
+    std::error_code ignored;
+    if (output.empty() || !fs::exists(output, ignored) || fs::is_directory(output, ignored)) continue;
+    if (first)
+      ++others;
+    else
+      first = &output;
+  }
+  if (!first) return;
+  throw Error(ExitCode::Usage,
+              others == 0
+                  ? fmt::format("{}: exists already; add --overwrite to replace it", *first)
+                  : fmt::format("{}: exists already, and so do {} other outputs; add --overwrite to replace them",
+                                *first, others));
 }
 
 void require_writable(const std::vector<std::string>& outputs) {
@@ -77,11 +126,17 @@ void require_writable(const std::vector<std::string>& outputs) {
   }
 }
 
-void require_outputs(const std::vector<std::string>& inputs, const std::vector<NamedPath>& outputs) {
+void require_outputs(const std::vector<std::string>& inputs, const std::vector<NamedPath>& outputs, bool overwrite) {
   require_different_files(inputs, outputs);
+  require_endings(outputs);
   std::vector<std::string> paths;
   for (const NamedPath& output : outputs) paths.push_back(output.path);
+  if (!overwrite) require_new(paths);
   require_writable(paths);
 }
+
+const char* const overwrite_help = "Replace outputs that exist; default: stop before any work";
+
+void add_overwrite(CLI::App& app, bool& overwrite) { app.add_flag("--overwrite", overwrite, overwrite_help); }
 
 }  // namespace polyrecon

@@ -9,7 +9,8 @@ void add_denoiser_options(OptionSet& set, DenoiserOptions& options) {
       ->type_name("PATH");
   set.add(Changes::Result, "--oidn-device", options.oidn.device,
           "What runs Open Image Denoise: auto (what it offers), cpu, cuda, hip, sycl or metal")
-      ->check(CLI::IsMember(oidn_devices()).description(""))
+      ->check(one_of(oidn_devices()))
+      ->default_str("auto")
       ->type_name("DEVICE");
 }
 

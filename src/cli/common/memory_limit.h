@@ -5,8 +5,13 @@
 
 namespace polyrecon {
 
-/// The limit of a command unless --max-memory sets another.
-constexpr std::size_t default_memory = std::size_t{4} << 30;
+/// The limit of a command unless --max-memory sets another: half of the memory that this machine, or the control group
+/// of this process, has, but at least 4 GiB.
+std::size_t default_memory();
+
+/// The help of --max-memory, and its default in words.
+extern const char* const max_memory_help;
+extern const char* const default_memory_text;
 
 /// Adds --max-memory for a command that calls limit_memory.
 void add_memory_limit(CLI::App& app, std::size_t& bytes);

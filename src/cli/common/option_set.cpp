@@ -1,5 +1,9 @@
 #include "cli/common/option_set.h"
 
+#include <algorithm>
+
+#include "core/nearest.h"
+
 namespace polyrecon {
 namespace {
 
@@ -13,6 +17,14 @@ std::string shell_word(const std::string& text) {
 }
 
 }  // namespace
+
+CLI::Validator one_of(std::vector<std::string> names) {
+  return {[names = std::move(names)](std::string& text) {
+            if (std::find(names.begin(), names.end(), text) != names.end()) return std::string();
+            return fmt::format("{} is none of {}{}", text, fmt::join(names, ", "), did_you_mean(text, names));
+          },
+          ""};
+}
 
 CLI::Option* OptionSet::remember(Changes changes, CLI::Option* option, const Texts& texts, bool is_flag) {
   if (changes == Changes::Result) entries_.push_back({option->get_name(), texts, texts(), is_flag});

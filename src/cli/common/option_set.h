@@ -1,6 +1,7 @@
 #pragma once
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <functional>
@@ -11,6 +12,8 @@
 #include <utility>
 #include <vector>
 
+#include "cli/common/verbosity.h"
+
 namespace polyrecon {
 
 /// Whether the output files of a command depend on an option.
@@ -18,6 +21,13 @@ enum class Changes {
   Result,  ///< The samples, the channels or the metadata of an output file.
   Run      ///< Only which files are read and written, how the command runs, and what it prints.
 };
+
+/// Accepts these names only; the message about another one suggests the nearest.
+CLI::Validator one_of(std::vector<std::string> names);
+
+/// What the names that an option takes stand for, in the order in which the help shows them.
+template <typename Choice>
+using Choices = std::vector<std::pair<std::string, Choice>>;
 
 /// Adds options to a command. Each option states whether the result depends on it, so that identity() is complete
 /// without a second list of options.
@@ -35,23 +45,32 @@ class OptionSet {
     return remember(changes, app_.add_option(names, value, help), [&value] { return texts_of(value); });
   }
 
+  /// -q and -v.
+  void add_verbosity(Verbosity& verbosity) { polyrecon::add_verbosity(app_, verbosity, group_); }
+
   CLI::Option* add_flag(Changes changes, const std::string& names, bool& value, const std::string& help);
 
   /// An option that takes one of a few names and sets `value` to what the name stands for; Value may be a
-  /// std::optional. The type reads "draft|standard", which the help shows and the shell completions offer.
+  /// std::optional. The type reads "draft|standard", which the help shows and the shell completions offer. The initial
+  /// value is the default that the help shows.
   template <typename Value, typename Choice>
-  CLI::Option* add_choice(Changes changes, const std::string& names, Value& value,
-                          const std::map<std::string, Choice>& choices, const std::string& help) {
+  CLI::Option* add_choice(Changes changes, const std::string& names, Value& value, const Choices<Choice>& choices,
+                          const std::string& help) {
     std::vector<std::string> keys;
     for (const auto& [key, unused] : choices) keys.push_back(key);
-    CLI::Option* option = app_.add_option_function<std::string>(
-        names, [&value, choices](const std::string& key) { value = choices.at(key); }, help);
-    option->check(CLI::IsMember(keys).description(""))->type_name(fmt::format("{}", fmt::join(keys, "|")));
-    return remember(changes, option, [&value, choices] {
+    const auto texts = [&value, choices] {
       for (const auto& [key, choice] : choices)
         if (value == choice) return std::vector<std::string>{key};
       return std::vector<std::string>{};
-    });
+    };
+    const auto set = [&value, choices](const std::string& typed) {
+      for (const auto& [key, choice] : choices)
+        if (key == typed) value = choice;
+    };
+    CLI::Option* option = app_.add_option_function<std::string>(names, set, help);
+    option->check(one_of(keys))->type_name(fmt::format("{}", fmt::join(keys, "|")));
+    if (const auto initial = texts(); !initial.empty()) option->default_str(initial.front());
+    return remember(changes, option, texts);
   }
 
   /// Another way to set the value of an option that was added before; identity() names that option. An empty help hides

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <map>
 #include <string_view>
 
 #include "cli/common/layers.h"
@@ -13,10 +12,10 @@ namespace polyrecon {
 namespace {
 
 /// The renderers' formats by what is typed after --export.
-std::map<std::string, const SampleMapFormat*> formats() {
-  std::map<std::string, const SampleMapFormat*> by_option;
+Choices<const SampleMapFormat*> formats() {
+  Choices<const SampleMapFormat*> by_option;
   for (const Renderer& renderer : renderers())
-    if (!renderer.sample_map.option.empty()) by_option[renderer.sample_map.option] = &renderer.sample_map;
+    if (!renderer.sample_map.option.empty()) by_option.emplace_back(renderer.sample_map.option, &renderer.sample_map);
   return by_option;
 }
 

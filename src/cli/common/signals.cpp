@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <string_view>
 
+#include "cli/common/progress_output.h"
 #include "io/files/atomic_file.h"
 #include "polyrecon/error.h"
 
@@ -18,6 +19,7 @@ volatile std::sig_atomic_t arrived = 0, polled = 0, reader_gone = 0;
 
 [[noreturn]] void leave(int signal) {
   remove_temporaries();
+  end_progress_line();
   constexpr std::string_view line = "polyrecon: interrupted\n";
   [[maybe_unused]] const auto written = ::write(STDERR_FILENO, line.data(), line.size());
   ::_exit(128 + signal);

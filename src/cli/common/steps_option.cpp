@@ -6,6 +6,7 @@
 #include <sstream>
 #include <vector>
 
+#include "core/nearest.h"
 #include "polyrecon/error.h"
 
 namespace polyrecon {
@@ -33,7 +34,8 @@ void add_steps_option(OptionSet& set, std::string& text) {
   set.add(Changes::Result, "--steps", text,
           fmt::format("Steps that run: auto (those that the frame needs), all, or a list of {}",
                       fmt::join(step_names(), ",")))
-      ->type_name("auto|all|LIST");
+      ->type_name("auto|all|LIST")
+      ->default_str("auto");
   set.add_alias(
       "--effects", [&text](const std::string& given) { text = given; }, "");
 }
@@ -53,8 +55,8 @@ StepsChoice parse_steps(const std::string& text) {
   const std::vector<std::string> words = words_of(text), names = step_names();
   for (const std::string& word : words)
     if (std::find(names.begin(), names.end(), word) == names.end())
-      throw Error(ExitCode::Usage,
-                  fmt::format("--steps: '{}' is no step; name auto, all, or some of {}", word, fmt::join(names, ", ")));
+      throw Error(ExitCode::Usage, fmt::format("--steps: '{}' is no step; name auto, all, or some of {}{}", word,
+                                               fmt::join(names, ", "), did_you_mean(word, names)));
   const auto listed = [&](const char* name) { return std::find(words.begin(), words.end(), name) != words.end(); };
   for (const RoleInfo& info : role_table())
     if (info.feature && !listed(info.name)) choice.steps.features.erase(info.role);

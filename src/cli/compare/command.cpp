@@ -22,7 +22,7 @@
 #include "cli/compare/comparison_page.h"
 #include "core/relmse.h"
 #include "io/files/atomic_file.h"
-#include "io/pictures/png_file.h"
+#include "io/pictures/picture_file.h"
 #include "polyrecon/error.h"
 
 namespace polyrecon {
@@ -33,9 +33,9 @@ struct CompareOptions {
   std::vector<std::string> error_maps;
   std::string html, picture, frames;
   DisplayParams display;
-  bool json = false;
+  bool json = false, overwrite = false;
   std::size_t max_size = default_page_size;
-  std::size_t max_memory = default_memory;
+  std::size_t max_memory = default_memory();
 };
 
 /// A file, or the files of a sequence.
@@ -54,13 +54,22 @@ Image read_estimate(const std::string& path, const Comparison& comparison) {
   return std::move(estimate);
 }
 
-void check(const CompareOptions& o, const std::vector<SequenceArgument>& files,
-           const std::vector<SequenceArgument>& error_maps, const std::vector<int>& frames) {
+std::vector<NamedPath> outputs_of(const CompareOptions& o) {
+  return {{"--html", o.html, FileKind::Page}, {"--picture", o.picture, FileKind::Picture}};
+}
+
+void check(const CompareOptions& o) {
+  if (o.files.size() < 2) throw Error(ExitCode::Usage, "compare needs at least two files: an image and the reference");
+  if (!o.error_maps.empty() && o.html.empty()) throw Error(ExitCode::Usage, "--error-map needs --html");
+  require_endings(outputs_of(o));
+}
+
+void check_files(const CompareOptions& o, const std::vector<SequenceArgument>& files,
+                 const std::vector<SequenceArgument>& error_maps, const std::vector<int>& frames) {
   if (!frames.empty() && !o.picture.empty())
     throw Error(ExitCode::Usage, "--picture draws one frame, not a sequence; --html writes a page with all frames");
   if (error_maps.size() + 1 > files.size())
     throw Error(ExitCode::Usage, "--error-map: there are more error maps than images");
-  if (!error_maps.empty() && o.html.empty()) throw Error(ExitCode::Usage, "--error-map needs --html");
   std::vector<std::string> inputs;
   for (const std::vector<SequenceArgument>& arguments : {files, error_maps})
     for (const SequenceArgument& argument : arguments)
@@ -69,16 +78,16 @@ void check(const CompareOptions& o, const std::vector<SequenceArgument>& files,
         require_readable(inputs.back());
         if (!argument.pattern) break;
       }
-  require_outputs(inputs, {{"--html", o.html}, {"--picture", o.picture}});
+  require_outputs(inputs, outputs_of(o), o.overwrite);
 }
 
 void run(const CompareOptions& o) {
   limit_memory(o.max_memory);
-  if (o.files.size() < 2) throw Error(ExitCode::Usage, "compare needs at least two files: an image and the reference");
+  check(o);
   const std::vector<SequenceArgument> files = sequence_arguments(o.files),
                                       error_maps = sequence_arguments(o.error_maps);
   const std::vector<int> frames = common_frames(files, o.frames);
-  check(o, files, error_maps, frames);
+  check_files(o, files, error_maps, frames);
   const bool is_sequence = !frames.empty(), with_images = is_sequence || !o.html.empty() || !o.picture.empty();
   std::optional<ComparisonPage> page;
   if (!o.html.empty()) page.emplace(o.files, frames, !files.back().pattern, o.display, o.max_size);
@@ -106,7 +115,7 @@ void run(const CompareOptions& o) {
   std::vector<Comparison> all;
   for (const std::vector<Comparison>& of_image : found) all.insert(all.end(), of_image.begin(), of_image.end());
   if (page) write_bytes(o.html, page->html(found));
-  if (!o.picture.empty()) write_png(o.picture, comparison_picture(all, o.display));
+  if (!o.picture.empty()) write_picture(o.picture, comparison_picture(all, o.display));
   if (o.json) {
     std::fputs(json_text(comparison_json(o.files.back(), all)).c_str(), stdout);
     return;
@@ -135,8 +144,10 @@ void setup_compare(CLI::App& app, Command& chosen) {
   sub->add_option("--frames", o->frames, "Frames of sequences; default: those that all sequences have")
       ->type_name("RANGES");
   add_page_size(*sub, o->max_size);
-  sub->add_option("--picture", o->picture, "Write a PNG of the reference, the images and their errors")
+  sub->add_option("--picture", o->picture,
+                  "Write a picture (.png, .jpg or .tif) of the reference, the images and their errors")
       ->type_name("FILE");
+  add_overwrite(*sub, o->overwrite);
   add_display_options(*sub, o->display);
   add_memory_limit(*sub, o->max_memory);
   sub->footer(
@@ -152,7 +163,13 @@ void setup_compare(CLI::App& app, Command& chosen) {
       "  polyrecon compare noisy.exr clean.exr other.exr reference.exr --json\n"
       "  polyrecon compare noisy.exr clean.exr reference.exr --html compared.html --exposure 1\n"
       "  polyrecon compare clean.####.exr ref.####.exr --html compared.html");
-  sub->callback([o, &chosen] { chosen = [o] { run(*o); }; });
+  sub->callback([o, &chosen] {
+    chosen = {[o] {
+                run(*o);
+                return 0;
+              },
+              [o] { check(*o); }};
+  });
 }
 
 }  // namespace polyrecon

@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <numeric>
 #include <utility>
+#include <vector>
 
 #include "metrics/flicker.h"
 #include "metrics/flip.h"
@@ -11,6 +13,50 @@
 
 namespace polyrecon {
 namespace {
+
+/// Means of the radiance over blocks, so that the noise of a render counts little, on a logarithmic scale.
+std::vector<double> blocks_of(const Image& image) {
+  constexpr int block = 16;
+  std::vector<double> means;
+  for (int y = 0; y + block <= image.height(); y += block)
+    for (int x = 0; x + block <= image.width(); x += block) {
+      double sum = 0;
+      for (int c = 0; c < image.channels(); ++c)
+        for (int j = y; j < y + block; ++j)
+          for (int i = x; i < x + block; ++i)
+            if (const double value = image.at(i, j, c); std::isfinite(value) && value > 0) sum += value;
+      means.push_back(std::log(1e-4 + sum / (block * block * image.channels())));
+    }
+  return means;
+}
+
+/// Correlation of the two; 1 where one of them has no structure that it could be measured by.
+double correlation(const std::vector<double>& a, const std::vector<double>& b) {
+  constexpr std::size_t least = 16;
+  if (a.size() < least) return 1;
+  const auto n = static_cast<double>(a.size());
+  double mean_a = 0, mean_b = 0, aa = 0, bb = 0, ab = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    mean_a += a[i] / n;
+    mean_b += b[i] / n;
+  }
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    aa += (a[i] - mean_a) * (a[i] - mean_a);
+    bb += (b[i] - mean_b) * (b[i] - mean_b);
+    ab += (a[i] - mean_a) * (b[i] - mean_b);
+  }
+  constexpr double no_structure = 1e-6;
+  return aa / n > no_structure && bb / n > no_structure ? ab / std::sqrt(aa * bb) : 1;
+}
+
+/// What is said of two pictures that do not show the same; empty for those that do.
+std::string note_of_unrelated(const std::string& path, const Image& x, const Image& r) {
+  constexpr double related = 0.5;
+  const double found = correlation(blocks_of(x), blocks_of(r));
+  if (found >= related) return {};
+  return fmt::format("{} and the reference have little in common (correlation {:.2f}): is it the same frame?", path,
+                     found);
+}
 
 Comparison compare_layers(const LayeredFile& image, const Layer& layer, const LayeredFile& reference,
                           const Layer& reference_layer, bool with_images, Progress& progress) {
@@ -25,6 +71,7 @@ Comparison compare_layers(const LayeredFile& image, const Layer& layer, const La
   found.layer = layer.name;
   found.score = score(x, r, known.variance);
   found.note = std::move(known.note);
+  if (std::string note = note_of_unrelated(image.info.path, x, r); !note.empty()) found.note = std::move(note);
   Image map = flip(x, r, progress);
   found.flip = std::accumulate(map.plane(0), map.plane(0) + map.pixels(), 0.0) / static_cast<double>(map.pixels());
   if (with_images) {

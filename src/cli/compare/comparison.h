@@ -14,9 +14,10 @@ namespace polyrecon {
 struct Comparison {
   std::string image, layer;  ///< Path of the image, whole name of the layer.
   Score score;
-  double flip = 0;           ///< Mean of HDR-FLIP.
-  std::string note;          ///< Why the reference's variance is not used; empty where it is, or where there is none.
-  std::optional<int> frame;  ///< Number of the frame; nothing where no sequence is compared.
+  double flip = 0;  ///< Mean of HDR-FLIP.
+  /// That the pictures do not show the same, or why the reference's variance is not used; empty where all is well.
+  std::string note;
+  std::optional<int> frame;       ///< Number of the frame; nothing where no sequence is compared.
   std::optional<double> flicker;  ///< flicker() from the frame before; nothing in the first frame.
   /// Radiance of both (3 channels), the variance of the reference's mean where it is known, FLIP and relative error of
   /// each pixel (1 channel). Empty unless compare_files was called with with_images.

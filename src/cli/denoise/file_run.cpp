@@ -4,13 +4,14 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <limits>
 #include <utility>
 
 #include "cli/common/printed_text.h"
-#include "cli/common/roles_output.h"
 #include "cli/denoise/write_outputs.h"
 #include "core/stopwatch.h"
 #include "io/files/atomic_file.h"
+#include "io/layers/pass_advice.h"
 #include "pipeline/part_of_beauty.h"
 #include "pipeline/result_images.h"
 
@@ -19,12 +20,6 @@ namespace {
 
 constexpr double least_shared_noise = 0.1;  // share of the noisy pixels; below it chance may be the cause
 
-void print(bool quiet, const std::string& text) {
-  if (quiet) return;
-  std::fputs(text.c_str(), stdout);
-  std::fflush(stdout);
-}
-
 /// The note on neighbours that repeat the noise of a frame.
 void note_shared_noise(const Report& report, std::vector<std::string>& notes) {
   if (report.neighbour_shared_noise < least_shared_noise) return;
@@ -32,14 +27,6 @@ void note_shared_noise(const Report& report, std::vector<std::string>& notes) {
       fmt::format("in {:.0f} % of the noisy pixels the frames before and after repeat this frame's noise and bring "
                   "nothing: animate the seed, so that each frame has its own",
                   100 * report.neighbour_shared_noise));
-}
-
-std::string input_text(const LoadedFrame& loaded) {
-  const ReadResult& in = loaded.in;
-  const std::string picture = loaded.picture.name();
-  std::string text = text_line("{}: {} x {}{}", in.source.path, in.frame.width(), in.frame.height(),
-                               picture.empty() ? "" : ", " + picture);
-  return text + roles_text(in.source);
 }
 
 std::vector<TimedNeighbour> neighbours_of(const LoadedFrame& loaded) {
@@ -55,6 +42,14 @@ std::size_t bytes_of(const DonePicture& done) {
   for_images(done.result, add);
   add(done.in.frame.sample_count);
   return samples * sizeof(Real);
+}
+
+/// The mean over all pixels; NaN without any.
+double mean_of(const Image& image) {
+  if (image.empty()) return std::numeric_limits<double>::quiet_NaN();
+  double sum = 0;
+  for (std::size_t i = 0; i < image.pixels(); ++i) sum += image.plane(0)[i];
+  return sum / static_cast<double>(image.pixels());
 }
 
 void keep_name(Pass& pass) {
@@ -89,6 +84,13 @@ void FileRun::list_others(LoadedFrame& loaded) {
 }
 
 void FileRun::add(PictureChoice picture) {
+  if (!job_.run.may_replace()) {
+    const OutputPaths maps = maps_of(files_.outputs, picture);
+    std::vector<std::string> paths;
+    for (const OutputOption& option : output_options())
+      if (option.kind == OutputKind::Map) paths.push_back(maps.*option.path);
+    require_new(paths);
+  }
   left_.push_back(std::move(picture));
   ++count_;
 }
@@ -100,9 +102,9 @@ std::optional<PictureChoice> FileRun::next() {
   return picture;
 }
 
-void FileRun::denoise(LoadedFrame loaded, std::size_t max_memory, Progress& progress) {
+void FileRun::denoise(LoadedFrame loaded, std::size_t max_memory, RunProgress& progress) {
   const Stopwatch watch;
-  print(job_.run.quiet, input_text(loaded));
+  progress.print(stdout, input_text(loaded.in, loaded.picture.name(), job_.run.verbosity));
   DonePicture done;
   done.identity = loaded.identity;
   done.neighbours_identity = loaded.neighbours_identity();
@@ -114,9 +116,11 @@ void FileRun::denoise(LoadedFrame loaded, std::size_t max_memory, Progress& prog
   params.max_memory = max_memory;
   for (const DonePicture& before : done_) params.max_memory -= std::min(params.max_memory, bytes_of(before));
   done.result = reconstruct(done.in.frame, neighbours_of(loaded), params, progress, job_.denoiser.get());
+  report.noise_before = mean_of(done.result.error.relative_noise);
   release_images(done);
   report.picture = loaded.picture;
   report.notes = done.in.notes;
+  report.advice = pass_advice(done.in.source);
   note_shared_noise(done.result.report, report.notes);
   report.read_seconds = loaded.read_seconds;
   report.seconds = loaded.read_seconds + watch.seconds();
@@ -146,12 +150,29 @@ void FileRun::release_images(DonePicture& done) const {
   }
 }
 
-void FileRun::write(Progress& progress) {
+std::vector<std::string> FileRun::missed_limits() const {
+  std::vector<std::string> missed;
+  if (!job_.limits) return missed;
+  double seconds = 0;
+  for (const DonePicture& done : done_) seconds += done.report.seconds;
+  if (job_.limits->seconds > 0 && seconds > job_.limits->seconds)
+    missed.push_back(fmt::format("took {:.3g} s, so --time-budget {:g} was missed", seconds, job_.limits->seconds));
+  for (const DonePicture& done : done_) {
+    const double error = done.result.report.estimated_relative_mse;
+    if (job_.limits->relative_mse > 0 && error > job_.limits->relative_mse)
+      missed.push_back(fmt::format("estimated relMSE {:.3g}, so --target {:g} was missed: render more samples", error,
+                                   job_.limits->relative_mse));
+  }
+  return missed;
+}
+
+bool FileRun::write(RunProgress& progress) {
   const Stopwatch watch;
   RunReport& first = done_.front().report;
   for (const std::string& note : write_outputs(job_, files_, done_, progress)) first.notes.push_back(note);
   first.write_seconds = watch.seconds();
   first.seconds += first.write_seconds;
+  first.missed = missed_limits();
   std::string text;
   std::vector<nlohmann::ordered_json> reports;
   for (DonePicture& done : done_) {
@@ -163,13 +184,16 @@ void FileRun::write(Progress& progress) {
     one.peak_memory = peak_memory();
     if (done_.size() > 1) one.title = one.picture.name();
     reports.push_back(report_json(one, done.in.source));
-    text += report_text(one);
+    text += report_text(one, progress.is_new(advice_text(one.advice)), job_.run.verbosity);
   }
   if (!files_.outputs.report.empty()) {
     reports.front()["others"] = std::vector<nlohmann::ordered_json>(reports.begin() + 1, reports.end());
     write_bytes(files_.outputs.report, json_text(reports.front()));
   }
-  print(job_.run.quiet, text);
+  progress.print(stdout, text);
+  for (const std::string& missed : first.missed)
+    progress.print(stderr, text_line("polyrecon: {}: {}", files_.outputs.picture, missed));
+  return !first.missed.empty();
 }
 
 }  // namespace polyrecon

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "cli/common/progress_output.h"
 #include "cli/denoise/job.h"
 #include "cli/denoise/load_frame.h"
 #include "cli/denoise/report.h"
-#include "polyrecon/progress.h"
 #include "polyrecon/reconstruct.h"
 
 namespace polyrecon {
@@ -37,18 +37,20 @@ class FileRun {
   /// The picture to load after those that were listed; nothing when there is none left.
   std::optional<PictureChoice> next();
 
-  /// Reconstructs a picture within max_memory bytes, of which the results of those before take their part. Prints the
-  /// roles of its layers unless the job is quiet. Throws as reconstruct does.
-  void denoise(LoadedFrame loaded, std::size_t max_memory, Progress& progress);
+  /// Reconstructs a picture within max_memory bytes, of which the results of those before take their part. Prints what
+  /// was read unless the job is quiet. Throws as reconstruct does.
+  void denoise(LoadedFrame loaded, std::size_t max_memory, RunProgress& progress);
 
-  /// Writes the file of all pictures, their maps and the report, and prints the report unless the job is quiet. Throws
-  /// as write_result does.
-  void write(Progress& progress);
+  /// Writes the file of all pictures, their maps and the report, and prints the report unless the job is quiet. Returns
+  /// whether the time budget or the target was missed, which it prints in any case. Throws as write_result does.
+  bool write(RunProgress& progress);
 
  private:
   void add(PictureChoice picture);
   /// The limits for the next picture: its share of what the pictures before left.
   FrameLimits limits_left() const;
+  /// What the file missed of its limits, for people; empty where it kept them.
+  std::vector<std::string> missed_limits() const;
   void release_images(DonePicture& done) const;
 
   const Job& job_;

@@ -17,19 +17,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The path of an output of a list that goes into a folder: the name of the input.
-std::string path_in_folder(const OutputOption& option, const std::string& folder, const std::string& input) {
+/// Whether an output is a folder: one that exists, or a name that ends in '/'.
+bool is_folder(const std::string& path) {
   std::error_code ignored;
-  if (!fs::is_directory(folder, ignored))
-    throw Error(ExitCode::Usage,
-                fmt::format("{} {}: with several inputs, name a folder that exists, or put #### into the file's name",
-                            option.name, folder));
-  fs::path file = fs::path(input).filename();
-  if (option.kind == OutputKind::Report)
-    file.replace_extension(".json");
-  else if (names_another_format(file.string()))
-    file.replace_extension(".exr");
-  return (fs::path(folder) / file).string();
+  return !path.empty() && (path.back() == '/' || fs::is_directory(path, ignored));
 }
 
 /// Adds the frames with the nearest numbers, whether the run denoises them or not.
@@ -62,12 +53,15 @@ std::vector<FrameFiles> frames_of_pattern(const DenoiseOptions& o, const FramePa
     frames.back().input = inputs.path(n);
   }
   for (const OutputOption& option : output_options()) {
-    const std::string& given = o.outputs.*option.path;
+    std::string given = o.outputs.*option.path;
+    if (given.empty() && option.kind == OutputKind::Picture) given = default_output(o.inputs.front());
     if (given.empty()) continue;
-    const auto pattern = FramePattern::parse(given);
+    const std::string named = is_folder(given) ? path_in_folder(option, given, o.inputs.front()) : given;
+    const auto pattern = FramePattern::parse(named);
     if (!pattern)
       throw Error(ExitCode::Usage,
-                  fmt::format("{} {}: for a sequence, put #### or %04d into the file's name", option.name, given));
+                  fmt::format("{} {}: for a sequence, put #### or %04d into the file's name, or name a folder",
+                              option.name, given));
     for (FrameFiles& files : frames) files.outputs.*option.path = pattern->path(*files.frame);
   }
   add_neighbours(inputs, radius, frames);
@@ -86,8 +80,16 @@ std::vector<FrameFiles> frames_of_list(const DenoiseOptions& o, int radius) {
   }
   for (const OutputOption& option : output_options()) {
     const std::string& given = o.outputs.*option.path;
-    if (given.empty()) continue;
+    if (given.empty() && option.kind != OutputKind::Picture) continue;
+    if (given.empty()) {
+      for (FrameFiles& files : frames) files.outputs.*option.path = default_output(files.input);
+      continue;
+    }
     const auto pattern = FramePattern::parse(given);
+    if (!pattern && has_ending_of(file_kind_of(option.kind), given) && !is_folder(given))
+      throw Error(ExitCode::Usage,
+                  fmt::format("{} {}: with several inputs, name a folder, or put #### into the file's name",
+                              option.name, given));
     for (FrameFiles& files : frames) {
       if (pattern && !files.frame)
         throw Error(ExitCode::Usage,
@@ -108,6 +110,10 @@ FrameFiles single_file(const DenoiseOptions& o) {
   FrameFiles files;
   files.input = o.inputs.front();
   files.outputs = o.outputs;
+  for (const OutputOption& option : output_options())
+    if (std::string& path = files.outputs.*option.path; is_folder(path))
+      path = path_in_folder(option, path, files.input);
+  if (files.outputs.picture.empty()) files.outputs.picture = default_output(files.input);
   return files;
 }
 
@@ -131,6 +137,32 @@ const std::array<OutputOption, 5>& output_options() {
                                                     {"--sample-map", &OutputPaths::sample_map, OutputKind::Map},
                                                     {"--report", &OutputPaths::report, OutputKind::Report}}};
   return options;
+}
+
+FileKind file_kind_of(OutputKind kind) { return kind == OutputKind::Report ? FileKind::Json : FileKind::Exr; }
+
+std::string default_output(const std::string& input) {
+  const fs::path path(input);
+  const std::string stem = path.stem().string();
+  std::size_t place = stem.find_first_of("#%");
+  while (place != std::string::npos && place > 0 && std::string("._-").find(stem[place - 1]) != std::string::npos)
+    --place;
+  const std::string before = stem.substr(0, place);
+  const std::string after = place == std::string::npos ? std::string() : stem.substr(place);
+  const std::string name = before.empty() ? "denoised." + after : before + "_denoised" + after;
+  return (path.parent_path() / (name + ".exr")).string();
+}
+
+std::string path_in_folder(const OutputOption& option, const std::string& folder, const std::string& input) {
+  const FileKind kind = file_kind_of(option.kind);
+  fs::path file = fs::path(input).filename();
+  if (kind == FileKind::Json)
+    file.replace_extension(".json");
+  else if (names_another_format(input))
+    file.replace_extension(".exr");
+  else if (!has_ending_of(kind, input))
+    file += ".exr";
+  return (fs::path(folder) / file).string();
 }
 
 std::string FrameFiles::label() const { return frame ? fmt::format("frame {}", *frame) : input; }

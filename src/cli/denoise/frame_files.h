@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "cli/common/checks.h"
+
 namespace polyrecon {
 
 struct DenoiseOptions;
@@ -22,6 +24,8 @@ enum class OutputKind {
   Map,      ///< A file for each picture.
   Report,   ///< JSON about all pictures.
 };
+
+FileKind file_kind_of(OutputKind kind);
 
 /// An option that names an output, and the place of its path.
 struct OutputOption {
@@ -63,10 +67,17 @@ struct FrameList {
   int radius = 0;            ///< How many frames before and after help each one.
 };
 
-/// Lists one file, the frames of a pattern, or a list of files whose results go into a folder or into a pattern that
-/// takes the number in each file's name. Looks on the disk for the frames of a pattern without --frames, and for files
-/// whose names look like patterns. Throws Error{Usage} where names contradict each other, Error{Missing} where a
-/// pattern without --frames matches no file.
+/// Where the result of an input goes if no output was named: "shot_denoised.exr" beside "shot.exr", and
+/// "shot_denoised.####.exr" beside "shot.####.exr".
+std::string default_output(const std::string& input);
+
+/// The path of an output that goes into a folder: it has the name of the input.
+std::string path_in_folder(const OutputOption& option, const std::string& folder, const std::string& input);
+
+/// Lists one file, the frames of a pattern, or a list of files. Outputs that are folders take the names of the inputs;
+/// a pattern takes the number in each file's name. Without -o results go to default_output. Looks on the disk for the
+/// frames of a pattern without --frames, and for files whose names look like patterns. Throws Error{Usage} where names
+/// contradict each other, Error{Missing} where a pattern without --frames matches no file.
 FrameList list_frames(const DenoiseOptions& options);
 
 }  // namespace polyrecon

@@ -92,7 +92,7 @@ ReadOptions read_options_of(const DenoiseOptions& o, const FrameList& list, cons
 Params with_options(Params params, const DenoiseOptions& o, const StepsChoice& steps, int frame_radius) {
   if (o.stages) params.stages = *o.stages;
   if (o.order) params.max_order = *o.order;
-  if (o.max_memory) params.max_memory = *o.max_memory;
+  params.max_memory = o.max_memory;
   params.reconstruct_alpha = o.alpha;
   params.temporal.radius = frame_radius;
   return steps.applied_to(std::move(params));
@@ -143,21 +143,31 @@ Job make_job(const DenoiseOptions& o, const OptionSet& set) {
   return job;
 }
 
+void check_options(const DenoiseOptions& o) {
+  limits_of(o);
+  if (!o.outputs.sample_map.empty()) check_sample_map_options(o.sample_map);
+  if (!o.frames.empty()) parse_frames(o.frames);
+  validate(with_options(params_for(o.quality.value_or(Quality::Standard)), o, parse_steps(o.steps),
+                        o.frame_radius.value_or(0)));
+  read_options_of(o, {}, {});
+  denoiser_of(o);
+}
+
 void check_files(const Job& job) {
   std::vector<std::string> all_outputs;
   for (const FrameFiles& files : job.frames) {
     std::vector<NamedPath> outputs;
     for (const OutputOption& option : output_options()) {
-      outputs.push_back({option.name, files.outputs.*option.path});
+      outputs.push_back({option.name, files.outputs.*option.path, file_kind_of(option.kind)});
       all_outputs.push_back(files.outputs.*option.path);
     }
-    for (const NamedPath& output : outputs)
-      if (output.option != "--report") require_exr_name(output);
+    require_endings(outputs);
     require_different_files({files.input, job.sample_map ? sample_map_for(job, files).cost : std::string()}, outputs);
   }
   if (job.sample_map && !job.sample_map->cost.empty() && !FramePattern::parse(job.sample_map->cost))
     require_readable(job.sample_map->cost);
   if (!job.is_sequence && job.run.wait <= 0) require_readable(job.frames.front().input);
+  if (!job.run.may_replace()) require_new(all_outputs);
   require_writable(all_outputs);
 }
 

@@ -47,6 +47,9 @@ struct Job {
 /// list_frames.
 Job make_job(const DenoiseOptions& options, const OptionSet& set);
 
+/// Throws Error{Usage} where the options contradict each other; looks at no file.
+void check_options(const DenoiseOptions& options);
+
 /// Throws Error{Usage}, Error{Missing} or Error{CannotWrite} where the files of a job cannot be used: an output that is
 /// an input too, an input that does not exist, a folder that cannot be written to. Reads no pixel.
 void check_files(const Job& job);

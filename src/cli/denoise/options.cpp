@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <map>
-
 #include "cli/common/numbers.h"
 #include "cli/common/read_limits.h"
 #include "cli/common/steps_option.h"
@@ -12,26 +10,27 @@
 namespace polyrecon {
 namespace {
 
-const std::map<std::string, VarianceKind> variance_kinds{{"auto", VarianceKind::Auto},
-                                                         {"mean", VarianceKind::Mean},
-                                                         {"sample", VarianceKind::Sample},
-                                                         {"moment", VarianceKind::SecondMoment}};
-const std::map<std::string, Wrap> wraps{{"auto", Wrap::Auto}, {"none", Wrap::None}, {"x", Wrap::X}};
-const std::map<std::string, ProgressStyle> progress_styles{{"none", ProgressStyle::None},
-                                                           {"bar", ProgressStyle::Bar},
-                                                           {"json", ProgressStyle::Json},
-                                                           {"openjd", ProgressStyle::OpenJd}};
+const Choices<VarianceKind> variance_kinds{{"auto", VarianceKind::Auto},
+                                           {"mean", VarianceKind::Mean},
+                                           {"sample", VarianceKind::Sample},
+                                           {"moment", VarianceKind::SecondMoment}};
+const Choices<Wrap> wraps{{"auto", Wrap::Auto}, {"none", Wrap::None}, {"x", Wrap::X}};
+const Choices<bool> what_a_miss_does{{"keep", false}, {"fail", true}};
+const Choices<ProgressStyle> progress_styles{{"bar", ProgressStyle::Bar},
+                                             {"none", ProgressStyle::None},
+                                             {"json", ProgressStyle::Json},
+                                             {"openjd", ProgressStyle::OpenJd}};
 
 /// Returns --sample-map, which other options need.
 CLI::Option* add_files(OptionSet& set, DenoiseOptions& o) {
   set.add(Changes::Run, "-i,--input", o.inputs,
-          "Noisy render: EXR, PFM, Radiance HDR or TIFF; a sequence as shot.####.exr or shot.%04d.exr, or a list of "
-          "files")
+          "Noisy render: EXR, PFM, Radiance HDR or TIFF; a sequence as shot.####.exr or shot.%04d.exr, a "
+          "list of files, or a folder, of which all renders are taken")
       ->required()
       ->type_name("FILE");
   set.add(Changes::Run, "-o,--output", o.outputs.picture,
-          "Denoised EXR to write; #### or %04d for a sequence, a folder for a list")
-      ->required()
+          "Denoised EXR to write; #### or %04d for a sequence; a folder takes the inputs' names; default: "
+          "NAME_denoised.exr beside the input")
       ->type_name("FILE");
   set.add(Changes::Run, "--error-map", o.outputs.error_map, "Write the estimated error of each pixel")
       ->type_name("FILE");
@@ -41,15 +40,15 @@ CLI::Option* add_files(OptionSet& set, DenoiseOptions& o) {
       set.add(Changes::Run, "--sample-map", o.outputs.sample_map, "Write how many more samples each pixel should get")
           ->type_name("FILE");
   set.add(Changes::Run, "--report", o.outputs.report, "Write the report as JSON")->type_name("FILE");
+  set.add_flag(Changes::Run, "--overwrite", o.run.overwrite, overwrite_help);
   return sample_map;
 }
 
 void add_input_options(OptionSet& set, DenoiseOptions& o) {
   set.begin_group("Input");
   set.add(Changes::Result, "-l,--aov", o.read.aovs,
-          "Denoise this colour layer too: with the windows of the beauty, or with its own if it is no part of the "
-          "beauty "
-          "(repeatable)")
+          "Denoise these colour layers too: names, a,b, patterns as 'Glossy*', or all for all light AOVs; with the "
+          "windows of the beauty, or with windows of its own where one is no part of the beauty (repeatable)")
       ->type_name("LAYER")
       ->expected(1)
       ->take_all();
@@ -91,7 +90,8 @@ void add_sequence_options(OptionSet& set, DenoiseOptions& o) {
       ->check(CLI::Range(0, 8))
       ->type_name("R");
   set.add_flag(Changes::Run, "--skip-existing", o.run.skip_existing,
-               "Skip frames whose result was made from the same input by the same settings and version");
+               "Skip frames whose result was made from the same input by the same settings and version; other results "
+               "are replaced");
   set.add(Changes::Run, "--wait", o.run.wait,
           "Seconds to wait for an input that is missing or incomplete, counted from its last change")
       ->check(zero_or_more())
@@ -103,7 +103,8 @@ void add_sequence_options(OptionSet& set, DenoiseOptions& o) {
 void add_method_options(OptionSet& set, DenoiseOptions& o) {
   set.begin_group("Reconstruction");
   CLI::Option* quality =
-      set.add_choice(Changes::Result, "--quality", o.quality, quality_names(), "draft, standard or best");
+      set.add_choice(Changes::Result, "--quality", o.quality, quality_names(), "From the fastest to the most accurate")
+          ->default_str("standard");
   CLI::Option* stages = set.add(Changes::Result, "--stages", o.stages,
                                 "Rounds of error estimation, 1 to 4, in place of the number that the quality sets");
   CLI::Option* order = set.add(Changes::Result, "--order", o.order,
@@ -116,6 +117,9 @@ void add_method_options(OptionSet& set, DenoiseOptions& o) {
       ->excludes(quality)
       ->excludes(stages)
       ->excludes(order);
+  set.add_choice(Changes::Run, "--on-miss", o.run.miss_fails, what_a_miss_does,
+                 "Where --time-budget or --target cannot be reached, the best that can be done is written; keep ends "
+                 "with code 0, fail with 8");
   add_steps_option(set, o.steps);
   set.add_flag(Changes::Result, "--alpha", o.alpha, "Denoise the alpha channel too; default: keep it");
   set.add_flag(Changes::Result, "--keep-noisy", o.keep_noisy, "Keep the noisy layers, as '<layer> Noisy'");
@@ -126,21 +130,22 @@ void add_run_options(OptionSet& set, DenoiseOptions& o) {
   set.add(Changes::Run, "-t,--threads", o.run.threads, "Threads to use; 0: one for each processor")
       ->check(CLI::Range(0, 4096))
       ->capture_default_str();
-  set.add(Changes::Run, "--max-memory", o.max_memory, "Limit of memory, in bytes or as 512M, 4G")
+  set.add(Changes::Run, "--max-memory", o.max_memory, max_memory_help)
       ->transform(CLI::AsSizeValue(false).description(""))
-      ->type_name("SIZE");
+      ->type_name("SIZE")
+      ->default_str(default_memory_text);
   set.add_choice(Changes::Run, "--progress", o.run.progress, progress_styles,
-                 "Progress on standard error: none, bar, json (one object per line) or openjd (Open Job Description); "
-                 "default: a bar on a terminal");
-  set.add_flag(Changes::Run, "-q,--quiet", o.run.quiet, "Print nothing but errors");
+                 "Progress on standard error: bar (on a terminal; into a log a line a minute), none, json (one "
+                 "object per line) or openjd (Open Job Description)");
+  set.add_verbosity(o.run.verbosity);
 }
 
 }  // namespace
 
-const std::map<std::string, Quality>& quality_names() {
-  static const std::map<std::string, Quality> names = [] {
-    std::map<std::string, Quality> out;
-    for (const NamedQuality& named : qualities) out.emplace(named.name, named.quality);
+const Choices<Quality>& quality_names() {
+  static const Choices<Quality> names = [] {
+    Choices<Quality> out;
+    for (const NamedQuality& named : qualities) out.emplace_back(named.name, named.quality);
     return out;
   }();
   return names;

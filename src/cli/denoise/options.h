@@ -1,15 +1,16 @@
 #pragma once
 
 #include <cstddef>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "cli/common/denoiser_options.h"
+#include "cli/common/memory_limit.h"
 #include "cli/common/option_set.h"
 #include "cli/common/progress_output.h"
 #include "cli/common/sample_map_options.h"
+#include "cli/common/verbosity.h"
 #include "cli/denoise/frame_files.h"
 #include "polyrecon/params.h"
 #include "polyrecon/read_frame.h"
@@ -21,10 +22,15 @@ struct RunOptions {
   bool skip_existing = false;  ///< Skip frames whose outputs were made from the same input by the same settings.
   bool strict = false;         ///< The first frame that fails ends the run.
   bool dry_run = false;        ///< Only list what would be done.
-  bool quiet = false;
+  bool overwrite = false;
+  bool miss_fails = false;  ///< A missed time budget or target ends with exit_code_missed.
+  Verbosity verbosity = Verbosity::Short;
   double wait = 0;  ///< Seconds that an input may stay unreadable without change.
   int threads = 0;  ///< 0: as many as there are processors.
-  ProgressStyle progress = ProgressStyle::Auto;
+  ProgressStyle progress = ProgressStyle::Bar;
+
+  /// Whether outputs that exist may be replaced: --skip-existing keeps what is finished and replaces the rest.
+  bool may_replace() const { return overwrite || skip_existing; }
 };
 
 /// The command line of `denoise` as it was given. make_job turns it into the work to do.
@@ -41,13 +47,13 @@ struct DenoiseOptions {
   double time_budget = 0;  ///< Seconds for a whole frame; 0: no limit.
   bool alpha = false, keep_noisy = false;
   std::optional<int> frame_radius;
-  std::optional<std::size_t> max_memory;
+  std::size_t max_memory = default_memory();
   SampleMapOptions sample_map;
   RunOptions run;
 };
 
-/// The name of each quality on the command line.
-const std::map<std::string, Quality>& quality_names();
+/// The name of each quality on the command line, the fastest first.
+const Choices<Quality>& quality_names();
 
 /// Adds all options of the command to `set`.
 void add_denoise_options(OptionSet& set, DenoiseOptions& options);

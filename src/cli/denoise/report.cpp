@@ -4,10 +4,14 @@
 #include <sys/resource.h>
 
 #include <array>
+#include <cmath>
+#include <utility>
 
+#include "cli/common/advice_output.h"
 #include "cli/common/decisions_output.h"
 #include "cli/common/printed_text.h"
 #include "cli/common/roles_output.h"
+#include "io/layers/channel_names.h"
 #include "pipeline/report_json.h"
 
 namespace polyrecon {
@@ -28,15 +32,47 @@ std::string windows_text(const Report& r) {
   return fmt::format("{}{}", r.windows, orders);
 }
 
-}  // namespace
-
-std::size_t peak_memory() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<std::size_t>(usage.ru_maxrss) * 1024;  // Linux counts in kilobytes
+/// Mean number of samples per pixel; 0 if unknown.
+double mean_samples(const Image& counts) {
+  if (counts.empty()) return 0;
+  double sum = 0;
+  for (std::size_t i = 0; i < counts.pixels(); ++i) sum += counts.plane(0)[i];
+  return sum / static_cast<double>(counts.pixels());
 }
 
-std::string report_text(const RunReport& run) {
+/// "ViewLayer.Combined with normal, albedo, variance"
+std::string layers_text(const ReadResult& in) {
+  std::string beauty, with;
+  bool has_variance = false, has_halves = false;
+  for (const RoleChoice& choice : in.source.chosen) {
+    const bool is_mean = choice.companion == Companion::Mean;
+    if (choice.role == Role::Beauty && is_mean) beauty = choice.layer.empty() ? "RGB" : choice.layer;
+    if (choice.role == Role::Beauty && is_variance(choice.companion)) has_variance = true;
+    if (choice.role == Role::Beauty && choice.companion == Companion::HalfA) has_halves = true;
+    if (is_mean && (info_of(choice.role).feature || choice.role == Role::Prior))
+      with += fmt::format("{}{}", with.empty() ? "" : ", ", name_of(choice.role));
+  }
+  for (const auto& [has, name] : {std::pair(has_variance, "variance"), std::pair(has_halves, "halves")})
+    if (has) with += fmt::format("{}{}", with.empty() ? "" : ", ", name);
+  const std::size_t aovs = in.frame.aovs.size();
+  return fmt::format("{}{}{}{}", beauty, with.empty() ? "" : " with ", with,
+                     aovs > 0 ? fmt::format(", and {} light AOVs", aovs) : "");
+}
+
+std::string short_text(const RunReport& run, bool with_advice) {
+  const Report& r = run.reconstruction;
+  const std::string before = std::isfinite(run.noise_before) ? fmt::format("{:.3g} -> ", run.noise_before) : "";
+  std::string text =
+      text_line("{}{}: estimated relMSE {}{:.3g}, {:.1f} s", run.output, run.title.empty() ? "" : ", " + run.title,
+                before, r.estimated_relative_mse, run.seconds);
+  if (run.chosen) text += line("settings chosen", settings_choice_text(*run.chosen, reconstruction_seconds(r)));
+  if (const std::string advice = advice_text(run.advice); with_advice && !advice.empty())
+    text += line("could be better", advice);
+  for (const std::string& note : run.notes) text += line("note", note);
+  return text;
+}
+
+std::string all_figures(const RunReport& run, bool with_advice) {
   const Report& r = run.reconstruction;
   std::string text = text_line("{} -> {}, {} x {}{}", run.input, run.output, r.width, r.height,
                                run.title.empty() ? "" : ", " + run.title);
@@ -64,8 +100,33 @@ std::string report_text(const RunReport& run) {
   text += line("restored gain", fmt::format("{:+.3f} {:+.3f} {:+.3f} %", 100 * r.restored_gain[0],
                                             100 * r.restored_gain[1], 100 * r.restored_gain[2]));
   text += line("estimated relMSE", fmt::format("{:.5g}", r.estimated_relative_mse));
+  if (const std::string advice = advice_text(run.advice); with_advice && !advice.empty())
+    text += line("could be better", advice);
   for (const std::string& note : run.notes) text += line("note", note);
   return text;
+}
+
+}  // namespace
+
+std::size_t peak_memory() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::size_t>(usage.ru_maxrss) * 1024;  // Linux counts in kilobytes
+}
+
+std::string input_text(const ReadResult& in, const std::string& picture, Verbosity verbosity) {
+  if (verbosity == Verbosity::Quiet) return {};
+  std::string line = fmt::format("{}: {} x {}", in.source.path, in.frame.width(), in.frame.height());
+  if (!picture.empty() && (in.source.pictures.size() > 1 || verbosity == Verbosity::Full)) line += ", " + picture;
+  if (verbosity == Verbosity::Full) return text_line("{}", line) + roles_text(in.source);
+  if (const double samples = mean_samples(in.frame.sample_count); samples > 0)
+    line += fmt::format(", {:.4g} samples per pixel", samples);
+  return text_line("{}, {}", line, layers_text(in));
+}
+
+std::string report_text(const RunReport& run, bool with_advice, Verbosity verbosity) {
+  if (verbosity == Verbosity::Quiet) return {};
+  return verbosity == Verbosity::Full ? all_figures(run, with_advice) : short_text(run, with_advice);
 }
 
 Json report_json(const RunReport& run, const FrameSource& source) {
@@ -86,6 +147,9 @@ Json report_json(const RunReport& run, const FrameSource& source) {
               {"total", run.seconds}}},
             {"peak_memory_bytes", run.peak_memory}};
   json.update(report_json(r));
+  json["noise_before"] = std::isfinite(run.noise_before) ? Json(run.noise_before) : Json();
+  json["advice"] = advice_json(run.advice);
+  json["missed"] = run.missed;
   json["notes"] = run.notes;
   return json;
 }

@@ -6,8 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "cli/common/verbosity.h"
 #include "cli/denoise/load_frame.h"
 #include "cli/denoise/settings_choice.h"
+#include "io/layers/pass_advice.h"
 #include "polyrecon/read_frame.h"
 #include "polyrecon/report.h"
 
@@ -23,14 +25,21 @@ struct RunReport {
   double read_seconds = 0, write_seconds = 0;
   std::size_t peak_memory = 0;  ///< Peak of the process, in bytes.
   Report reconstruction;
+  double noise_before = 0;  ///< Mean over the frame of relnoise.Y; NaN if unknown.
+  std::vector<PassAdvice> advice;
+  std::vector<std::string> missed;       ///< What was missed of --time-budget and --target.
   std::optional<ChosenSettings> chosen;  ///< Set if --time-budget or --target chose the settings.
 };
 
 /// Peak resident memory of this process in bytes.
 std::size_t peak_memory();
 
-/// The table at the end of a run.
-std::string report_text(const RunReport& run);
+/// What was read, before the work: a line, or with Verbosity::Full the roles of all layers. picture: its name in a file
+/// of several.
+std::string input_text(const ReadResult& in, const std::string& picture, Verbosity verbosity);
+
+/// What was done, what could be better, and notes: a line each, or with Verbosity::Full the table of all figures.
+std::string report_text(const RunReport& run, bool with_advice, Verbosity verbosity);
 
 /// The same as JSON (docs/reference/report.md).
 nlohmann::ordered_json report_json(const RunReport& run, const FrameSource& source);

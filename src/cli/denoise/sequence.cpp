@@ -25,31 +25,31 @@
 namespace polyrecon {
 namespace {
 
-/// Whether the next frame may still succeed.
-bool concerns_one_frame(ExitCode code) {
-  return code == ExitCode::BadInput || code == ExitCode::Missing || code == ExitCode::CheckFailed ||
-         code == ExitCode::OutOfMemory || code == ExitCode::Internal;
-}
-
 /// Counts the frames that were written, skipped or failed, and those that lacked a layer of the first frame.
 class Outcome {
  public:
-  explicit Outcome(bool strict) : strict_(strict) {}
+  Outcome(bool strict, RunProgress& progress) : strict_(strict), progress_(progress) {}
 
   /// Call it inside a catch block.
   void failed(const FrameFiles& files, const Error& error) {
     if (strict_ || !concerns_one_frame(error.code())) throw;
-    std::fputs(text_line("polyrecon: {}: {}", files.label(), error.what()).c_str(), stderr);
+    progress_.print(stderr, text_line("polyrecon: {}: {}", files.label(), error.what()));
     failed_.push_back(&files);
   }
   void skipped() { ++skipped_; }
-  void written() { ++written_; }
+  void written(const FrameFiles& files, bool missed) {
+    ++written_;
+    if (missed) missed_.push_back(&files);
+  }
+  bool any_missed() const { return !missed_.empty(); }
   void lacks_layers(const FrameFiles& files) { lacking_.push_back(&files); }
 
   std::string summary() const {
     std::string text = fmt::format("{} written, {} skipped, {} failed", written_, skipped_, failed_.size());
     if (!lacking_.empty())
       text += fmt::format("; {} without all layers of the first frame: {}", lacking_.size(), names(lacking_));
+    if (!missed_.empty())
+      text += fmt::format("; {} beyond --time-budget or --target: {}", missed_.size(), names(missed_));
     return text;
   }
 
@@ -72,7 +72,8 @@ class Outcome {
   }
 
   const bool strict_;
-  std::vector<const FrameFiles*> failed_, lacking_;
+  RunProgress& progress_;
+  std::vector<const FrameFiles*> failed_, lacking_, missed_;
   std::size_t skipped_ = 0, written_ = 0;
 };
 
@@ -152,9 +153,9 @@ std::size_t memory_with_next(const Frame& frame, const Params& params) {
 }
 
 /// Denoises the pictures of frame k, of which the first is read already or being read. Each is computed while the next
-/// one is read; begin_next() starts reading the next frame.
-void denoise_frame(const Job& job, const FrameFiles& files, bool is_last, LoadedFrame loaded, ReadAhead& ahead,
-                   const std::function<void()>& begin_next, Progress& progress) {
+/// one is read; begin_next() starts reading the next frame. Returns whether a limit was missed.
+bool denoise_frame(const Job& job, const FrameFiles& files, bool is_last, LoadedFrame loaded, ReadAhead& ahead,
+                   const std::function<void()>& begin_next, RunProgress& progress) {
   FileRun run(job, files);
   for (;;) {
     run.list_others(loaded);
@@ -165,12 +166,12 @@ void denoise_frame(const Job& job, const FrameFiles& files, bool is_last, Loaded
     if (!next) break;
     loaded = *ahead.take();
   }
-  run.write(progress);
+  return run.write(progress);
 }
 
 /// Denoises frame k, which is read already or being read, and starts reading the next one.
 void run_frame(const Job& job, std::size_t k, ReadAhead& ahead, Consistency& consistency, Outcome& outcome,
-               Progress& progress) {
+               RunProgress& progress) {
   const FrameFiles& files = job.frames[k];
   const bool is_last = k + 1 == job.frames.size();
   bool begun = is_last;
@@ -182,8 +183,7 @@ void run_frame(const Job& job, std::size_t k, ReadAhead& ahead, Consistency& con
     auto loaded = ahead.take();
     if (loaded) {
       if (consistency.check(files, *loaded)) outcome.lacks_layers(files);
-      denoise_frame(job, files, is_last, std::move(*loaded), ahead, begin_next, progress);
-      outcome.written();
+      outcome.written(files, denoise_frame(job, files, is_last, std::move(*loaded), ahead, begin_next, progress));
     } else {
       outcome.skipped();
     }
@@ -195,8 +195,13 @@ void run_frame(const Job& job, std::size_t k, ReadAhead& ahead, Consistency& con
 
 }  // namespace
 
-void run_sequence(const Job& job, RunProgress& progress) {
-  Outcome outcome(job.run.strict);
+bool concerns_one_frame(ExitCode code) {
+  return code == ExitCode::BadInput || code == ExitCode::Missing || code == ExitCode::CheckFailed ||
+         code == ExitCode::OutOfMemory || code == ExitCode::Internal;
+}
+
+bool run_sequence(const Job& job, RunProgress& progress) {
+  Outcome outcome(job.run.strict, progress);
   Consistency consistency;
   ReadAhead ahead(job, progress);
   ahead.begin(job.frames.front());
@@ -206,12 +211,14 @@ void run_sequence(const Job& job, RunProgress& progress) {
     run_frame(job, k, ahead, consistency, outcome, progress);
   }
   progress.frame("", count, count);
-  if (!job.run.quiet) std::fputs(text_line("{}", outcome.summary()).c_str(), stdout);
+  if (job.run.verbosity != Verbosity::Quiet) progress.print(stdout, text_line("{}", outcome.summary()));
   outcome.throw_if_any_failed(count);
+  return outcome.any_missed();
 }
 
 void show_dry_run(const Job& job) {
-  Outcome outcome(job.run.strict);
+  const auto progress = make_progress(ProgressStyle::None);
+  Outcome outcome(job.run.strict, *progress);
   for (const FrameFiles& files : job.frames) try {
       read_frame_header(files.input,
                         read_options_for(job, files.number_in_names()));  // throws where the frame would fail

@@ -25,7 +25,7 @@ struct InspectOptions {
   ReadOptions read;
   DenoiserOptions denoiser;
   bool json = false;
-  std::size_t max_memory = default_memory;
+  std::size_t max_memory = default_memory();
 };
 
 /// The steps that denoise would run, and the time that each skipped one would take at standard quality, as a pilot on
@@ -81,7 +81,8 @@ void setup_inspect(CLI::App& app, Command& chosen) {
       ->type_name("NAME");
   sub->add_option("--view", o->read.view, "Stereo view whose layers get roles, in place of the first one")
       ->type_name("NAME");
-  sub->add_option("-l,--aov", o->read.aovs, "Colour layer that denoise is to take too (repeatable)")
+  sub->add_option("-l,--aov", o->read.aovs,
+                  "Colour layers that denoise is to take too, as its --aov names them (repeatable)")
       ->type_name("LAYER");
   OptionSet set(*sub);
   add_denoiser_options(set, o->denoiser);
@@ -91,7 +92,13 @@ void setup_inspect(CLI::App& app, Command& chosen) {
       "Examples:\n"
       "  polyrecon inspect render.exr\n"
       "  polyrecon inspect render.exr --json");
-  sub->callback([o, &chosen] { chosen = [o] { run(*o); }; });
+  sub->callback([o, &chosen] {
+    chosen = {[o] {
+                run(*o);
+                return 0;
+              },
+              {}};
+  });
 }
 
 }  // namespace polyrecon

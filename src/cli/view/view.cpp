@@ -31,8 +31,9 @@ struct ViewOptions {
   std::string output, reference, frames, region, page;
   DisplayParams display;
   int scale = 1;
+  bool overwrite = false;
   std::size_t max_size = default_page_size;
-  std::size_t max_memory = default_memory;
+  std::size_t max_memory = default_memory();
 };
 
 /// "X,Y,WIDTH,HEIGHT"
@@ -111,13 +112,19 @@ PageContents contents_of_page_file(const std::string& path) {
   return page;
 }
 
-void run(const ViewOptions& o) {
-  limit_memory(o.max_memory);
+void check(const ViewOptions& o) {
   if (o.files.empty() == o.page.empty())
     throw Error(ExitCode::Usage, "view needs the files to show, or --page with a description of the page");
   if (!o.page.empty() && !(o.reference.empty() && o.frames.empty()))
     throw Error(ExitCode::Usage,
                 "--page names the reference and the frames itself: leave out --reference and --frames");
+  parse_region(o.region);
+  require_endings({{"-o", o.output, FileKind::Page}});
+}
+
+void run(const ViewOptions& o) {
+  limit_memory(o.max_memory);
+  check(o);
   const PageContents contents = o.page.empty() ? contents_of_arguments(o) : contents_of_page_file(o.page);
   const ViewSelection selection{o.layers, contents.first_layers_only, parse_region(o.region), o.scale, o.max_size};
   std::vector<std::string> paths;
@@ -126,7 +133,7 @@ void run(const ViewOptions& o) {
     paths.push_back(file.path);
   }
   if (!o.page.empty()) paths.push_back(o.page);
-  require_outputs(paths, {{"-o", o.output}});
+  require_outputs(paths, {{"-o", o.output, FileKind::Page}}, o.overwrite);
 
   ViewerPage page(contents.title, o.display, o.max_size);
   if (!contents.frames.empty()) page.set_frames(contents.frame_name, contents.frames);
@@ -165,6 +172,7 @@ void setup_view(CLI::App& app, Command& chosen) {
       ->type_name("N")
       ->capture_default_str();
   add_page_size(*sub, o->max_size);
+  add_overwrite(*sub, o->overwrite);
   add_display_options(*sub, o->display);
   add_memory_limit(*sub, o->max_memory);
   sub->footer(
@@ -175,7 +183,13 @@ void setup_view(CLI::App& app, Command& chosen) {
       "  polyrecon view noisy.exr clean.exr error.exr -o look.html\n"
       "  polyrecon view noisy.exr clean.exr other.exr --reference reference.exr -o look.html --view Filmic\n"
       "  polyrecon view noisy.####.exr clean.####.exr -o look.html --frames 1-20 --scale 2 --layer Combined");
-  sub->callback([o, &chosen] { chosen = [o] { run(*o); }; });
+  sub->callback([o, &chosen] {
+    chosen = {[o] {
+                run(*o);
+                return 0;
+              },
+              [o] { check(*o); }};
+  });
 }
 
 }  // namespace polyrecon

@@ -149,6 +149,24 @@ void remove_abandoned(const std::string& target) {
   }
 }
 
+/// The folder of the target, or the nearest folder above it that exists.
+fs::path nearest_folder(const std::string& target) {
+  fs::path folder = folder_of(target);
+  std::error_code failure;
+  while (!fs::exists(folder, failure)) {
+    const fs::path above = folder.parent_path();
+    if (above == folder) break;
+    folder = above.empty() ? fs::path(".") : above;
+  }
+  return folder;
+}
+
+void make_folder(const std::string& target) {
+  std::error_code failure;
+  fs::create_directories(folder_of(target), failure);
+  if (failure) fail(target, "making its folder", failure.value());
+}
+
 void check_target(const std::string& target) {
   std::error_code failure;
   const fs::file_status status = fs::status(target, failure);
@@ -177,12 +195,13 @@ void write_bytes(const std::string& target, const std::string& bytes) {
 
 void check_writable(const std::string& target) {
   check_target(target);
-  const Temporary probe(target);
+  const Temporary probe((nearest_folder(target) / fs::path(target).filename()).string());
 }
 
 void write_atomically(const std::string& target, const std::function<void(const std::string& path)>& write,
                       const std::function<void(const std::string& path)>& verify) {
   check_target(target);
+  make_folder(target);
   remove_abandoned(target);
   Temporary temporary(target);
   try {

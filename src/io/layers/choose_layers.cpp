@@ -8,10 +8,12 @@
 #include <system_error>
 #include <tuple>
 
+#include "core/nearest.h"
 #include "core/rect.h"
 #include "io/layers/channel_groups.h"
 #include "io/layers/channel_names.h"
 #include "io/layers/choose_picture.h"
+#include "io/layers/layer_words.h"
 #include "io/layers/sibling_files.h"
 #include "io/renderers/known_names.h"
 #include "io/renderers/polyrecon.h"
@@ -160,8 +162,10 @@ int find_layer(FrameSource& source, const std::string& name) {
 [[noreturn]] void no_such_layer(const FrameSource& source, const std::string& name) {
   std::vector<std::string> names;
   for (const Layer& layer : source.layers) names.push_back(layer.name);
-  throw Error(ExitCode::Missing,
-              fmt::format("{}: no layer {}; there are: {}", source.path, name, fmt::join(names, ", ")));
+  std::vector<std::string> near = names;
+  for (const Layer& layer : source.layers) near.push_back(layer.pass);
+  throw Error(ExitCode::Missing, fmt::format("{}: no layer {}{}; there are: {}", source.path, name,
+                                             did_you_mean(name, near), fmt::join(names, ", ")));
 }
 
 /// Whether a beauty has this view layer, or this view.
@@ -414,11 +418,48 @@ bool names_one_of(const FrameSource& source, const std::vector<std::string>& nam
   });
 }
 
+/// The light AOVs of the picture that can be denoised with its beauty.
+std::vector<std::string> light_aovs(const FrameSource& source, const Layer& beauty) {
+  std::vector<std::string> names;
+  for (const Layer& layer : source.layers)
+    if (is_light_aov(layer) && place_of(layer) == place_of(source) && part_of(source, layer).readable() &&
+        misfit(part_of(source, layer), part_of(source, beauty)).empty())
+      names.push_back(layer.name);
+  return names;
+}
+
+/// The layers that the texts of --aov name, each once: lists, patterns and "all" are taken apart. Other names stay, and
+/// so does a pattern that fits no layer of the file.
+std::vector<std::string> aovs_named_by(const FrameSource& source, const std::vector<std::string>& texts,
+                                       const std::vector<std::string>& light) {
+  std::vector<std::string> names;
+  const auto add = [&](const std::string& name) {
+    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  };
+  for (const std::string& text : texts)
+    for (const std::string& word : layer_words(text, source.layers)) {
+      const auto is_named = [&](const Layer& layer) { return layer.name == word || layer.pass == word; };
+      const auto fits = [&](const Layer& layer) { return fits_pattern(layer, word); };
+      if (std::any_of(source.layers.begin(), source.layers.end(), is_named)) {
+        add(word);
+      } else if (word == "all") {
+        for (const std::string& name : light) add(name);
+      } else if (is_layer_pattern(word) && std::any_of(source.layers.begin(), source.layers.end(), fits)) {
+        for (const Layer& layer : source.layers)
+          if (fits(layer) && std::find(light.begin(), light.end(), layer.name) != light.end()) add(layer.name);
+      } else {
+        add(word);
+      }
+    }
+  return names;
+}
+
 /// Adds the layers that the user wants to be denoised with the beauty.
 void choose_aovs(LayerChoice& choice, const ReadOptions& options) {
   FrameSource& source = choice.source;
   const Layer beauty = source.layers[static_cast<std::size_t>(choice.passes.front().mean)];
-  for (const std::string& name : options.aovs) {
+  const std::vector<std::string> light = light_aovs(source, beauty);
+  for (const std::string& name : aovs_named_by(source, options.aovs, light)) {
     const int index = find_aov(source, name);
     if (index == elsewhere) {
       if (!names_one_of(source, options.aovs))

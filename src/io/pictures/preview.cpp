@@ -165,13 +165,14 @@ Image stack(const std::vector<Image>& rows) {
 
 bool has_font() { return !font().empty(); }
 
-std::string encode_png(const Image& rgb) {
+std::string encode_picture(const Image& rgb, const std::string& format) {
   OIIO::Filesystem::IOVecOutput memory;
   OIIO::ImageBuf buffer = buffer_of(rgb);
   buffer.set_write_ioproxy(&memory);
   buffer.set_write_format(OIIO::TypeDesc::UINT8);
-  if (!buffer.write("memory.png", OIIO::TypeDesc::UNKNOWN, "png"))
-    throw Error(ExitCode::Internal, "a picture cannot be made into PNG: " + buffer.geterror());
+  if (format != "png") buffer.specmod().attribute("compression", format == "jpeg" ? "jpeg:95" : "zip");
+  if (!buffer.write("memory." + format, OIIO::TypeDesc::UNKNOWN, format))
+    throw Error(ExitCode::Internal, "a picture cannot be made into " + format + ": " + buffer.geterror());
   return {memory.buffer().begin(), memory.buffer().end()};
 }
 

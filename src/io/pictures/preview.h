@@ -26,7 +26,7 @@ Image stack(const std::vector<Image>& rows);
 /// Whether this machine has a font to write captions with.
 bool has_font();
 
-/// The bytes of rgb (3 channels, 0..1) as 8-bit PNG.
-std::string encode_png(const Image& rgb);
+/// The bytes of rgb (3 channels, 0..1) with 8 bits a channel. format: OpenImageIO's name, "png", "jpeg" or "tiff".
+std::string encode_picture(const Image& rgb, const std::string& format);
 
 }  // namespace polyrecon

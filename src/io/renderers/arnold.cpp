@@ -16,6 +16,12 @@ Renderer arnold() {
       {"motionvector", Role::Other, 1},
   };
   r.beauty_companions = {{"variance", Companion::VarianceOfMean}};
+  r.switches = {
+      {Role::Albedo, "AOV denoise_albedo (Output Denoising AOVs)"},
+      {Role::Normal, "AOV N (Output Denoising AOVs)"},
+      {Role::Depth, "AOV Z (Output Denoising AOVs)"},
+  };
+  r.noise_switch = "Output Denoising AOVs writes the variance";
   return r;
 }
 

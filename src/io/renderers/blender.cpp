@@ -37,6 +37,12 @@ Renderer blender() {
   // Vector holds (X, Y) from here to the place in the frame before and (Z, W) from the place in the frame after to
   // here, with rows counted upwards.
   r.motion_factors = {1, -1, -1, 1};
+  r.switches = {
+      {Role::Albedo, "View Layer > Passes > Data > Denoising Data"},
+      {Role::Normal, "View Layer > Passes > Data > Denoising Data"},
+      {Role::Depth, "View Layer > Passes > Data > Denoising Data"},
+  };
+  r.noise_switch = "polyrecon-blender renders the samples in parts, or merge renders of different seeds";
   return r;
 }
 

@@ -30,6 +30,11 @@ Renderer luxcore() {
                   SampleMapFormat::Values::Importance,
                   "in LuxCore, load it into the USER_IMPORTANCE channel and set "
                   "sampler.sobol.adaptive.userimportanceweight to 1"};
+  r.switches = {
+      {Role::Albedo, "film output ALBEDO"},
+      {Role::Normal, "film output AVG_SHADING_NORMAL"},
+      {Role::Depth, "film output DEPTH"},
+  };
   return r;
 }
 

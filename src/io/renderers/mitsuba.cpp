@@ -15,6 +15,12 @@ Renderer mitsuba() {
   r.letters = {{"T", Role::Depth, 3}};
   r.affixes = {{"m2_", Companion::SecondMoment, CompanionAffix::Place::BeforeWord}};
   r.beauty_moment_is_nested = true;  // the moment integrator keeps it with the nested one
+  r.switches = {
+      {Role::Albedo, "aovs \"albedo:albedo\" of the aov integrator"},
+      {Role::Normal, "aovs \"nn:sh_normal\" of the aov integrator"},
+      {Role::Depth, "aovs \"dd:depth\" of the aov integrator"},
+  };
+  r.noise_switch = "put the integrator into a moment integrator";
   return r;
 }
 

@@ -13,6 +13,12 @@ Renderer povray() {
       {"Denoising Depth", Role::Depth, 1},    {"Visibility", Role::Visibility, 1},
       {"Sample Count", Role::SampleCount, 1},
   };
+  r.switches = {
+      {Role::Albedo, "polyrecon-povray-passes renders it"},
+      {Role::Normal, "polyrecon-povray-passes renders it"},
+      {Role::Depth, "polyrecon-povray-passes renders it"},
+  };
+  r.noise_switch = "polyrecon-povray renders several estimates of each pixel";
   return r;
 }
 

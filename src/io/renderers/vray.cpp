@@ -28,6 +28,11 @@ Renderer vray() {
                   {"R", "G", "B"},
                   SampleMapFormat::Values::Mask,
                   "in V-Ray, use it as the render mask texture (V-Ray takes no sample counts)"};
+  r.switches = {
+      {Role::Albedo, "render element Diffuse Filter"},
+      {Role::Normal, "render element Bump Normals"},
+      {Role::Depth, "render element Z-Depth"},
+  };
   return r;
 }
 

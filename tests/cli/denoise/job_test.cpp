@@ -106,7 +106,10 @@ const std::vector<OptionCase> cases{
     {Changes::Run, {"--threads", "1"}},
     {Changes::Run, {"--max-memory", "1G"}},
     {Changes::Run, {"--progress", "json"}},
+    {Changes::Run, {"--overwrite"}},
+    {Changes::Run, {"--on-miss", "fail"}},
     {Changes::Run, {"--quiet"}},
+    {Changes::Run, {"--verbose"}},
     {Changes::Run, {"--max-pixels", "10000"}},
     {Changes::Run, {"--max-channels", "10"}},
 };

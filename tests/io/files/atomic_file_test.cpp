@@ -103,8 +103,16 @@ TEST(CheckWritable, TriesTheFolderAndLeavesNothing) {
   EXPECT_EQ(folder.entries(), 0u);
   put_contents(folder / "file", "");
   for (const std::string& target :
-       {folder / "none/a.exr", folder / "file/a.exr", folder / "", std::string(), std::string("/dev/full")})
+       {folder / "file/a.exr", folder / "file/none/a.exr", folder / "", std::string(), std::string("/dev/full")})
     EXPECT_EQ(error_of([&] { check_writable(target); }).code(), ExitCode::CannotWrite) << target;
+}
+
+TEST(AtomicFile, MakesFoldersThatAreMissing) {
+  const TemporaryFolder folder;
+  check_writable(folder / "some/more/a.txt");
+  EXPECT_EQ(folder.entries(), 0u) << "a check makes none";
+  write_bytes(folder / "some/more/a.txt", "text");
+  EXPECT_EQ(contents(folder / "some/more/a.txt"), "text");
 }
 
 TEST(Case11, AReadOnlyFolder) {

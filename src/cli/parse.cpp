@@ -1,0 +1,99 @@
+#include "cli/parse.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <system_error>
+
+#include "cli/app.h"
+#include "core/nearest.h"
+#include "polyrecon/error.h"
+
+namespace polyrecon {
+namespace {
+
+std::vector<std::string> command_names(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* sub : app.get_subcommands(nullptr)) names.push_back(sub->get_name());
+  return names;
+}
+
+bool is_command(const CLI::App& app, const std::string& word) {
+  const std::vector<std::string> names = command_names(app);
+  return std::find(names.begin(), names.end(), word) != names.end();
+}
+
+/// Whether a word where a command is expected is a file, a folder or a sequence.
+bool is_path(const std::string& word) {
+  std::error_code ignored;
+  return word.find_first_of("./#%") != std::string::npos || std::filesystem::exists(word, ignored);
+}
+
+/// The words with what they are short for.
+std::vector<std::string> expanded(const CLI::App& app, std::vector<std::string> words) {
+  if (!words.empty() && words.front() == "help") {
+    words.erase(words.begin());
+    if (words.size() > 1) words.resize(1);
+    if (!words.empty() && !is_command(app, words.front()))
+      throw Error(ExitCode::Usage, fmt::format("'{}' is no command{} (polyrecon --help lists the commands)",
+                                               words.front(), did_you_mean(words.front(), command_names(app))));
+    words.emplace_back("--help");
+    return words;
+  }
+  const auto first = std::find_if(words.begin(), words.end(), [](const std::string& w) { return w != check_options; });
+  if (first == words.end() || first->empty() || first->front() == '-' || is_command(app, *first)) return words;
+  if (!is_path(*first))
+    throw Error(ExitCode::Usage, fmt::format("'{}' is no command{} (polyrecon --help lists the commands)", *first,
+                                             did_you_mean(*first, command_names(app))));
+  words.insert(first, {"denoise", "-i"});
+  return words;
+}
+
+std::vector<std::string> option_names(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : app.get_options())
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  return names;
+}
+
+/// What is wrong with words that no option takes.
+std::string unexpected(const CLI::App& app, const std::string& message) {
+  const auto subs = app.get_subcommands();
+  const CLI::App& place = subs.empty() ? app : *subs.front();
+  const std::vector<std::string> words = place.remaining();
+  const auto option = std::find_if(words.begin(), words.end(), [](const std::string& w) { return w[0] == '-'; });
+  if (words.empty()) return message;
+  if (option == words.end()) return fmt::format("'{}' was not expected", words.front());
+  return fmt::format("{} is no option{}{}", *option, subs.empty() ? "" : " of " + place.get_name(),
+                     did_you_mean(option->substr(0, option->find('=')), option_names(place)));
+}
+
+}  // namespace
+
+Command parse_command_line(const std::vector<std::string>& words) {
+  CLI::App app;
+  Command chosen;
+  setup_app(app, chosen);
+  std::vector<std::string> reversed = expanded(app, words);
+  std::reverse(reversed.begin(), reversed.end());
+  const auto hint = [&] {
+    const auto subs = app.get_subcommands();
+    return subs.empty() ? std::string(" (polyrecon --help lists the commands)")
+                        : fmt::format(" (polyrecon help {} lists the options)", subs.front()->get_name());
+  };
+  try {
+    app.parse(reversed);
+  } catch (const CLI::ExtrasError& e) {
+    throw Error(ExitCode::Usage, unexpected(app, e.what()) + hint());
+  } catch (const CLI::ParseError& e) {
+    if (e.get_exit_code() != 0) throw Error(ExitCode::Usage, e.what() + hint());
+    app.exit(e);
+    return {};
+  }
+  if (app.count(check_options) == 0) return chosen;
+  if (chosen.check_options) chosen.check_options();
+  return {};
+}
+
+}  // namespace polyrecon

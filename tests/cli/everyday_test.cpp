@@ -1,0 +1,270 @@
+// What people expect of every command: folders that are made, endings that are kept, nothing overwritten, names that
+// are suggested, advice, limits that cannot be met.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "cli/program.h"
+
+namespace polyrecon::testing {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+using Words = std::vector<std::string>;
+
+class Everyday : public ProgramTest {
+ protected:
+  void SetUp() override { write_render(path("in.exr")); }
+
+  static std::ptrdiff_t lines_of(const std::string& text) { return std::count(text.begin(), text.end(), '\n'); }
+};
+
+/// A call of each command that writes a file, and what it writes.
+std::vector<std::pair<Words, std::string>> writing_calls(const std::string& folder) {
+  return {{{"denoise", "-i", "in.exr", "-o", folder + "clean.exr", "--quality", "draft"}, folder + "clean.exr"},
+          {{"denoise", "-i", "in.exr", "-o", folder + "c.exr", "--error-map", folder + "maps/error.exr", "--quality",
+            "draft", "--report", folder + "r/report.json"},
+           folder + "r/report.json"},
+          {{"merge", "in.exr", "two.exr", "-o", folder + "merged.exr"}, folder + "merged.exr"},
+          {{"samplemap", "-e", "error.exr", "--budget", "4", "-o", folder + "samples.exr"}, folder + "samples.exr"},
+          {{"preview", "in.exr", "-o", folder + "look.png"}, folder + "look.png"},
+          {{"compare", "in.exr", "two.exr", "--picture", folder + "compared.jpg"}, folder + "compared.jpg"},
+          {{"compare", "in.exr", "two.exr", "--html", folder + "page.html"}, folder + "page.html"},
+          {{"sweep", "-i", "in.exr", "--reference", "two.exr", "-o", folder + "sweep.html", "--vary", "quality",
+            "--csv", folder + "t/figures.csv"},
+           folder + "t/figures.csv"}};
+}
+
+TEST_F(Everyday, FoldersAreMadeAndNothingIsOverwritten) {
+  write_render(path("two.exr"), 40, 24, 2);
+  ASSERT_EQ(run({"denoise", "-i", "in.exr", "-o", "x.exr", "--error-map", "error.exr"}).code, 0);
+  for (const auto& [call, written] : writing_calls("new/folders/")) {
+    const Outcome made = run(call);
+    ASSERT_EQ(made.code, 0) << call[0] << made.err;
+    ASSERT_TRUE(exists(written)) << written;
+    const std::string bytes = read_text(path(written));
+    const Outcome again = run(call);
+    EXPECT_EQ(again.code, 2) << call[0];
+    EXPECT_TRUE(is_one_error_line(again.err));
+    EXPECT_THAT(again.err, HasSubstr("add --overwrite to replace"));
+    EXPECT_EQ(read_text(path(written)), bytes);
+    Words replacing = call;
+    replacing.emplace_back("--overwrite");
+    EXPECT_EQ(run(replacing).code, 0) << call[0];
+  }
+}
+
+TEST_F(Everyday, AFolderThatCannotBeMadeIsNamedBeforeAnyWork) {
+  std::ofstream(path("file")) << "no folder";
+  const Outcome o = run({"denoise", "-i", "in.exr", "-o", "file/clean.exr"});
+  EXPECT_EQ(o.code, 5);
+  EXPECT_TRUE(is_one_error_line(o.err));
+  EXPECT_TRUE(o.out.empty()) << "it was read before: " << o.out;
+}
+
+TEST_F(Everyday, ADryRunMakesNoFolder) {
+  ASSERT_EQ(run({"denoise", "-i", "in.exr", "-o", "later/clean.exr", "--dry-run"}).code, 0);
+  EXPECT_FALSE(exists("later"));
+}
+
+TEST_F(Everyday, AFailedRunLeavesNoFolder) {
+  EXPECT_EQ(run({"denoise", "-i", "gone.exr", "-o", "later/clean.exr"}).code, 4);
+  EXPECT_FALSE(exists("later"));
+}
+
+TEST_F(Everyday, EndingsDecideTheFormatOrAreRefused) {
+  for (const char* name : {"c.png", "c.tif", "c", "c.EXRX"}) {
+    const Outcome o = run({"denoise", "-i", "in.exr", "-o", name});
+    EXPECT_EQ(o.code, 2) << name;
+    EXPECT_THAT(o.err, HasSubstr("give it the ending .exr"));
+  }
+  EXPECT_THAT(run({"merge", "in.exr", "in.exr", "-o", "m.png"}).err, HasSubstr("polyrecon preview makes pictures"));
+  EXPECT_EQ(run({"denoise", "-i", "in.exr", "-o", "c.exr", "--report", "r.exr"}).code, 2);
+  EXPECT_EQ(run({"preview", "in.exr", "-o", "look.exr"}).code, 2);
+  EXPECT_EQ(run({"compare", "in.exr", "in.exr", "--html", "page.png"}).code, 2);
+  for (const auto& [name, format] : std::vector<std::pair<std::string, std::string>>{
+           {"look.png", "png"}, {"look.JPG", "jpeg"}, {"look.jpeg", "jpeg"}, {"look.tif", "tiff"}}) {
+    ASSERT_EQ(run({"preview", "in.exr", "-o", name}).code, 0) << name;
+    const auto input = OIIO::ImageInput::open(path(name));
+    ASSERT_TRUE(input) << name;
+    EXPECT_EQ(input->format_name(), format);
+    EXPECT_EQ(input->spec().width, 40);
+  }
+}
+
+TEST_F(Everyday, AFileAloneIsDenoisedBesideIt) {
+  const Outcome o = run({"in.exr", "--quality", "draft"});
+  ASSERT_EQ(o.code, 0) << o.err;
+  EXPECT_TRUE(exists("in_denoised.exr"));
+  EXPECT_EQ(run({"in.exr"}).code, 2) << "never over anything";
+  EXPECT_EQ(run({"gone.exr"}).code, 4);
+}
+
+TEST_F(Everyday, AFolderAloneIsDenoisedAfterItIsShown) {
+  std::filesystem::create_directory(path("renders"));
+  for (const char* name : {"shot.0001.exr", "shot.0002.exr", "shot.0004.exr", "still.exr"})
+    write_render(path(std::string("renders/") + name));
+  ASSERT_EQ(run({"denoise", "-i", "in.exr", "-o", "old.exr", "--error-map", "renders/error.exr"}).code, 0);
+  const Outcome o = run({"renders", "--quality", "draft"});
+  ASSERT_EQ(o.code, 0) << o.err;
+  EXPECT_THAT(o.out, HasSubstr("shot.####.exr, 3 frames 1,2,4 -> renders/shot_denoised.0001.exr"));
+  EXPECT_THAT(o.out, HasSubstr("left out: error.exr, an error map"));
+  for (const char* name : {"shot_denoised.0001.exr", "shot_denoised.0004.exr", "still_denoised.exr"})
+    EXPECT_TRUE(exists(std::string("renders/") + name)) << name;
+  EXPECT_FALSE(exists("renders/error_denoised.exr"));
+  EXPECT_EQ(run({"renders"}).code, 2) << "its results exist, and are no renders themselves";
+  const Outcome elsewhere = run({"denoise", "-i", "renders", "-o", "clean", "--quality", "draft"});
+  ASSERT_EQ(elsewhere.code, 0) << elsewhere.err;
+  EXPECT_TRUE(exists("clean/shot.0004.exr"));
+  EXPECT_TRUE(exists("clean/still.exr"));
+  EXPECT_FALSE(exists("clean/still_denoised.exr"));
+  std::filesystem::create_directory(path("empty"));
+  EXPECT_EQ(run({"empty"}).code, 4);
+}
+
+TEST_F(Everyday, AFrameEndsInThreeLines) {
+  const Outcome o = run({"denoise", "-i", "in.exr", "-o", "out.exr", "--quality", "draft"});
+  ASSERT_EQ(o.code, 0) << o.err;
+  EXPECT_EQ(lines_of(o.out), 3) << o.out;
+  EXPECT_THAT(o.out, HasSubstr("in.exr: 40 x 24, ViewLayer.Combined with albedo, depth, variance, halves"));
+  EXPECT_THAT(o.out, HasSubstr("out.exr: estimated relMSE "));
+  EXPECT_THAT(o.out, HasSubstr("no normal"));
+  const Outcome all = run({"denoise", "-i", "in.exr", "-o", "all.exr", "-v"});
+  EXPECT_GT(lines_of(all.out), 20);
+  EXPECT_THAT(all.out, HasSubstr("peak memory"));
+  const Outcome quiet = run({"denoise", "-i", "in.exr", "-o", "quiet.exr", "-q"});
+  EXPECT_EQ(quiet.out + quiet.err, "");
+  EXPECT_EQ(run({"denoise", "-i", "in.exr", "-o", "both.exr", "-q", "-v"}).code, 2);
+}
+
+TEST_F(Everyday, AdviceIsWordedForTheRenderer) {
+  const auto grey = [](int, int, int) { return 0.5; };
+  write_exr(path("blender.exr"), 24, 16,
+            {"ViewLayer.Combined.R", "ViewLayer.Combined.G", "ViewLayer.Combined.B", "ViewLayer.Vector.X",
+             "ViewLayer.Vector.Y", "ViewLayer.Vector.Z", "ViewLayer.Vector.W"},
+            grey);
+  const Outcome text = run({"inspect", "blender.exr"});
+  EXPECT_THAT(text.out, HasSubstr("Blender: View Layer > Passes > Data > Denoising Data"));
+  const auto json = nlohmann::json::parse(run({"inspect", "blender.exr", "--json"}).out)["advice"];
+  ASSERT_EQ(json.size(), 4U) << json;
+  EXPECT_EQ(json[0]["pass"], "albedo");
+  EXPECT_EQ(json[0]["how"], "Blender: View Layer > Passes > Data > Denoising Data");
+  EXPECT_EQ(json[3]["pass"], "variance");
+  ASSERT_EQ(run({"denoise", "-i", "blender.exr", "-o", "out.exr", "--report", "r.json"}).code, 0);
+  EXPECT_EQ(nlohmann::json::parse(read_text(path("r.json")))["advice"], json);
+
+  write_exr(path("plain.exr"), 24, 16, {"R", "G", "B"}, grey);
+  EXPECT_THAT(run({"inspect", "plain.exr"}).out,
+              HasSubstr("no albedo: textures get blurred (render a pass of albedo)"));
+}
+
+TEST_F(Everyday, AMissedTargetIsSaidAndHasACodeOnRequest) {
+  const Words call{"denoise", "-i", "in.exr", "--target", "1e-9", "-q"};
+  Words keep = call, fail = call;
+  keep.insert(keep.end(), {"-o", "keep.exr", "--report", "keep.json"});
+  fail.insert(fail.end(), {"-o", "fail.exr", "--on-miss", "fail"});
+  const Outcome kept = run(keep), failed = run(fail);
+  EXPECT_EQ(kept.code, 0);
+  EXPECT_EQ(failed.code, 8);
+  EXPECT_TRUE(exists("keep.exr"));
+  EXPECT_TRUE(exists("fail.exr"));
+  for (const Outcome& o : {kept, failed}) {
+    EXPECT_TRUE(is_one_error_line(o.err));
+    EXPECT_THAT(o.err, HasSubstr("so --target 1e-09 was missed"));
+  }
+  EXPECT_EQ(nlohmann::json::parse(read_text(path("keep.json")))["missed"].size(), 1U);
+  const Outcome slow =
+      run({"denoise", "-i", "in.exr", "-o", "slow.exr", "--time-budget", "0.0001", "--on-miss", "fail"});
+  EXPECT_EQ(slow.code, 8);
+  EXPECT_THAT(slow.err, HasSubstr("so --time-budget 0.0001 was missed"));
+  EXPECT_EQ(run({"denoise", "-i", "in.exr", "-o", "met.exr", "--target", "10", "--on-miss", "fail"}).code, 0);
+}
+
+TEST_F(Everyday, NearestNamesAreSuggested) {
+  EXPECT_THAT(run({"denoize", "-i", "in.exr"}).err, HasSubstr("did you mean denoise?"));
+  EXPECT_THAT(run({"denoise", "-i", "in.exr", "--qualty", "best"}).err, HasSubstr("did you mean --quality?"));
+  EXPECT_THAT(run({"denoise", "-i", "in.exr", "--quality", "bset"}).err, HasSubstr("did you mean best?"));
+  EXPECT_THAT(run({"denoise", "-i", "in.exr", "--steps", "albdo"}).err, HasSubstr("did you mean albedo?"));
+  EXPECT_THAT(run({"denoise", "-i", "in.exr", "--aov", "Combned"}).err, HasSubstr("did you mean Combined?"));
+  EXPECT_THAT(run({"denoise", "-i", "in.exr", "--zzzz"}).err, Not(HasSubstr("did you mean")));
+}
+
+TEST_F(Everyday, HelpIsACommandToo) {
+  EXPECT_EQ(run({"help", "merge"}).out, run({"merge", "--help"}).out);
+  EXPECT_EQ(run({"help"}).out, run({"--help"}).out);
+  EXPECT_EQ(run({"help", "mrge"}).code, 2);
+  EXPECT_EQ(run({"-v"}).out, run({"--version"}).out);
+  EXPECT_EQ(run({"denoise", "--version"}).out, run({"--version"}).out);
+  EXPECT_THAT(run({"help", "denoise"}).out, HasSubstr("draft|standard|best"));
+}
+
+TEST_F(Everyday, OptionsAreCheckedWithoutFiles) {
+  const Words good{"--check-options", "denoise", "-i", "no/such.exr", "-o", "no/where.exr", "--quality", "best"};
+  const Outcome o = run(good);
+  EXPECT_EQ(o.code, 0) << o.err;
+  EXPECT_EQ(o.out + o.err, "");
+  for (const Words& wrong : {Words{"--quality", "bset"},
+                             {"--nope"},
+                             {"--steps", "nothing"},
+                             {"--frames", "9-1"},
+                             {"--target", "0.1"},
+                             {"--map", "x=y"}}) {
+    Words call = good;
+    call.insert(call.end(), wrong.begin(), wrong.end());
+    const Outcome bad = run(call);
+    EXPECT_EQ(bad.code, 2) << wrong[0];
+    EXPECT_TRUE(is_one_error_line(bad.err));
+  }
+  EXPECT_EQ(run({"--check-options", "merge", "one.exr", "-o", "m.exr"}).code, 2);
+  EXPECT_EQ(run({"--check-options", "merge", "one.exr", "two.exr", "-o", "m.exr"}).code, 0);
+}
+
+TEST_F(Everyday, LightAovsAreNamedByListsPatternsAndAll) {
+  Words channels;
+  for (const char* pass : {"Combined", "Diffuse Direct", "Glossy Direct", "Glossy Indirect"})
+    for (const char* c : {"R", "G", "B"}) channels.push_back(std::string("ViewLayer.") + pass + "." + c);
+  write_exr(path("aovs.exr"), 40, 24, channels, [](int x, int y, int c) {
+    const double noise = ((x * 7 + y * 13 + c * 5) % 11) / 50.0;
+    return c < 3 ? 0.6 + 3 * noise : 0.2 + noise;
+  });
+  const auto denoised = [&](const std::string& aov) {
+    Words call{"denoise", "-i", "aovs.exr", "-o", "o.exr", "--overwrite", "--report", "r.json"};
+    if (!aov.empty()) call.insert(call.end(), {"--aov", aov});
+    const Outcome o = run(call);
+    EXPECT_EQ(o.code, 0) << o.err;
+    const auto report = nlohmann::json::parse(read_text(path("r.json")));
+    int colors = 0;
+    for (const auto& role : report["roles"]) colors += role["role"] == "color" ? 1 : 0;
+    EXPECT_EQ(o.out.find("light AOVs stay noisy") != std::string::npos, aov.empty()) << o.out;
+    return colors;
+  };
+  EXPECT_EQ(denoised(""), 0);
+  EXPECT_EQ(denoised("all"), 3);
+  EXPECT_EQ(denoised("Glossy*"), 2);
+  EXPECT_EQ(denoised("Diffuse Direct,ViewLayer.Glossy Direct"), 2);
+  EXPECT_EQ(run({"denoise", "-i", "aovs.exr", "-o", "no.exr", "--aov", "Volume*"}).code, 4);
+  ASSERT_EQ(run({"preview", "aovs.exr", "--layer", "Glossy*", "-o", "look.png"}).code, 0);
+  EXPECT_GT(load(path("look.png")).spec().width, 80) << "two pictures side by side";
+  EXPECT_EQ(run({"preview", "aovs.exr", "--layer", "Diffuse Direct", "-o", "one.png"}).code, 0);
+}
+
+TEST_F(Everyday, UnrelatedPicturesAreNoted) {
+  const auto picture = [&](const std::string& name, int dx, int dy) {
+    write_exr(path(name), 160, 96, {"R", "G", "B"},
+              [=](int x, int y, int) { return 0.1 + ((dx * (x / 32) + dy * (y / 32)) % 2 == 0 ? 0.8 : 0.0); });
+  };
+  picture("columns.exr", 1, 0);
+  picture("rows.exr", 0, 1);
+  EXPECT_THAT(run({"compare", "columns.exr", "rows.exr"}).out, HasSubstr("have little in common"));
+  EXPECT_THAT(run({"compare", "columns.exr", "columns.exr"}).out, Not(HasSubstr("have little in common")));
+}
+
+}  // namespace
+}  // namespace polyrecon::testing
