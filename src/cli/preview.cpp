@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,8 @@
 #include "cli/common/display_options.h"
 #include "cli/common/layers.h"
 #include "cli/common/memory_limit.h"
+#include "cli/common/progress_output.h"
+#include "cli/compare/comparison.h"
 #include "core/nearest.h"
 #include "io/layers/layer_words.h"
 #include "io/pictures/color.h"
@@ -27,7 +30,9 @@ namespace {
 
 struct PreviewOptions {
   std::vector<std::string> inputs;
-  std::string output, layer;
+  std::string output, layer, reference;
+  std::vector<int> region;  ///< Left, top, width, height; empty for the whole picture.
+  int zoom = 1;
   DisplayParams display;
   bool false_color = false, overwrite = false;
   std::size_t max_memory = default_memory();
@@ -79,6 +84,37 @@ Image mean_of_channels(const Image& image) {
   return out;
 }
 
+/// The part of a picture that --region names.
+Rect region_of(const Image& image, const PreviewOptions& o, const std::string& path) {
+  if (o.region.empty()) return image.bounds();
+  const int left = o.region[0], top = o.region[1], width = o.region[2], height = o.region[3];
+  const bool within = left >= 0 && top >= 0 && width > 0 && height > 0 && left < image.width() &&
+                      top < image.height() && width <= image.width() - left && height <= image.height() - top;
+  if (!within)
+    throw Error(ExitCode::Usage, fmt::format("--region {} is not within the {} x {} pixels of {}",
+                                             fmt::join(o.region, ","), image.width(), image.height(), path));
+  return {left, top, left + width, top + height};
+}
+
+/// A part of a picture, each of its pixels as a square of zoom x zoom.
+Image enlarged(const Image& image, const Rect& part, int zoom) {
+  if (part.area() * static_cast<std::size_t>(zoom * zoom) > most_pixels_of_preview)
+    throw Error(ExitCode::OutOfMemory, fmt::format("the preview would be {} x {} pixels: give --region or less --zoom",
+                                                   part.width() * zoom, part.height() * zoom));
+  Image out(part.width() * zoom, part.height() * zoom, image.channels());
+  for (int c = 0; c < out.channels(); ++c)
+    for (int y = 0; y < out.height(); ++y)
+      for (int x = 0; x < out.width(); ++x) out.at(x, y, c) = image.at(part.x0 + x / zoom, part.y0 + y / zoom, c);
+  return out;
+}
+
+/// The errors of the whole picture; empty for the reference itself.
+std::string figures_of(const LayeredFile& file, const LayeredFile& reference) {
+  if (file.info.path == reference.info.path) return {};
+  const Comparison found = compare_files(file, reference, false, *make_progress(ProgressStyle::None)).front();
+  return fmt::format("relMSE {:.3g}, FLIP {:.3g}", found.score.relative_mse, found.flip);
+}
+
 /// Radiance and layers of three channels are shown as pictures, all others in false colours, as on request are all.
 Panel make_panel(const LayeredFile& file, const Layer& layer, bool several_layers, const PreviewOptions& o) {
   const Image image = is_color(layer) ? read_radiance(file, layer) : read_layer(file, layer);
@@ -90,6 +126,7 @@ Panel make_panel(const LayeredFile& file, const Layer& layer, bool several_layer
     panel.range = log_range(values);
     panel.rgb = false_color(values, panel.range);
   }
+  panel.rgb = enlarged(panel.rgb, region_of(panel.rgb, o, file.info.path), o.zoom);
   const std::string name = std::filesystem::path(file.info.path).filename().string();
   if (o.inputs.size() > 1 || several_layers || panel.range.high > 0)
     panel.caption = image.channels() == 3 && !several_layers ? name : fmt::format("{}: {}", name, layer.name);
@@ -100,14 +137,19 @@ void check(const PreviewOptions& o) { require_endings({{"-o", o.output, FileKind
 
 void run(const PreviewOptions& o) {
   limit_memory(o.max_memory);
-  for (const std::string& input : o.inputs) require_readable(input);
-  require_outputs(o.inputs, {{"-o", o.output, FileKind::Picture}}, o.overwrite);
+  std::vector<std::string> read = o.inputs;
+  if (!o.reference.empty()) read.push_back(o.reference);
+  for (const std::string& file : read) require_readable(file);
+  require_outputs(read, {{"-o", o.output, FileKind::Picture}}, o.overwrite);
+  std::optional<LayeredFile> reference;
+  if (!o.reference.empty()) reference = open_layers(o.reference);
   std::vector<Panel> panels;
   panels.reserve(o.inputs.size());
   for (const std::string& input : o.inputs) {
     const LayeredFile file = open_layers(input);
     const std::vector<const Layer*> wanted = wanted_layers(file, o.layer);
     for (const Layer* layer : wanted) panels.push_back(make_panel(file, *layer, wanted.size() > 1, o));
+    if (reference && color_layer(file)) panels.back().figures = figures_of(file, *reference);
   }
   write_picture(o.output, compose(panels));
   if (!has_font())
@@ -125,6 +167,16 @@ void setup_preview(CLI::App& app, Command& chosen) {
   sub->add_option("-o,--output", o->output, "Picture to write: .png, .jpg or .tif")->required()->type_name("FILE");
   sub->add_option("--layer", o->layer, "Layers to show in place of the beauty, as --aov of denoise takes them")
       ->type_name("LAYER");
+  sub->add_option("--region", o->region, "Part to show; default: the whole picture")
+      ->delimiter(',')
+      ->expected(4)
+      ->type_name("X,Y,WIDTH,HEIGHT");
+  sub->add_option("--zoom", o->zoom, "Pixels for each pixel, along both sides; default: 1")
+      ->check(CLI::Range(1, 32))
+      ->type_name("N");
+  sub->add_option("--reference", o->reference,
+                  "Converged render: prints the errors of the pictures below them, as compare measures them")
+      ->type_name("FILE");
   add_overwrite(*sub, o->overwrite);
   add_display_options(*sub, o->display);
   add_memory_limit(*sub, o->max_memory);
@@ -135,7 +187,8 @@ void setup_preview(CLI::App& app, Command& chosen) {
       "Examples:\n"
       "  polyrecon preview clean.exr -o clean.png --view Filmic --exposure 1\n"
       "  polyrecon preview noisy.exr clean.exr reference.exr error.exr -o compared.png\n"
-      "  polyrecon preview error.exr -o error.png --layer mse --false-colour");
+      "  polyrecon preview error.exr -o error.png --layer mse --false-colour\n"
+      "  polyrecon preview noisy.exr clean.exr -o crop.png --region 200,120,160,90 --zoom 3 --reference reference.exr");
   sub->callback([o, &chosen] {
     chosen = {[o] {
                 run(*o);

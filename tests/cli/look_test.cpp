@@ -15,6 +15,7 @@ namespace polyrecon::testing {
 namespace {
 
 using ::testing::ElementsAre;
+using ::testing::HasSubstr;
 using ::testing::UnorderedElementsAre;
 
 const std::vector<std::string> rgb{"R", "G", "B"};
@@ -42,6 +43,40 @@ TEST_F(Preview, SeveralFilesStandSideBySide) {
   const OIIO::ImageBuf png = load(path("out.png"));
   EXPECT_EQ(png.spec().width, 40 + 40 + 30 + 4 * 8);
   EXPECT_GT(png.spec().height, 24 + 2 * 8);
+}
+
+TEST_F(Preview, ARegionIsShownPixelByPixel) {
+  write_exr(path("steps.exr"), 6, 4, rgb, [](int x, int y, int) { return 0.01 * (x + 10 * y); });
+  ASSERT_EQ(run({"preview", "steps.exr", "-o", "whole.png"}).code, 0);
+  ASSERT_EQ(run({"preview", "steps.exr", "-o", "part.png", "--region", "2,1,3,2", "--zoom", "4"}).code, 0);
+  const OIIO::ImageBuf whole = load(path("whole.png")), part = load(path("part.png"));
+  ASSERT_EQ(part.spec().width, 12);
+  ASSERT_EQ(part.spec().height, 8);
+  for (int y = 0; y < 8; ++y)
+    for (int x = 0; x < 12; ++x)
+      EXPECT_EQ(part.getchannel(x, y, 0, 0), whole.getchannel(2 + x / 4, 1 + y / 4, 0, 0)) << x << " " << y;
+}
+
+TEST_F(Preview, ARegionOutsideThePictureIsRefused) {
+  for (const char* region : {"0,0,41,24", "40,0,1,1", "-1,0,4,4", "0,0,0,4", "39,23,2147483647,1"}) {
+    const Outcome o = run({"preview", "in.exr", "-o", "out.png", std::string("--region=") + region});
+    EXPECT_EQ(o.code, 2) << region;
+    EXPECT_THAT(o.err, HasSubstr(std::string(region) + " is not within the 40 x 24 pixels of in.exr")) << region;
+  }
+  EXPECT_THAT(files(), UnorderedElementsAre("in.exr"));
+}
+
+TEST_F(Preview, FiguresAgainstTheReferenceStandBelowThePictures) {
+  const auto height = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"preview", "in.exr", "in.exr", "-o", "out.png", "--overwrite"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    EXPECT_EQ(run(arguments).code, 0);
+    return load(path("out.png")).spec().height;
+  };
+  // A second line of captions is 22 pixels high.
+  EXPECT_EQ(height({"--reference", "in.exr"}), height({}));
+  write_exr(path("ref.exr"), 40, 24, rgb, [](int x, int y, int) { return 0.01 * (x + y); });
+  EXPECT_EQ(height({"--reference", "ref.exr"}), height({}) + 22);
 }
 
 TEST_F(Preview, ExposureAndViewChangeThePicture) {

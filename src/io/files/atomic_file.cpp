@@ -154,6 +154,7 @@ fs::path nearest_folder(const std::string& target) {
   fs::path folder = folder_of(target);
   std::error_code failure;
   while (!fs::exists(folder, failure)) {
+    if (failure == std::errc::filename_too_long) fail(target, "its folder", failure.value());
     const fs::path above = folder.parent_path();
     if (above == folder) break;
     folder = above.empty() ? fs::path(".") : above;

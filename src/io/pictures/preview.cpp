@@ -97,7 +97,7 @@ void draw_legend(OIIO::ImageBuf& image, const LogRange& range, int x, int y, int
 }
 
 void check_size(std::size_t width, std::size_t height) {
-  if (width * height > std::size_t{1} << 28)
+  if (width * height > most_pixels_of_preview)
     throw Error(ExitCode::OutOfMemory,
                 fmt::format("the preview would be {} x {} pixels: give fewer files", width, height));
 }
@@ -111,7 +111,8 @@ Layout lay_out(const std::vector<Panel>& panels) {
   bool legends = false;
   for (const Panel& p : panels) {
     l.pictures = std::max(l.pictures, p.rgb.height());
-    if (!p.caption.empty()) l.captions = strip_height;
+    if (!p.caption.empty()) l.captions = std::max(l.captions, strip_height);
+    if (!p.figures.empty()) l.captions = 2 * strip_height;
     legends = legends || p.range.high > 0;
   }
   const bool bare = panels.size() == 1 && l.captions == 0 && !legends;
@@ -137,6 +138,7 @@ Image compose(const std::vector<Panel>& panels) {
     OIIO::ImageBufAlgo::paste(sheet, x, l.margin, 0, 0, buffer_of(p.rgb));
     const int below = l.margin + l.pictures;
     draw_text(sheet, p.caption, x, below, p.rgb.width(), Align::Left);
+    draw_text(sheet, p.figures, x, below + strip_height, p.rgb.width(), Align::Left);
     if (p.range.high > 0) draw_legend(sheet, p.range, x, below + l.captions + gap, p.rgb.width());
     x += p.rgb.width() + l.margin;
   }

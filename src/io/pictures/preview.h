@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -10,14 +11,18 @@ namespace polyrecon {
 
 /// One picture of a preview.
 struct Panel {
-  Image rgb;            ///< 3 channels, display-encoded, 0..1.
-  std::string caption;  ///< One line; cut where it is wider than the panel.
-  LogRange range;       ///< Range of a false-colour picture, for its legend. {0, 0}: none.
+  Image rgb;                 ///< 3 channels, display-encoded, 0..1.
+  std::string caption;       ///< One line; cut where it is wider than the panel.
+  LogRange range = {};       ///< Range of a false-colour picture, for its legend. {0, 0}: none.
+  std::string figures = {};  ///< One line below the caption, cut like it.
 };
+
+/// A preview of more pixels is refused.
+constexpr std::size_t most_pixels_of_preview = std::size_t{1} << 28;
 
 /// The panels side by side on a dark ground, each with its caption (and legend) in a strip below; a single panel
 /// without caption and legend is the bare picture. Where no font is found the strips stay without text. Throws
-/// Error{OutOfMemory} where the picture would have more than 2^28 pixels.
+/// Error{OutOfMemory} where the picture would have more than most_pixels_of_preview.
 Image compose(const std::vector<Panel>& panels);
 
 /// The rows one below the other, from the left, on the same dark ground. Throws like compose.
