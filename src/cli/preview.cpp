@@ -38,15 +38,6 @@ struct PreviewOptions {
   std::size_t max_memory = default_memory();
 };
 
-/// The layer to show unless one was named: the picture, else the main layer of a map, else the first layer.
-const Layer& main_layer(const LayeredFile& file) {
-  if (const Layer* color = color_layer(file)) return *color;
-  for (const char* name : {"relmse", "samples", "order"})
-    if (const Layer* map = find_layer(file, name)) return *map;
-  if (file.layers.empty()) throw Error(ExitCode::Missing, file.info.path + ": has no layer to show");
-  return file.layers.front();
-}
-
 /// The layer of a whole name, or of a name within the view layer; nullptr without one.
 const Layer* layer_named(const LayeredFile& file, const std::string& name) {
   if (const Layer* layer = find_layer(file, name)) return layer;

@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "core/cancel_only.h"
 #include "core/parallel.h"
 #include "polyrecon/error.h"
 
@@ -20,16 +21,6 @@ struct Plane {
   Plane(int w, int h) : width(w), height(h), v(static_cast<std::size_t>(w) * static_cast<std::size_t>(h)) {}
   double* row(int y) { return v.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(width); }
   const double* row(int y) const { return v.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(width); }
-};
-
-/// Forwards cancellation but reports no work, as the rows of a helper are not those of the sample map.
-class CancelOnly final : public Progress {
- public:
-  explicit CancelOnly(const Progress& outer) : outer_(outer) {}
-  bool cancelled() const override { return outer_.cancelled(); }
-
- private:
-  const Progress& outer_;
 };
 
 void each_row(int height, Progress& progress, const std::function<void(int)>& body) {

@@ -8,23 +8,22 @@
 #include "core/parallel.h"
 #include "core/real.h"
 #include "core/rect.h"
+#include "core/spectrum_corner.h"
 #include "noise/estimate_grid.h"
 
 namespace polyrecon {
 namespace {
 
-constexpr std::array<Real, 4> kernel{1, -3, 3, -1};
-constexpr int taps = 4;
-constexpr Real kernel_energy = 20;  // sum of the squares of the taps
-constexpr int mean_radius = 3;      // places
-constexpr int rim_radius = 1;       // pixels
-constexpr double stratified = 4;    // twice what rims of lamps rendered by Cycles show at 16, 64 and 256 samples
+constexpr int taps = static_cast<int>(corner_taps.size());
+constexpr int mean_radius = 3;    // places
+constexpr int rim_radius = 1;     // pixels
+constexpr double stratified = 4;  // twice what rims of lamps rendered by Cycles show at 16, 64 and 256 samples
 constexpr Real margin = Real(1.4);
 
 /// Sum of the taps times values that are step apart.
 Real convolved(const Real* in, std::ptrdiff_t step) {
   Real sum = 0;
-  for (int k = 0; k < taps; ++k) sum += kernel[static_cast<std::size_t>(k)] * in[k * step];
+  for (int k = 0; k < taps; ++k) sum += static_cast<Real>(corner_taps[static_cast<std::size_t>(k)]) * in[k * step];
   return sum;
 }
 
@@ -44,7 +43,8 @@ Image squared_corner(const Image& y, const Image& mask) {
   Image along(width, y.height(), y.channels()), out(width, height, y.channels());
   for_rows(along.height(), [&](int v) {
     for (int c = 0; c < y.channels(); ++c)
-      for (int x = 0; x < width; ++x) along.at(x, v, c) = convolved(y.row(c, v) + x, 1) / kernel_energy;
+      for (int x = 0; x < width; ++x)
+        along.at(x, v, c) = convolved(y.row(c, v) + x, 1) / static_cast<Real>(corner_gain);
   });
   for_rows(height, [&](int v) {
     for (int c = 0; c < y.channels(); ++c)

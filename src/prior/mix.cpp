@@ -9,6 +9,7 @@
 #include "core/mask.h"
 #include "core/parallel.h"
 #include "core/real.h"
+#include "core/spectrum_corner.h"
 
 namespace polyrecon {
 namespace {
@@ -86,15 +87,11 @@ Image difference(const Image& a, const Image& b) {
 }
 
 /// k of unvalidated_share at a pixel; the image continues with the values of its border.
-double corner_of_spectrum(const Image& image, int x, int y, int c) {
-  constexpr std::array<double, 4> taps{1, -3, 3, -1};
-  double sum = 0;
-  for (int j = 0; j < 4; ++j)
-    for (int i = 0; i < 4; ++i)
-      sum += taps[static_cast<std::size_t>(i)] * taps[static_cast<std::size_t>(j)] *
-             static_cast<double>(image.at(std::clamp(x + i - 1, 0, image.width() - 1),
-                                          std::clamp(y + j - 1, 0, image.height() - 1), c));
-  return sum;
+double corner_at(const Image& image, int x, int y, int c) {
+  return corner_of_spectrum([&](int i, int j) {
+    return static_cast<double>(
+        image.at(std::clamp(x + i, 0, image.width() - 1), std::clamp(y + j, 0, image.height() - 1), c));
+  });
 }
 
 }  // namespace
@@ -133,8 +130,8 @@ Image unvalidated_share(const HalfPair& pair, const Image& prior, const Image& r
   for_rows(terms.height(), [&](int y) {
     for (int c = 0; c < beauty_channels; ++c)
       for (int x = 0; x < terms.width(); ++x) {
-        const double of_noise = corner_of_spectrum(taken, x, y, c), weight = s.at(x, y, c);
-        terms.at(x, y, 0) += storable(of_noise * corner_of_spectrum(kept, x, y, c) * weight);
+        const double of_noise = corner_at(taken, x, y, c), weight = s.at(x, y, c);
+        terms.at(x, y, 0) += storable(of_noise * corner_at(kept, x, y, c) * weight);
         terms.at(x, y, 1) += storable(of_noise * of_noise * weight);
       }
   });

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/cancel_only.h"
 #include "core/stopwatch.h"
 #include "polyrecon/reconstruct.h"
 
@@ -11,16 +12,6 @@ namespace {
 
 constexpr double enough_seconds = 2;
 constexpr std::size_t most_runs = 3;
-
-/// Forwards cancellation only: the units of a sweep are settings, not those of a reconstruction.
-class OnlyCancels : public Progress {
- public:
-  explicit OnlyCancels(const Progress& of) : of_(of) {}
-  bool cancelled() const override { return of_.cancelled(); }
-
- private:
-  const Progress& of_;
-};
 
 struct Run {
   double seconds;
@@ -39,7 +30,7 @@ Run run_once(Frame frame, const Params& params, Progress& progress) {
 
 Trial run_trial(const Frame& frame, const Setting& setting, const Reference& reference, Progress& progress) {
   const Frame input = frame_for(frame, setting);
-  OnlyCancels quiet(progress);
+  CancelOnly quiet(progress);
   std::vector<Run> runs;
   for (double spent = 0; spent < enough_seconds && runs.size() < most_runs; spent += runs.back().seconds)
     runs.push_back(run_once(input, setting.params, quiet));

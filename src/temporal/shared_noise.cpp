@@ -10,6 +10,7 @@
 #include "core/gaussian.h"
 #include "core/parallel.h"
 #include "core/rect.h"
+#include "core/spectrum_corner.h"
 
 namespace polyrecon {
 namespace {
@@ -60,16 +61,10 @@ double mean_of(const std::array<Image, 2>& color, std::size_t i, int c) {
   return (static_cast<double>(color[0].plane(c)[i]) + static_cast<double>(color[1].plane(c)[i])) / 2;
 }
 
-/// The corner of the spectrum of the means around (x, y), which is the second of the four pixels of each direction;
-/// white noise keeps its variance.
+/// The corner of the spectrum of the means around (x, y); white noise keeps its variance.
 double corner(const std::array<Image, 2>& color, int x, int y, int c) {
-  constexpr std::array<double, 4> taps{1, -3, 3, -1};
-  double sum = 0;
-  for (int j = 0; j < 4; ++j)
-    for (int i = 0; i < 4; ++i)
-      sum += taps[static_cast<std::size_t>(i)] * taps[static_cast<std::size_t>(j)] *
-             mean_of(color, color[0].index(x + i - 1, y + j - 1), c);
-  return sum / 20;
+  return corner_of_spectrum([&](int i, int j) { return mean_of(color, color[0].index(x + i, y + j), c); }) /
+         corner_gain;
 }
 
 /// Whether all pixels that corner() reads are seen in the neighbour.

@@ -64,7 +64,10 @@ bool is_color(const Layer& layer) {
          info_of(layer.role).values == Values::Radiance;
 }
 
+bool is_error_map(const LayeredFile& file) { return find_layer(file, "relmse") != nullptr; }
+
 const Layer* color_layer(const LayeredFile& file) {
+  if (is_error_map(file)) return nullptr;
   const Layer* picture = picture_layer(file.layers);
   return picture && is_color(*picture) ? picture : nullptr;
 }
@@ -74,6 +77,14 @@ const Layer& require_color_layer(const LayeredFile& file) {
   throw Error(ExitCode::Missing, file.info.path +
                                      ": no colour layer that has a name of a renderer's beauty; `polyrecon inspect` "
                                      "lists the layers");
+}
+
+const Layer& main_layer(const LayeredFile& file) {
+  if (const Layer* color = color_layer(file)) return *color;
+  for (const char* name : {"relmse", "samples", "order"})
+    if (const Layer* map = find_layer(file, name)) return *map;
+  if (file.layers.empty()) throw Error(ExitCode::Missing, file.info.path + ": has no layer to show");
+  return file.layers.front();
 }
 
 Image read_layer(const LayeredFile& file, const Layer& layer) {

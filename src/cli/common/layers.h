@@ -24,11 +24,18 @@ const Layer* find_layer(const LayeredFile& file, const std::string& name);
 /// Whether a layer holds radiance, in three channels or in one of grey.
 bool is_color(const Layer& layer);
 
-/// The picture (io/layers/channel_names.h) if it is_color, else nullptr.
+/// Whether a file is an error map, whose only colours are errors.
+bool is_error_map(const LayeredFile& file);
+
+/// The picture (io/layers/channel_names.h) if it is_color, else nullptr, as for an error map.
 const Layer* color_layer(const LayeredFile& file);
 
 /// The same; throws Error{Missing} where there is none.
 const Layer& require_color_layer(const LayeredFile& file);
+
+/// The layer to show unless one was named: the picture, else the main layer of a map, else the first layer. Throws
+/// Error{Missing} for a file without layers.
+const Layer& main_layer(const LayeredFile& file);
 
 /// All channels of a layer.
 Image read_layer(const LayeredFile& file, const Layer& layer);

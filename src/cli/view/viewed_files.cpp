@@ -31,20 +31,6 @@ struct Wanted {
   bool is_picture = false;  ///< The file's main picture.
 };
 
-bool is_error_map(const LayeredFile& file) { return find_layer(file, "relmse") != nullptr; }
-
-/// The picture of a file; nullptr for an error map, whose only colours are errors.
-const Layer* picture_of(const LayeredFile& file) { return is_error_map(file) ? nullptr : color_layer(file); }
-
-/// The picture, else the main layer of a map, else the first layer.
-const Layer& main_layer(const LayeredFile& file) {
-  if (const Layer* color = picture_of(file)) return *color;
-  for (const char* name : {"relmse", "samples", "order"})
-    if (const Layer* map = find_layer(file, name)) return *map;
-  if (file.layers.empty()) throw Error(ExitCode::Missing, file.info.path + ": has no layer to show");
-  return file.layers.front();
-}
-
 bool readable(const LayeredFile& file, const Layer& layer) {
   return file.info.parts[static_cast<std::size_t>(layer.part)].readable() && !layer.channels.empty();
 }
@@ -57,7 +43,7 @@ bool is_map(const LayeredFile& file, const Layer& layer) {
 /// The wanted layers of a file, the one that is shown first at the beginning.
 std::vector<Wanted> wanted_layers(const LayeredFile& file, const std::vector<std::string>& names) {
   std::vector<Wanted> found;
-  const Layer* picture = picture_of(file);
+  const Layer* picture = color_layer(file);
   if (names.empty()) {
     const Layer& main = main_layer(file);
     if (!readable(file, main))
@@ -138,7 +124,7 @@ ViewedLayer viewed_layer(const LayeredFile& file, const Wanted& wanted, const Pl
   if (!wanted.is_picture && viewed.slot.empty()) viewed.slot = "RGB";
   if (viewed.is_map) viewed.scale = scale_of(layer, placed.image);
   // What tells most about a pixel of the picture: its noise, its samples, and the maps of a file that has no picture.
-  const Layer* picture = picture_of(file);
+  const Layer* picture = color_layer(file);
   viewed.listed =
       !picture || layer.role == Role::SampleCount || (is_variance(layer.companion) && layer.of == picture->name);
   viewed.is_variance = layer.companion == Companion::VarianceOfMean;

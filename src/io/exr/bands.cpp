@@ -9,15 +9,9 @@
 #include <string_view>
 
 #include "core/parallel.h"
+#include "io/exr/chunks.h"
 
 namespace polyrecon {
-namespace {
-
-bool is_tiled(const Imf::Header& header) {
-  return header.hasType() ? Imf::isTiled(header.type()) : header.hasTileDescription();
-}
-
-}  // namespace
 
 std::size_t size_of(Imf::PixelType type) { return type == Imf::HALF ? 2 : 4; }
 
@@ -61,7 +55,7 @@ Imf::FrameBuffer NativeBand::buffer() {
 
 std::vector<std::pair<int, int>> bands_of(const Imf::Header& header, int lines) {
   const int first = header.dataWindow().min.y, end = header.dataWindow().max.y + 1;
-  if (is_tiled(header)) lines = static_cast<int>(header.tileDescription().ySize);
+  if (is_tiled_part(header)) lines = static_cast<int>(header.tileDescription().ySize);
   std::vector<std::pair<int, int>> bands;
   for (int y = first; y < end; y += std::min(lines, end - y)) bands.emplace_back(y, y + std::min(lines, end - y));
   if (header.lineOrder() == Imf::DECREASING_Y) std::reverse(bands.begin(), bands.end());
@@ -76,7 +70,7 @@ void read_band(Imf::InputPart& input, NativeBand& band) {
 void write_bands(Imf::MultiPartOutputFile& output, int part, const std::function<void(NativeBand&)>& make, int lines) {
   const Imf::Header& header = output.header(part);
   NativeBand band(header);
-  if (is_tiled(header)) {
+  if (is_tiled_part(header)) {
     Imf::TiledOutputPart tiles(output, part);
     for (const auto& [y0, y1] : bands_of(header)) {
       band.take_lines(y0, y1);

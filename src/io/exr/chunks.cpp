@@ -73,10 +73,6 @@ std::uint64_t tile_count(const Imf::TileDescription& tiles, std::uint64_t width,
   return count;
 }
 
-bool is_tiled_part(const Imf::Header& header) {
-  return header.hasType() ? Imf::isTiled(header.type()) : header.hasTileDescription();
-}
-
 bool is_deep(const Imf::Header& header) { return header.hasType() && Imf::isDeepData(header.type()); }
 
 std::uint64_t lines_per_chunk(const Imf::Header& header) {
@@ -160,6 +156,10 @@ std::vector<std::uint64_t> read_table(const FileBytes& file, const std::string& 
 }
 
 }  // namespace
+
+bool is_tiled_part(const Imf::Header& header) {
+  return header.hasType() ? Imf::isTiled(header.type()) : header.hasTileDescription();
+}
 
 std::uint64_t chunk_count(const Imf::Header& header) {
   const auto& window = header.dataWindow();

@@ -17,4 +17,7 @@ std::uint64_t chunk_count(const Imf::Header& header);
 void check_chunks(const std::string& path, std::uint64_t file_bytes, std::uint64_t table_begin,
                   const std::vector<Imf::Header>& headers);
 
+/// Whether a part is stored in tiles.
+bool is_tiled_part(const Imf::Header& header);
+
 }  // namespace polyrecon

@@ -170,10 +170,6 @@ std::uint64_t packing_limit(Imf::Compression compression) {
   }
 }
 
-bool is_tiled_part(const Imf::Header& header) {
-  return header.hasType() ? Imf::isTiled(header.type()) : header.hasTileDescription();
-}
-
 std::string part_title(const Imf::Header& header, std::size_t index) {
   return header.hasName() ? fmt::format("part {} \"{}\"", index, header.name()) : fmt::format("part {}", index);
 }

@@ -24,16 +24,7 @@ constexpr std::array<Letters, 2> vector_letters{{{"X", "Y", "Z", "A"}, {"x", "y"
 constexpr std::array<std::string_view, 2> eyes{"left", "right"};  // OpenEXR's names of the views of a stereo render
 constexpr std::string_view separators = "._ -:/";
 
-bool ends_with(std::string_view text, std::string_view end) {
-  return text.size() >= end.size() && text.substr(text.size() - end.size()) == end;
-}
-
 bool is_separator(char c) { return separators.find(c) != std::string_view::npos; }
-
-std::string_view after_last_dot(std::string_view name) {
-  const auto dot = name.rfind('.');
-  return dot == std::string_view::npos ? name : name.substr(dot + 1);
-}
 
 /// R G B come first, then X Y Z and U V W, then everything else. `word` is a letter or the name of a colour.
 int place_of(std::string_view word) {
@@ -333,6 +324,15 @@ void make_unique(const FileInfo& file, std::vector<Layer>& layers) {
 }
 
 }  // namespace
+
+bool ends_with(std::string_view text, std::string_view end) {
+  return text.size() >= end.size() && text.substr(text.size() - end.size()) == end;
+}
+
+std::string_view after_last_dot(std::string_view name) {
+  const auto dot = name.rfind('.');
+  return dot == std::string_view::npos ? name : name.substr(dot + 1);
+}
 
 std::vector<Layer> group_channels(const FileInfo& file) {
   std::vector<PartChannels> parts;

@@ -1,12 +1,18 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "polyrecon/file_info.h"
 #include "polyrecon/layers.h"
 
 namespace polyrecon {
+
+bool ends_with(std::string_view text, std::string_view end);
+
+/// The last word of a channel's name: "R" of "ViewLayer.Combined.R"; all of a name without a dot.
+std::string_view after_last_dot(std::string_view name);
 
 constexpr const char* bare_pass = "RGBA";        ///< The pass of colour channels without a prefix: R, G, B, A.
 constexpr const char* bare_tristimulus = "XYZ";  ///< The pass of bare X, Y, Z in a part without a bare colour.

@@ -14,15 +14,6 @@
 namespace polyrecon {
 namespace {
 
-bool ends_with(std::string_view text, std::string_view end) {
-  return text.size() >= end.size() && text.substr(text.size() - end.size()) == end;
-}
-
-std::string_view channel_suffix(std::string_view name) {
-  const auto dot = name.rfind('.');
-  return dot == std::string_view::npos ? name : name.substr(dot + 1);
-}
-
 bool all_uint(const std::vector<FileInfo>& files, const Layer& layer) {
   const auto& channels =
       files[static_cast<std::size_t>(layer.file)].parts[static_cast<std::size_t>(layer.part)].channels;
@@ -45,7 +36,7 @@ std::optional<PassClass> classify(const Layer& layer) {
       known && (known->channels == 0 || known->channels == layer.channels.size()))
     return known;
   if (layer.channels.size() != 1 || layer.channels.front() == layer.name) return std::nullopt;
-  return classify_letter(std::string(channel_suffix(layer.channels.front())));
+  return classify_letter(std::string(after_last_dot(layer.channels.front())));
 }
 
 void assign_role(const std::vector<FileInfo>& files, Layer& layer) {
@@ -207,7 +198,7 @@ void find_denoised(std::vector<Layer>& layers) {
 bool is_xyz(const Layer& layer) {
   static constexpr std::array letters{"X", "Y", "Z"};
   return std::equal(layer.channels.begin(), layer.channels.end(), letters.begin(), letters.end(),
-                    [](const std::string& channel, const char* letter) { return channel_suffix(channel) == letter; });
+                    [](const std::string& channel, const char* letter) { return after_last_dot(channel) == letter; });
 }
 
 /// The companion of the beauty that a second moment of `nested` is: nested has alpha like a picture in RGB, or it is
