@@ -136,7 +136,7 @@ class Denoise(Folder):
         self.assert_error(33, "", polyrecon.denoise, beauty, max_memory=1000)
         self.assert_error(4, "missing.exr", polyrecon.read, self.folder / "missing.exr")
         self.assert_error(4, "Nothing", polyrecon.read, SMALL, aovs=["Nothing"])
-        self.assert_error(5, "nowhere", polyrecon.write, "/nowhere/x.exr", beauty)
+        self.assert_error(5, "/dev/null", polyrecon.write, "/dev/null/x.exr", beauty)
         self.assert_error(2, ".exr", polyrecon.write, self.folder / "x.png", beauty)
         self.assert_error(2, "pixels", polyrecon.write, self.folder / "x.exr", beauty[:9], like=SMALL)
         self.assert_error(2, "", polyrecon.sample_map, self.draft)
