@@ -13,6 +13,7 @@
 #include "denoisers/denoise_frame.h"
 #include "maps/error_map.h"
 #include "noise/fission.h"
+#include "noise/half_correlation.h"
 #include "pipeline/solve.h"
 #include "prior/exposure.h"
 #include "prior/prior_candidate.h"
@@ -64,10 +65,10 @@ Image fitted_feature(const std::vector<FeatureUse>& uses, Role role, const HalfP
   return noisy;
 }
 
-/// A half as a pair of its own.
-HalfPair half_alone(const HalfPair& pair, std::size_t h) {
+/// A half as a pair of its own. correlation: of the noise of neighbouring pixels.
+HalfPair half_alone(const HalfPair& pair, std::size_t h, double correlation) {
   HalfPair out;
-  out.color = split_halves(beauty_of(pair.color[h]), pair.variance, validation_stream + h);
+  out.color = split_halves(beauty_of(pair.color[h]), pair.variance, validation_stream + h, correlation);
   out.variance = scaled(pair.variance, Real(2));
   out.features = {pair.features[h], pair.features[h]};
   out.epsilon = pair.epsilon;
@@ -132,8 +133,12 @@ std::size_t make_prior_units(const Prepared& prepared, const DenoiserParams& par
 }
 
 ReadyPrior ready_prior(Pass prior, bool made_here, const Prepared& prepared) {
-  ReadyPrior out{std::move(prior), made_here, false, {}};
+  ReadyPrior out{std::move(prior), made_here, false, false, {}};
   out.validated = out.pass.has_halves() && prepared.independent_halves;
+  if (out.validated && !made_here && !made_of_halves(prepared.pair, out.pass.half_a, out.pass.half_b)) {
+    out.validated = false;
+    out.foreign_halves = true;
+  }
   // The mean of a file may be any picture; only the mean of its halves is validated.
   if (out.validated && !made_here) out.pass.mean = mean_of_halves({out.pass.half_a, out.pass.half_b}, rgb);
   return out;
@@ -142,10 +147,11 @@ ReadyPrior ready_prior(Pass prior, bool made_here, const Prepared& prepared) {
 ValidationHalves make_validation(Pass& prior, const HalfPair& pair, const Params& params, std::size_t max_bytes,
                                  Progress& progress) {
   ValidationHalves out;
+  const double correlation = correlation_of_halves(pair);
   for (std::size_t h = 0; h < 2; ++h) {
     FitCounters not_reported;
-    out.ours[h] = mean_of_halves(
-        solve(half_alone(pair, h), validation_params(params), max_bytes, not_reported, progress).half, rgb);
+    const HalfPair half = half_alone(pair, h, correlation);
+    out.ours[h] = mean_of_halves(solve(half, validation_params(params), max_bytes, not_reported, progress).half, rgb);
     out.prior[h] = in_exposure(std::move(h == 0 ? prior.half_a : prior.half_b), pair, out.ours[h]);
   }
   return out;
@@ -166,6 +172,7 @@ Candidate use_prior(ReadyPrior prior, const HalfPair& pair, const Image& reconst
     const CorrectedPrior corrected = correct_prior(std::move(prior.pass), pair, reconstruction);
     decision.run = noise_in_prior(corrected.value, pair, reconstruction) < most_noise_in_prior;
     if (!decision.run) decision.reason += " is the noisy image itself";
+    if (prior.foreign_halves) decision.reason += "; its halves are not those of this render and count as none";
     if (decision.run) solved = add_prior(pair, corrected, error.mse, std::move(solved), params, max_bytes);
   }
   decisions.push_back(std::move(decision));

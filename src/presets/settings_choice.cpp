@@ -12,7 +12,9 @@
 #include "core/relmse.h"
 #include "core/repair.h"
 #include "core/stopwatch.h"
+#include "denoisers/denoise_frame.h"
 #include "features/prepare.h"
+#include "pipeline/use_prior.h"
 #include "polyrecon/reconstruct.h"
 #include "presets/pareto.h"
 
@@ -26,6 +28,8 @@ constexpr int tiles_per_thread = 8;      // the most, so that the pilot of a lar
 // "draft, stages 2". A preset of one stage would not do: the error that a single stage predicts for itself is about
 // three times too high.
 constexpr std::size_t pilot_preset = 2;
+constexpr int least_crop = 256;  // pixels, each side; the start of a denoiser would count too much on smaller ones
+constexpr int repair_depth = 2;
 
 /// Mean relative variance of a tile's green channel: from the file's variance, else from the half buffers, else from
 /// the differences between neighbouring pixels.
@@ -76,14 +80,54 @@ std::vector<Rect> choose_tiles(const Frame& frame, std::size_t count) {
   return chosen;
 }
 
+/// About an eighth of the frame, in its middle.
+Rect middle_of(const Frame& frame) {
+  const auto side = [](int all) {
+    return std::min(all, std::max(least_crop, static_cast<int>(all * std::sqrt(pilot_share))));
+  };
+  const int width = side(frame.width()), height = side(frame.height());
+  const int x0 = (frame.width() - width) / 2, y0 = (frame.height() - height) / 2;
+  return {x0, y0, x0 + width, y0 + height};
+}
+
+/// What the denoiser's prior adds to the seconds of each preset: its calls, timed on a part of the frame, and the
+/// validation, which reconstructs both halves at about the pilot's preset.
+std::array<double, preset_count> time_prior(const Frame& frame, const Denoiser& denoiser, double pilot_seconds,
+                                            Progress& progress) {
+  const auto all = presets();
+  const std::size_t max_bytes = all[pilot_preset].params.max_memory;
+  const Rect middle = middle_of(frame);
+  const Frame part = crop(frame, middle);
+  const double parts = static_cast<double>(frame.width()) * frame.height() / static_cast<double>(middle.area());
+  Image noisy = part.beauty.mean;
+  repair_nonfinite(noisy, repair_depth);
+  progress.begin("pilot of the denoiser", 2 * Denoiser::units);
+  const Stopwatch prefilter;
+  const DenoiserFeatures features = denoiser.prefilter(denoiser_features(part), max_bytes, progress);
+  const double prefilter_seconds = parts * prefilter.seconds();
+  const Stopwatch call;
+  denoiser.denoise(noisy, features, max_bytes, progress);
+  const double call_seconds = parts * call.seconds();
+  progress.end();
+  std::array<double, preset_count> seconds{};
+  const bool halves = frame.beauty.has_halves();
+  for (std::size_t k = 0; k < preset_count; ++k) {
+    const DenoiserParams& params = all[k].params.denoiser;
+    seconds[k] = call_seconds * static_cast<double>(denoiser_calls(halves, true, params)) +
+                 (params.prefilter_features ? prefilter_seconds : 0) + (halves ? 2 * pilot_seconds : 0);
+  }
+  return seconds;
+}
+
 Prediction predict(const Pilot& pilot, std::size_t preset, const std::array<PresetFigures, preset_count>& figures) {
-  return {presets()[preset].name, pilot.seconds * figures[preset].seconds / figures[pilot_preset].seconds,
+  const double ours = pilot.seconds * figures[preset].seconds / figures[pilot_preset].seconds;
+  return {presets()[preset].name, ours + pilot.prior_seconds[preset],
           pilot.relative_mse * figures[preset].error / figures[pilot_preset].error};
 }
 
 }  // namespace
 
-Pilot run_pilot(const Frame& frame, Progress& progress) {
+Pilot run_pilot(const Frame& frame, Progress& progress, const Denoiser* denoiser) {
   require_usable(frame);
   const auto pixels = static_cast<double>(frame.width()) * frame.height();
   const int threads = processors();
@@ -109,6 +153,8 @@ Pilot run_pilot(const Frame& frame, Progress& progress) {
   const double busy = std::min<double>(threads, static_cast<double>(tiles.size()));
   const auto blocks = static_cast<double>(aligned_blocks({0, 0, frame.width(), frame.height()}, block_size).size());
   pilot.seconds = pilot.spent * busy / tried * pixels / std::min<double>(threads, std::max(blocks / block_groups, 1.0));
+  if (denoiser) pilot.prior_seconds = time_prior(frame, *denoiser, pilot.seconds, progress);
+  pilot.spent = watch.seconds();
   return pilot;
 }
 
@@ -118,12 +164,16 @@ double standard_seconds(const Pilot& pilot, const std::array<PresetFigures, pres
 
 SettingsChoice choose_settings(const Pilot& pilot, const SettingsRequest& request,
                                const std::array<PresetFigures, preset_count>& figures) {
+  std::vector<Prediction> all;
   std::vector<CostPoint> points;
-  for (const PresetFigures& preset : figures) points.push_back({preset.seconds, preset.error});
+  for (std::size_t preset = 0; preset < preset_count; ++preset) {
+    all.push_back(predict(pilot, preset, figures));
+    points.push_back({all.back().seconds, figures[preset].error});
+  }
   const std::vector<std::size_t> front = pareto_front(points);
   assert(!front.empty());
   std::vector<Prediction> predictions;
-  for (const std::size_t preset : front) predictions.push_back(predict(pilot, preset, figures));
+  for (const std::size_t preset : front) predictions.push_back(all[preset]);
   const auto in_time = [&](const Prediction& p) { return !(request.seconds > 0) || p.seconds <= request.seconds; };
   const auto accurate = [&](const Prediction& p) {
     return request.relative_mse > 0 && p.relative_mse <= request.relative_mse;

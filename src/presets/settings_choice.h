@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "polyrecon/denoiser.h"
 #include "polyrecon/frame.h"
 #include "polyrecon/progress.h"
 #include "presets/preset.h"
@@ -12,16 +13,18 @@ namespace polyrecon {
 
 /// Predictions of a trial run on some tiles of a frame for the whole frame. The run uses the preset "draft, stages 2".
 struct Pilot {
-  double seconds = 0;       ///< Predicted time of that preset on the whole frame.
-  double relative_mse = 0;  ///< Mean of its error map.
-  double share = 0;         ///< Share of the frame's pixels that were reconstructed, 0..1.
-  double spent = 0;         ///< Seconds that the run took.
+  double seconds = 0;                                ///< Predicted time of that preset on the whole frame.
+  double relative_mse = 0;                           ///< Mean of its error map.
+  double share = 0;                                  ///< Share of the frame's pixels that were reconstructed, 0..1.
+  double spent = 0;                                  ///< Seconds that the run took.
+  std::array<double, preset_count> prior_seconds{};  ///< What a denoiser's prior adds to the time of each preset.
 };
 
 /// Reconstructs about an eighth of the frame, but at least four tiles, by "draft, stages 2". The tiles of 64 x 64
 /// pixels are taken at even ranks of their noise, so that noise-free and noisy ones occur in their true proportion.
-/// Each tile is the work of one thread. Throws as reconstruct.
-Pilot run_pilot(const Frame& frame, Progress& progress);
+/// Each tile is the work of one thread. A denoiser that will make the prior is timed on a crop of the same size. Throws
+/// as reconstruct.
+Pilot run_pilot(const Frame& frame, Progress& progress, const Denoiser* denoiser = nullptr);
 
 /// Predicted seconds of Quality::Standard on the whole frame.
 double standard_seconds(const Pilot& pilot, const std::array<PresetFigures, preset_count>& figures);
@@ -48,7 +51,7 @@ struct SettingsChoice {
 /// With a limit of error: the fastest preset that is predicted to keep it, but none beyond the limit of time.
 /// Otherwise the most accurate preset within the limit of time. Where no preset keeps the limits, the choice is the
 /// fastest preset or the most accurate one, whichever comes closest. Presets that another one beats in both time and
-/// error are never chosen.
+/// error are never chosen. Errors are predicted without the prior that a denoiser makes.
 SettingsChoice choose_settings(const Pilot& pilot, const SettingsRequest& request,
                                const std::array<PresetFigures, preset_count>& figures);
 

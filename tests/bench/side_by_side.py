@@ -17,7 +17,7 @@ import tempfile
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT))
 
-from second_opinion import network_alone  # noqa: E402
+from second_opinion import network  # noqa: E402
 
 from pipelines.common import exr  # noqa: E402
 
@@ -30,7 +30,7 @@ def draw(program, sample, folder):
     folder.mkdir()
     shutil.copy(ROOT / "samples" / f"{sample}_16.exr", folder / "noisy.exr")
     shutil.copy(ROOT / "samples" / f"{sample}_ref.exr", folder / "reference.exr")
-    picture = network_alone(exr.read(str(folder / "noisy.exr")))
+    (picture,) = network(exr.read(str(folder / "noisy.exr")), "Combined")
     exr.write(folder / "oidn.exr", {f"ViewLayer.Combined.{c}": picture[..., k] for k, c in enumerate("RGB")})
     for name, options in (("polyrecon", []), ("polyrecon with oidn", ["--prior", "oidn"])):
         target = folder / f"{name}.exr"

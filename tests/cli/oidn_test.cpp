@@ -43,6 +43,24 @@ TEST_F(OidnPrior, ThatIsNotInstalledEndsBeforeAnythingIsRead) {
   EXPECT_FALSE(exists("out.exr"));
 }
 
+TEST_F(OidnPrior, CountsInABudgetOfTime) {
+  SKIP_WITHOUT_OIDN();
+  write_render(path("in.exr"));
+  const auto choice_with = [&](const std::vector<std::string>& options) {
+    std::vector<std::string> arguments{"denoise",  "-i",          "in.exr",  "-o",           "out.exr",
+                                       "--report", "report.json", "--quiet", "--time-budget"};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    const Outcome done = run(arguments);
+    EXPECT_EQ(done.code, 0) << done.err;
+    return nlohmann::json::parse(read_text(path("report.json")))["settings_choice"];
+  };
+  const auto generous = choice_with({"1000", "--prior", "oidn"});
+  EXPECT_TRUE(generous["met"]);
+  EXPECT_TRUE(generous["next"].is_null());
+  EXPECT_GT(generous["chosen"]["seconds"], choice_with({"1000"})["chosen"]["seconds"]);
+  EXPECT_FALSE(choice_with({"0.000001", "--prior", "oidn"})["met"]);
+}
+
 TEST_F(OidnPrior, NeedsMemory) {
   SKIP_WITHOUT_OIDN();
   write_render(path("in.exr"), 640, 480);

@@ -4,8 +4,10 @@
 
 #include <limits>
 
+#include "denoisers/denoisers.h"
 #include "polyrecon/error.h"
 #include "polyrecon/reconstruct.h"
+#include "support/oidn.h"
 #include "support/scene.h"
 
 namespace polyrecon {
@@ -37,6 +39,21 @@ TEST(SettingsChoice, TakesTheMostAccuratePresetWithinTheSeconds) {
   EXPECT_EQ(choice.next->name, presets()[4].name);
   EXPECT_DOUBLE_EQ(choice.next->seconds, 8);
   EXPECT_EQ(choice.preset, 3u);
+}
+
+/// The third preset takes 2 s and its prior 4 s; the fourth takes 4 s and its prior 1 s, so that the third never pays.
+TEST(SettingsChoice, CountsTheTimeOfThePrior) {
+  Pilot pilot = draft_takes(1, 0.01);
+  pilot.prior_seconds = {1, 1, 4, 1, 4, 4, 4, 4};
+  const SettingsChoice choice = choose_settings(pilot, {5, 0}, even_figures());
+  EXPECT_EQ(choice.chosen.name, presets()[3].name);
+  EXPECT_DOUBLE_EQ(choice.chosen.seconds, 5);
+  EXPECT_TRUE(choice.met);
+  ASSERT_TRUE(choice.next);
+  EXPECT_DOUBLE_EQ(choice.next->seconds, 12);
+  const SettingsChoice sooner = choose_settings(pilot, {4.9, 0}, even_figures());
+  EXPECT_EQ(sooner.chosen.name, presets()[1].name);
+  EXPECT_EQ(sooner.next->name, presets()[3].name);
 }
 
 TEST(SettingsChoice, TakesTheFastestPresetThatReachesTheError) {
@@ -97,6 +114,24 @@ TEST(Pilot, SeesAPartOfTheFrameAndTheWholeOfItsError) {
   const double whole = reconstruct(frame, presets()[2].params, silent_progress()).report.estimated_relative_mse;
   EXPECT_GT(pilot.relative_mse, whole / 2);
   EXPECT_LT(pilot.relative_mse, whole * 2);
+}
+
+/// Draft calls the denoiser for both halves, standard also twice for the mean and once for the features; the validation
+/// takes as long as two pilots on the whole frame.
+TEST(Pilot, TimesTheDenoiser) {
+  SKIP_WITHOUT_OIDN();
+  const auto oidn = make_oidn({});
+  const Frame frame = test::make_scene(300, 280, 0.1, 3).frame;
+  const Pilot without = run_pilot(frame, silent_progress()), with = run_pilot(frame, silent_progress(), oidn.get());
+  const auto all = presets();
+  for (std::size_t k = 0; k < preset_count; ++k) {
+    EXPECT_EQ(without.prior_seconds[k], 0) << all[k].name;
+    EXPECT_GT(with.prior_seconds[k], 2 * with.seconds) << all[k].name;
+  }
+  EXPECT_GT(with.prior_seconds[4], with.prior_seconds[1]);
+  EXPECT_GT(with.prior_seconds[7], with.prior_seconds[4]);
+  EXPECT_GT(with.spent, without.spent);
+  EXPECT_DOUBLE_EQ(with.relative_mse, without.relative_mse);
 }
 
 TEST(Pilot, SkipsTilesWithoutAUsablePixel) {

@@ -52,9 +52,6 @@ MakeDenoiser denoiser_of(const DenoiseOptions& o) {
     if (o.denoiser.is_default()) return nullptr;
     throw Error(ExitCode::Usage, "--oidn and --oidn-device need --prior oidn");
   }
-  if (o.time_budget > 0)
-    throw Error(ExitCode::Usage,
-                fmt::format("how long --prior {} takes is not known before it runs: remove --time-budget", name));
   return denoisers().at(name);
 }
 

@@ -24,7 +24,7 @@ Json json_of(const Prediction& prediction) {
 ChosenSettings choose_settings_for(const Job& job, const FrameLimits& limits, const Frame& frame, double read_seconds,
                                    Progress& progress) {
   ChosenSettings out;
-  out.pilot = run_pilot(frame, progress);
+  out.pilot = run_pilot(frame, progress, job.denoiser.get());
   out.request.seconds = limits.after((1 + write_over_read) * read_seconds + out.pilot.spent).seconds;
   out.request.relative_mse = limits.relative_mse;
   out.choice = choose_settings(out.pilot, out.request, measured_figures());
