@@ -22,6 +22,10 @@ Decision decide_on_correlation(double correlation) {
           fmt::format("the pixel filter spreads samples: noise of neighbours correlates by {:.2f}", correlation)};
 }
 
+Decision decide_on_edges() {
+  return {"noise at edges", false, "the sample count is unknown, which bounds it; give --samples"};
+}
+
 }  // namespace
 
 Survey survey_frame(Frame& frame, const Steps& steps, Progress& progress) {
@@ -36,6 +40,7 @@ Survey survey_frame(Frame& frame, const Steps& steps, Progress& progress) {
   if (!rendered.empty()) survey.preparation.decisions.push_back(decide_on_void(rendered));
   survey.preparation.noise_correlation = correlation;
   if (correlation > 0) survey.preparation.decisions.push_back(decide_on_correlation(correlation));
+  if (!survey.noise.measured && frame.sample_count.empty()) survey.preparation.decisions.push_back(decide_on_edges());
   survey.preparation.rendered = std::move(rendered);
   survey.preparation.sampled = std::move(sampled);
   return survey;

@@ -41,6 +41,22 @@ TEST(Survey, EstimatesTheNoiseOfFeaturesForThePrefilterAlone) {
   EXPECT_FALSE(has_estimate(false));
 }
 
+TEST(Survey, SaysThatTheNoiseAtEdgesNeedsTheSampleCount) {
+  const auto says_so = [](Frame frame) {
+    const Survey survey = survey_frame(frame, Steps(), silent_progress());
+    for (const Decision& decision : survey.preparation.decisions)
+      if (decision.step == "noise at edges") return !decision.run;
+    return false;
+  };
+  Frame frame = test::make_scene(48, 32, 0.1, 1).frame;
+  EXPECT_FALSE(says_so(frame)) << "its noise is measured";
+  frame.beauty.variance = frame.beauty.half_a = frame.beauty.half_b = Image();
+  frame.sample_count = Image();
+  EXPECT_TRUE(says_so(frame));
+  frame.sample_count = Image(48, 32, 1, Real(16));
+  EXPECT_FALSE(says_so(frame));
+}
+
 TEST(Survey, RefusesAFrameWithoutAUsablePixel) {
   Frame frame = test::make_scene(16, 16, 0.1, 1).frame;
   frame.beauty.mean = Image(16, 16, 3, std::numeric_limits<Real>::quiet_NaN());
