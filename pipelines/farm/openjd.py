@@ -90,7 +90,7 @@ def programs_of(options, polyrecon):
 def write_bundle(options):
     frames = parse_ranges(options.frames)
     polyrecon = Polyrecon(options.polyrecon)
-    check_options(polyrecon, options, frames)
+    check_options(polyrecon, options)
     frame = first_frame(options, frames, polyrecon)
     request = request_of(options, frame)
     worker = Node(options.worker_cpus, options.worker_memory)

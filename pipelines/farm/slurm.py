@@ -99,7 +99,7 @@ def job_of(options):
     cluster. Without Slurm, which a dry run does not need, nothing is known about the nodes."""
     frames = parse_ranges(options.frames)
     polyrecon = Polyrecon(options.polyrecon)
-    check_options(polyrecon, options, frames)
+    check_options(polyrecon, options)
     frame = first_frame(options, frames, polyrecon)
     request = request_of(options, frame)
     known = not options.dry_run or answers()

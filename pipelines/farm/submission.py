@@ -44,7 +44,7 @@ def add_job_options(parser):
         metavar="PATTERN",
         help="renders, such as shot.####.exr or shot.%%04d.exr",
     )
-    add("-o", "--output", required=True, type=pattern, metavar="PATTERN", help="results; their folder must exist")
+    add("-o", "--output", required=True, type=pattern, metavar="PATTERN", help="results; missing folders are made")
     add("--frames", required=True, metavar="RANGES", help="frames, such as 1-10,20-40x2")
     add("--chunk", type=positive, metavar="N", help="frames of a task (default: as many as take --task-minutes)")
     add("--task-minutes", type=float, default=10, metavar="M", help="minutes that a task takes")
@@ -71,12 +71,11 @@ def parse_words(parser, words):
     return options
 
 
-def check_options(polyrecon, options, frames):
-    """Lets the program check the options of `polyrecon denoise`, so that no task fails because of them. No render needs
-    to exist."""
-    words = ["denoise", "-i", options.input, "-o", options.output, "--frames", str(frames[0]), "--skip-existing"]
-    code, _, errors = process.run([polyrecon.program, *words, *options.options, "--dry-run"])
-    if code == ExitCode.USAGE:
+def check_options(polyrecon, options):
+    """Lets the program check the options of `polyrecon denoise`, so that no task fails because of them."""
+    words = ["denoise", "-i", options.input, "-o", options.output, "--frames", options.frames, "--skip-existing"]
+    code, _, errors = process.run([polyrecon.program, "--check-options", *words, *options.options])
+    if code:
         line = (process.lines_of(errors) or [f"ended with code {code}"])[-1].removeprefix("polyrecon: ")
         raise DriverError(ExitCode.USAGE, f"options of polyrecon denoise: {line}")
 

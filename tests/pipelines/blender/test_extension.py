@@ -156,6 +156,19 @@ class Extension(unittest.TestCase):
             self.assertEqual(bpy.data.images[name].type, kind)
         self.assertGreater(bpy.data.images["clean_0001_error.png"].size[0], 0)
 
+    def test_the_panel_says_which_passes_are_missing(self):
+        bpy.context.view_layer.cycles.denoising_store_passes = False
+        bpy.ops.render.render()
+        bpy.ops.polyrecon.denoise()
+        self.finish(self.jobs.current)
+        self.assertEqual((self.jobs.current.state, self.jobs.current.error), ("done", ""))
+        self.assertRegex(self.shown_text(), "Could be better: no albedo .*no normal .*Data > Denoising Data")
+        bpy.ops.polyrecon.set_up_passes()
+        bpy.ops.render.render()
+        bpy.ops.polyrecon.denoise()
+        self.finish(self.jobs.current)
+        self.assertNotIn("albedo", self.shown_text())
+
     def test_renders_adaptively_and_goes_on(self):
         self.scene.polyrecon.limit, self.scene.polyrecon.spp = "SPP", 12
         self.assertEqual(bpy.ops.polyrecon.adaptive(), {"FINISHED"})

@@ -67,10 +67,9 @@ class Template(unittest.TestCase):
         self.assertIn("openjd_status: frame 1 (1 of 2)", done.stdout)
 
     def test_the_default_names_of_the_programs_are_found_on_the_path(self):
-        """A worker has both commands on its PATH."""
+        """A worker has both commands on its PATH, and the folder of the results is made."""
         programs, outputs = self.folder / "bin", self.folder / "new" / "out"
         programs.mkdir()
-        outputs.mkdir(parents=True)
         (programs / "polyrecon").symlink_to(POLYRECON)
         command = programs / "polyrecon-farm"
         command.write_text(f'#!/bin/sh\nexec {sys.executable} -B {FARM / "farm.py"} "$@"\n')
