@@ -5,8 +5,8 @@
 #include <cstdlib>
 
 #include "core/color_layout.h"
+#include "core/mask.h"
 #include "core/parallel.h"
-#include "core/picture_mask.h"
 
 namespace polyrecon {
 namespace {
@@ -22,7 +22,7 @@ int sign_of_difference(Real a, Real b) { return (a > b ? 1 : 0) - (a < b ? 1 : 0
 
 /// 1 or -1: the half that is the larger one; 0 where no half is, or where the pixel is no sample of the picture.
 int sign_of_noise(const HalfPair& pair, int x, int y, int c) {
-  if (!in_picture(pair.sampled, pair.variance.index(x, y))) return 0;
+  if (!in_mask(pair.sampled, pair.variance.index(x, y))) return 0;
   return sign_of_difference(pair.color[0].at(x, y, c), pair.color[1].at(x, y, c));
 }
 
