@@ -1,13 +1,17 @@
 #!/usr/bin/env python3
-"""Reads how the built files are hardened: hardening_test.py PROGRAM MODULE"""
+"""Reads how the built files are hardened: hardening_test.py ARCHIVE PROGRAM MODULE LIBRARY
+
+The objects of ARCHIVE are in PROGRAM and LIBRARY.
+"""
 
 import pathlib
+import platform
 import re
 import subprocess
 import sys
 import unittest
 
-PROGRAM, MODULE = sys.argv[1:3]
+ARCHIVE, PROGRAM, MODULE, LIBRARY = sys.argv[1:5]
 
 
 def readelf(*words):
@@ -16,7 +20,7 @@ def readelf(*words):
 
 class Hardening(unittest.TestCase):
     def each(self):
-        for path in (PROGRAM, MODULE):
+        for path in (PROGRAM, MODULE, LIBRARY):
             with self.subTest(pathlib.Path(path).name):
                 yield path
 
@@ -41,6 +45,21 @@ class Hardening(unittest.TestCase):
             self.assertGreater(len(flags), 3)
             self.assertEqual([flag for _, flag in flags if "W" in flag and "E" in flag], [])
             self.assertNotIn("TEXTREL", readelf("--dynamic", path))
+
+    def test_stacks_are_checked(self):
+        for path in self.each():
+            self.assertRegex(readelf("--dyn-syms", path), r"UND __stack_chk_fail@")
+
+    def test_copies_are_checked(self):
+        self.assertRegex(readelf("--dyn-syms", PROGRAM), r"UND __\w+_chk@")
+
+    @unittest.skipUnless(platform.machine() == "x86_64", "a feature of x86")
+    def test_jumps_end_at_marked_places(self):
+        # The linker marks a program only if the first objects of the C library are marked, which Debian 12's are not.
+        objects = readelf("--notes", ARCHIVE).split("\nFile: ")[1:]
+        self.assertGreater(len(objects), 100)
+        for notes in objects:
+            self.assertRegex(notes, r"x86 feature: IBT, SHSTK", notes.splitlines()[0])
 
 
 if __name__ == "__main__":
