@@ -145,6 +145,23 @@ bool has_finite_sample(const Image& image) {
   return false;
 }
 
+/// The number of samples of a channel that are not finite where those of the mean are usable. What nothing was rendered
+/// for does not count.
+std::size_t samples_lacking(const Image& companion, const Image& mean, int c) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < mean.pixels(); ++i) {
+    const Real m = mean.plane(c)[i];
+    count += usable(m) && m != 0 && !std::isfinite(companion.plane(c)[i]);
+  }
+  return count;
+}
+
+std::size_t samples_lacking(const Image& companion, const Image& mean) {
+  std::size_t count = 0;
+  for (int c = 0; c < mean.channels(); ++c) count += samples_lacking(companion, mean, c);
+  return count;
+}
+
 /// A pass with the images that are read for it; nullptr without one.
 struct WantedPass {
   PassChoice choice;
@@ -297,9 +314,23 @@ class FrameBuilder {
       return {};
     }
     to_variance_of_mean(variance, kind, mean, counts_);
-    if (has_finite_sample(variance)) return variance;
-    result_.notes.push_back(fmt::format("{} is not used: it has no finite value", from.name));
-    return {};
+    if (!has_finite_sample(variance)) {
+      result_.notes.push_back(fmt::format("{} is not used: it has no finite value", from.name));
+      return {};
+    }
+    const std::size_t lacking = samples_lacking(variance, mean);
+    if (lacking == 0) return variance;
+    for (int c = 0; c < mean.channels(); ++c)
+      if (2 * samples_lacking(variance, mean, c) > mean.pixels()) {
+        result_.notes.push_back(fmt::format("{} is not used: {} of its samples are not finite where {} is", from.name,
+                                            lacking, layer(wanted.choice.mean).name));
+        return {};
+      }
+    result_.notes.push_back(
+        fmt::format("{}: {} samples are not finite where {} is; their pixels take the noise of the surroundings, "
+                    "but stay as they are where that is more than {} pixels away",
+                    from.name, lacking, layer(wanted.choice.mean).name, repair_depth));
+    return variance;
   }
 
   /// Notes a variance that the picture contradicts: neighbouring pixels would differ by more than they do.
@@ -329,10 +360,17 @@ class FrameBuilder {
   /// Drops halves that contradict the mean: the result is made of the halves, so it would be another picture.
   void drop_contradicting_halves(const PassChoice& choice, Pass& pass) {
     if (!pass.has_halves() || !contradict(pass.mean, pass.half_a, pass.half_b)) return;
+    const std::string &a = layer(choice.half_a).name, &b = layer(choice.half_b).name;
+    const std::size_t unusable = samples_lacking(pass.half_a, pass.mean) + samples_lacking(pass.half_b, pass.mean);
     result_.notes.push_back(
-        fmt::format("{} and {} are not used: they contradict {}, which is not their mean; if they are halves of "
-                    "another layer, name it with --map",
-                    layer(choice.half_a).name, layer(choice.half_b).name, pass.name));
+        unusable > 0
+            ? fmt::format(
+                  "{} and {} are not used: {} of their samples are not finite where {} is, and they contradict it; "
+                  "render the halves again",
+                  a, b, unusable, pass.name)
+            : fmt::format("{} and {} are not used: they contradict {}, which is not their mean; if they are halves of "
+                          "another layer, name it with --map",
+                          a, b, pass.name));
     pass.half_a = pass.half_b = {};
   }
 

@@ -4,6 +4,7 @@
 
 #include "io/exr_fixture.h"
 #include "io/files/file.h"
+#include "polyrecon/merge.h"
 #include "polyrecon/read_frame.h"
 #include "polyrecon/write_result.h"
 
@@ -138,6 +139,31 @@ TEST(AutoCrop, APassOfAnotherPictureSizeIsNotUsed) {
     EXPECT_THAT(read.frame.features, IsEmpty()) << name;
     EXPECT_THAT(read.notes, Contains(HasSubstr("is not used"))) << name;
   }
+}
+
+/// A feature that one render lacks at the rim is that of the others there; radiance is averaged with the zeros.
+TEST(AutoCrop, MergeTakesFeaturesFromTheRendersThatHaveThem) {
+  const TemporaryFolder folder;
+  const auto render_with = [&](const char* name, const Rect& box) {
+    TestPart beauty = part_over(display, display, layer("", "RGB", 1));
+    beauty.name = "beauty";
+    TestPart albedo = part_over(box, display, layer("albedo", "RGB", 10)),
+             light = part_over(box, display, layer("light", "RGB", 20));
+    albedo.name = "albedo";
+    light.name = "light";
+    return write_exr(folder / name, {beauty, albedo, light});
+  };
+  const Rect large{1, 0, 12, 9}, small{3, 2, 10, 9};
+  const std::string out = folder / "merged.exr";
+  merge({render_with("a.exr", large), render_with("b.exr", small), render_with("c.exr", large)}, out);
+  const auto albedo = stored_floats(out, 0, "albedo.R"), light = stored_floats(out, 0, "light.R");
+  for (int y = 0; y < 9; ++y)
+    for (int x = 0; x < 12; ++x) {
+      const auto i = static_cast<std::size_t>(y * 12 + x);
+      const double whole = large.contains(x, y) ? 1 : 0, shown = small.contains(x, y) ? 1 : whole * 2 / 3;
+      EXPECT_FLOAT_EQ(albedo[i], static_cast<float>(whole * pattern(10)(x, y))) << x << " " << y;
+      EXPECT_FLOAT_EQ(light[i], static_cast<float>(shown * pattern(20)(x, y))) << x << " " << y;
+    }
 }
 
 }  // namespace

@@ -162,5 +162,38 @@ TEST(HalfOverflow, MergedRendersHoldTheLargestHalf) {
   EXPECT_THAT(merged.notes, ::testing::Contains(HasSubstr("RGBA: 2526 half-float samples of +Inf count as 65504")));
 }
 
+/// As in a single render: a lamp of three pixels is one, also where the lines that are merged at once end inside it.
+TEST(HalfOverflow, MergeLeavesFirefliesOut) {
+  const TemporaryFolder folder;
+  const int wide = 3000, high = 40;
+  const auto render = [&](const char* name, int seed, const auto& is_infinite) {
+    const Rect picture{0, 0, wide, high};
+    TestPart part = testing::part_over(picture, picture, layer("", "RGB", 0, Imf::HALF));
+    for (TestChannel& channel : part.channels)
+      channel.samples = [=](int x, int y) {
+        return is_infinite(x, y) ? inf : 0.25 + 0.1 * testing::grain(x, y, 1000 * channel.name[0] + seed);
+      };
+    return write_exr(folder / name, {part});
+  };
+  const auto in_lamp_of_three = [](int x, int y) { return x == 30 && y >= 30 && y < 33; };
+  const auto firefly = [](int x, int y) { return (x == 5 && y == 31) || (x == 9 && (y == 31 || y == 32)); };
+  const std::string out = folder / "merged.exr";
+  const MergeResult merged =
+      merge({render("a.exr", 1, in_lamp_of_three),
+             render("b.exr", 2, [&](int x, int y) { return in_lamp_of_three(x, y) || firefly(x, y); })},
+            out);
+  const auto mean = stored_floats(out, 0, "R");
+  for (int y = 0; y < high; ++y)
+    for (const int x : {4, 5, 9, 30}) {
+      const float value = mean[static_cast<std::size_t>(y * wide + x)];
+      if (in_lamp_of_three(x, y))
+        EXPECT_EQ(value, 65504) << y;
+      else
+        EXPECT_LT(value, 0.36F) << x << " " << y;
+    }
+  EXPECT_THAT(merged.notes, ::testing::IsSupersetOf({HasSubstr("RGBA: 9 half-float samples of +Inf stand alone"),
+                                                     HasSubstr("RGBA: 18 half-float samples of +Inf count as 65504")}));
+}
+
 }  // namespace
 }  // namespace polyrecon

@@ -9,9 +9,9 @@
 #include <utility>
 
 #include "core/parallel.h"
+#include "core/rect.h"
 #include "io/merge/area.h"
 #include "io/merge/output.h"
-#include "io/merge/place_renders.h"
 #include "io/values/beyond_range.h"
 
 namespace polyrecon {
@@ -19,6 +19,21 @@ namespace {
 
 constexpr std::size_t renders_at_once = 16;                   // that are decoded before they are added up
 constexpr std::size_t pixels_at_once = std::size_t{1} << 12;  // of one channel, whose sums stay in the cache
+
+/// Whether a render has samples of a layer in all pixels of an area. A feature whose part is cut off where those of
+/// other renders go on is not black there, and zeros would draw an edge. Those of radiance count, as without them the
+/// rims of boxes that renderers cut around noisy pixels would be too bright.
+bool has_samples(const Render& render, std::size_t l, const Rect& area) {
+  const Layer& layer = render.layers[l];
+  return !info_of(layer.role).feature || intersect(part_of(render, layer).data_window, area) == area;
+}
+
+/// Pixel i of a band.
+Rect pixel_of(const NativeBand& band, std::size_t i) {
+  const auto width = static_cast<std::size_t>(band.width);
+  const int x = band.x0 + static_cast<int>(i % width), y = band.y0 + static_cast<int>(i / width);
+  return {x, y, x + 1, y + 1};
+}
 
 }  // namespace
 
@@ -29,11 +44,12 @@ void LayerMerger::merge(const Weights& weights, NativeBand& band) {
   for (std::size_t k = 0; k < task_.renders.size(); k += renders_at_once)
     add_renders(k, std::min(k + renders_at_once, task_.renders.size()), weights, band, sums);
   in_parallel(task_.slots.size(), [&](std::size_t s) {
-    const Layer& layer = task_.first().layers[task_.slots[s].layer];
+    const std::size_t l = task_.slots[s].layer;
+    const Layer& layer = task_.first().layers[l];
     if (task_.slots[s].channel < layer.channels.size())
-      write_channel(layer, layer.channels[task_.slots[s].channel], sums[s], band);
+      write_channel(l, layer.channels[task_.slots[s].channel], sums[s], band);
     else
-      write_mean(*band.find(output_name(task_.first(), layer, layer.alpha)), sums[s], band);
+      write_mean(l, *band.find(output_name(task_.first(), layer, layer.alpha)), sums[s], band);
   });
 }
 
@@ -58,12 +74,34 @@ LayerMerger::DecodedRender LayerMerger::decode(std::size_t k, const NativeBand& 
       const std::size_t l = task_.slots[slots[c]].layer;
       const Layer& layer = render.layers[l];
       float* plane = decoded.samples.back().data() + c * pixels;
-      overflows_[l] +=
-          bring_into_range(beyond_range(part_of(render, layer), layer, layer.role, channels[c]), plane, pixels);
+      const BeyondRange beyond = beyond_range(part_of(render, layer), layer, layer.role, channels[c]);
+      if (beyond == BeyondRange::LargestHalf)
+        lone_overflows_[l] += drop_fireflies(render, layer, channels[c], band, plane);
+      overflows_[l] += bring_into_range(beyond, plane, pixels);
       decoded.planes[slots[c]] = plane;
     }
   }
   return decoded;
+}
+
+std::size_t LayerMerger::drop_fireflies(const Render& render, const Layer& layer, const std::string& channel,
+                                        const NativeBand& band, float* plane) {
+  const Rect area = area_of(band);
+  float* const end = plane + area.area();
+  if (std::find(plane, end, std::numeric_limits<float>::infinity()) == end) return 0;
+  // The lines next to the band tell a firefly from the last line of a lamp.
+  const Rect around{area.x0, area.y0 - lone_reach, area.x1, area.y1 + lone_reach};
+  std::vector<float> samples =
+      read_area(render.files[static_cast<std::size_t>(layer.file)], layer.part, {channel}, around);
+  drop_lone_overflows(samples.data(), around.width(), around.height());
+  const float* from = samples.data() + static_cast<std::ptrdiff_t>(lone_reach) * area.width();
+  std::size_t dropped = 0;
+  for (float* to = plane; to != end; ++to, ++from) {
+    if (!std::isinf(*to) || !std::isnan(*from)) continue;
+    *to = *from;
+    ++dropped;
+  }
+  return dropped;
 }
 
 void LayerMerger::add_renders(std::size_t first, std::size_t end, const Weights& weights, const NativeBand& band,
@@ -79,8 +117,11 @@ void LayerMerger::add_renders(std::size_t first, std::size_t end, const Weights&
       const auto known = weights[k].find(view_layer);
       const double* n = known == weights[k].end() ? nullptr : known->second.data();
       const float* samples = decoded[k - first].planes[slot];
+      const Render& render = task_.renders[k];
+      const std::size_t l = task_.slots[slot].layer;
+      const bool everywhere = has_samples(render, l, area_of(band));
       for (std::size_t i = begin; i < std::min(begin + pixels_at_once, pixels); ++i)
-        add(sums[slot], i, samples[i], n ? n[i] : 1, k);
+        if (everywhere || has_samples(render, l, pixel_of(band, i))) add(sums[slot], i, samples[i], n ? n[i] : 1, k);
     }
   });
 }
@@ -95,33 +136,38 @@ void LayerMerger::add(ChannelSums& sums, std::size_t i, float x, double weight, 
   (task_.half_b[k] ? sums.half_b : sums.half_a)[i].add(x, weight);
 }
 
-LayerMerger::Moments LayerMerger::moments(const ChannelSums& sums, std::size_t i, const NativeBand& band) const {
+LayerMerger::Moments LayerMerger::moments(std::size_t l, const ChannelSums& sums, std::size_t i,
+                                          const NativeBand& band) const {
   const Accumulator& all = sums.all[i];
   const MeanAccumulator &a = sums.half_a[i], &b = sums.half_b[i];
-  const auto width = static_cast<std::size_t>(band.width);
-  if (all.renders == 0 && task_.has_regions &&
-      !is_covered(task_.renders, band.x0 + static_cast<int>(i % width), band.y0 + static_cast<int>(i / width)))
-    return {0, 0};
-  if (all.renders == 0) return {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
+  if (all.renders == 0) {
+    const Rect pixel = pixel_of(band, i);
+    const bool sampled = std::any_of(task_.renders.begin(), task_.renders.end(), [&](const Render& render) {
+      return intersect(render.region.rect, pixel) == pixel && has_samples(render, l, pixel);
+    });
+    const double value = sampled ? std::numeric_limits<double>::quiet_NaN() : 0;
+    return {value, value};
+  }
   if (!task_.halves_weigh_alike || a.renders == 0 || b.renders == 0) return {all.mean, all.variance_of_mean()};
   const double of_a_sample = all.variance_of_mean() * all.weight;
   return {(a.mean + b.mean) / 2, of_a_sample * (1 / a.weight + 1 / b.weight) / 4};
 }
 
-void LayerMerger::write_mean(NativeChannel& channel, const ChannelSums& sums, const NativeBand& band) const {
-  for (std::size_t i = 0; i < sums.all.size(); ++i) put(channel, i, moments(sums, i, band).mean);
+void LayerMerger::write_mean(std::size_t l, NativeChannel& channel, const ChannelSums& sums,
+                             const NativeBand& band) const {
+  for (std::size_t i = 0; i < sums.all.size(); ++i) put(channel, i, moments(l, sums, i, band).mean);
 }
 
-void LayerMerger::write_channel(const Layer& layer, const std::string& name, const ChannelSums& sums,
-                                NativeBand& band) {
+void LayerMerger::write_channel(std::size_t l, const std::string& name, const ChannelSums& sums, NativeBand& band) {
+  const Layer& layer = task_.first().layers[l];
   NativeChannel& mean = *band.find(output_name(task_.first(), layer, name));
-  if (task_.joins) return write_mean(mean, sums, band);
+  if (task_.joins) return write_mean(l, mean, sums, band);
   NativeChannel& variance = *band.find(output_name(task_.first(), layer, name, variance_suffix));
   NativeChannel& half_a = *band.find(output_name(task_.first(), layer, name, half_a_suffix));
   NativeChannel& half_b = *band.find(output_name(task_.first(), layer, name, half_b_suffix));
   bool spread = false;
   for (std::size_t i = 0; i < sums.all.size(); ++i) {
-    const Moments whole = moments(sums, i, band);
+    const Moments whole = moments(l, sums, i, band);
     spread = spread || sums.all[i].spreads();
     put(mean, i, whole.mean);
     put(variance, i, whole.variance);
@@ -134,8 +180,11 @@ void LayerMerger::write_channel(const Layer& layer, const std::string& name, con
 void LayerMerger::note(MergeResult& report) const {
   if (left_out_ > 0)
     report.notes.push_back(fmt::format("{} samples that are not finite were left out of the means", left_out_.load()));
-  for (std::size_t l = 0; l < overflows_.size(); ++l)
-    if (overflows_[l] > 0) report.notes.push_back(overflow_note(task_.first().layers[l].name, overflows_[l]));
+  for (std::size_t l = 0; l < overflows_.size(); ++l) {
+    const std::string& name = task_.first().layers[l].name;
+    if (lone_overflows_[l] > 0) report.notes.push_back(lone_overflow_note(name, lone_overflows_[l]));
+    if (overflows_[l] > 0) report.notes.push_back(overflow_note(name, overflows_[l]));
+  }
   if (!task_.merged.empty() && !task_.joins && !any_spread_)
     report.notes.emplace_back("the renders are equal in every pixel: were they made with the same seed or offset?");
 }

@@ -58,8 +58,4 @@ void place_renders(std::vector<Render>& renders, std::size_t max_pixels) {
   for (std::size_t k = 0; k < renders.size(); ++k) renders[k].region = regions[k];
 }
 
-bool is_covered(const std::vector<Render>& renders, int x, int y) {
-  return std::any_of(renders.begin(), renders.end(), [&](const Render& r) { return r.region.rect.contains(x, y); });
-}
-
 }  // namespace polyrecon

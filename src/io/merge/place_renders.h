@@ -11,7 +11,4 @@ namespace polyrecon {
 /// or where a beauty cannot be read, Error{Missing} where one has no beauty.
 void place_renders(std::vector<Render>& renders, std::size_t max_pixels);
 
-/// Whether some render has samples of the pixel.
-bool is_covered(const std::vector<Render>& renders, int x, int y);
-
 }  // namespace polyrecon

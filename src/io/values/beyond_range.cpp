@@ -47,10 +47,11 @@ std::size_t bring_into_range(BeyondRange beyond, Sample* samples, std::size_t co
 template std::size_t bring_into_range(BeyondRange, float*, std::size_t);
 template std::size_t bring_into_range(BeyondRange, double*, std::size_t);
 
-std::size_t drop_lone_overflows(Real* plane, int width, int height) {
+template <typename Sample>
+std::size_t drop_lone_overflows(Sample* plane, int width, int height) {
   const auto overflows = [&](int x, int y) {
     return x >= 0 && x < width && y >= 0 && y < height &&
-           plane[static_cast<std::ptrdiff_t>(y) * width + x] == std::numeric_limits<Real>::infinity();
+           plane[static_cast<std::ptrdiff_t>(y) * width + x] == std::numeric_limits<Sample>::infinity();
   };
   const auto neighbours = [&](int x, int y) {
     std::vector<std::pair<int, int>> found;
@@ -67,14 +68,17 @@ std::size_t drop_lone_overflows(Real* plane, int width, int height) {
       if (near.empty() || (near.size() == 1 && neighbours(near[0].first, near[0].second).size() == 1))
         lone.push_back(static_cast<std::ptrdiff_t>(y) * width + x);
     }
-  for (const std::ptrdiff_t place : lone) plane[place] = std::numeric_limits<Real>::quiet_NaN();
+  for (const std::ptrdiff_t place : lone) plane[place] = std::numeric_limits<Sample>::quiet_NaN();
   return lone.size();
 }
 
+template std::size_t drop_lone_overflows(float*, int, int);
+template std::size_t drop_lone_overflows(double*, int, int);
+
 std::string lone_overflow_note(const std::string& layer, std::size_t samples) {
   return fmt::format(
-      "{}: {} half-float samples of +Inf stand alone and are fireflies of unknown value; their pixels count as missing "
-      "and are repaired; save as 32-bit float to keep them",
+      "{}: {} half-float samples of +Inf stand alone and are fireflies of unknown value; they count as missing; "
+      "save as 32-bit float to keep them",
       layer, samples);
 }
 

@@ -27,8 +27,12 @@ std::size_t bring_into_range(BeyondRange beyond, Sample* samples, std::size_t co
 
 /// Makes single pixels and pairs of +Inf NaN: three and more that touch are lamps, of which the largest half is a fair
 /// value, but the value of a firefly is unknown, and its energy would be spread over the picture. Returns their number.
-/// To be called before bring_into_range where that makes +Inf the largest half.
-std::size_t drop_lone_overflows(Real* plane, int width, int height);
+/// To be called before bring_into_range where that makes +Inf the largest half. Pixels further than lone_reach away do
+/// not matter.
+template <typename Sample>
+std::size_t drop_lone_overflows(Sample* plane, int width, int height);
+
+constexpr int lone_reach = 2;
 
 /// The note on a layer in which so many half samples were dropped.
 std::string lone_overflow_note(const std::string& layer, std::size_t samples);
