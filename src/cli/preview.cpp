@@ -158,11 +158,11 @@ void setup_preview(CLI::App& app, Command& chosen) {
   sub->add_option("-o,--output", o->output, "Picture to write: .png, .jpg or .tif")->required()->type_name("FILE");
   sub->add_option("--layer", o->layer, "Layers to show in place of the beauty, as --aov of denoise takes them")
       ->type_name("LAYER");
-  sub->add_option("--region", o->region, "Part to show; default: the whole picture")
+  sub->add_option("--region", o->region, "Part to show (default the whole picture)")
       ->delimiter(',')
       ->expected(4)
       ->type_name("X,Y,WIDTH,HEIGHT");
-  sub->add_option("--zoom", o->zoom, "Pixels for each pixel, along both sides; default: 1")
+  sub->add_option("--zoom", o->zoom, "Pixels for each pixel, along both sides (default 1)")
       ->check(CLI::Range(1, 32))
       ->type_name("N");
   sub->add_option("--reference", o->reference,

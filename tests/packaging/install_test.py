@@ -97,7 +97,8 @@ class Install(Folder):
         self.assertNotIn("remove_temporaries", run("nm", "--demangle", module))
         module.unlink()
         run(program, "inspect", clean)
-        without = subprocess.run([program, "preview", clean, "-o", picture], capture_output=True, text=True)
+        words = ["preview", clean, "-o", picture, "--overwrite"]
+        without = subprocess.run([program, *words], capture_output=True, text=True)
         self.assertEqual(without.returncode, 4)
         self.assertRegex(without.stderr, rf"\Apolyrecon: .*{MODULE}.*\n\Z")
 
