@@ -40,17 +40,6 @@ TEST(Requests, OneChannelOfAColorIsNoLayerToBeDenoised) {
   EXPECT_EQ(read_frame(path, options).frame.aovs.size(), 1U);
 }
 
-TEST(Requests, PositionsInPlaceOfADepthAreNoted) {
-  const TemporaryFolder folder;
-  for (const char* name : {"V.Position", "P", "V.worldPositions", "CGeometry_WorldPosition"}) {
-    const auto beauty = layer("V.Combined", "RGB"), position = layer(name, "XYZ");
-    const std::string path = write(folder, join({beauty, position}));
-    EXPECT_THAT(inspect(path).notes, Contains(HasSubstr(std::string(name) + " is not used: it holds positions")));
-    const std::string with_depth = write(folder, join({beauty, position, layer("V.Denoising Depth", "Z")}));
-    EXPECT_THAT(read_frame(with_depth).notes, Not(Contains(HasSubstr("positions")))) << name;
-  }
-}
-
 TEST(Requests, OneHalfThatIsNamedAloneIsNoted) {
   const TemporaryFolder folder;
   auto beauty = layer("", "RGB");

@@ -20,15 +20,6 @@ std::string reason_of_prior(const Result& result) {
   return "";
 }
 
-TEST(UsePrior, TheNoiseItselfIsLeftOutByItsHalves) {
-  const test::Scene scene = test::make_scene(96, 72, 0.4, 7);
-  const double without = test::relative_mse(test::run(scene.frame).beauty, scene.truth);
-  Frame frame = scene.frame;
-  frame.prior = frame.beauty;
-  const Result result = test::run(frame);
-  EXPECT_LT(test::relative_mse(result.beauty, scene.truth), 1.02 * without);
-}
-
 /// Swapped, each half agrees with the samples that validate it, so that the noise would seem to be right.
 TEST(UsePrior, HalvesThatAreSwappedValidateNothing) {
   const test::Scene scene = test::make_scene(96, 72, 0.4, 7);

@@ -368,18 +368,6 @@ void note_seeming(LayerChoice& choice, const RoleInfo& info) {
           layer.name, info.name, info.name, layer.name));
 }
 
-/// Notes positions where no depth is in use: who has such a pass expects it to be used.
-void note_positions(LayerChoice& choice) {
-  const FrameSource& source = choice.source;
-  for (const Layer& layer : source.layers)
-    if (layer.companion == Companion::Mean && layer.channels.size() == 3 &&
-        !is_of_another_picture(source, place_of(layer)) && is_position(layer.pass) && layer.rank != rank_by_hand)
-      choice.notes.push_back(
-          fmt::format("{} is not used: it holds positions, and what guides the windows is a depth; render a depth pass "
-                      "too, or name one with --map depth=LAYER",
-                      layer.name));
-}
-
 /// Leaves out one half without the other, with a note if the user named it.
 void require_both_halves(LayerChoice& choice, PassChoice& pass) {
   if ((pass.half_a < 0) == (pass.half_b < 0)) return;
@@ -682,8 +670,6 @@ LayerChoice choose_layers(const std::string& path, const ReadOptions& options) {
     drop_misfits(choice, pass);
     if (pass.mean >= 0) choice.passes.push_back(pass);
   }
-  const auto is_depth = [](const PassChoice& pass) { return pass.role == Role::Depth; };
-  if (std::none_of(choice.passes.begin(), choice.passes.end(), is_depth)) note_positions(choice);
   choose_aovs(choice, options);
   note_other_beauties(choice, options);
   note_shared_samples(choice, options);

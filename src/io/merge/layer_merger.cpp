@@ -20,12 +20,12 @@ namespace {
 constexpr std::size_t renders_at_once = 16;                   // that are decoded before they are added up
 constexpr std::size_t pixels_at_once = std::size_t{1} << 12;  // of one channel, whose sums stay in the cache
 
-/// Whether a render has samples of a layer in all pixels of an area. A feature whose part is cut off where those of
-/// other renders go on is not black there, and zeros would draw an edge. Those of radiance count, as without them the
-/// rims of boxes that renderers cut around noisy pixels would be too bright.
+/// Whether a render has samples of a layer in all pixels of an area. A feature whose part is cut off within the window
+/// of the render is not black beyond it, and zeros would draw an edge. Beyond the window all layers are black.
 bool has_samples(const Render& render, std::size_t l, const Rect& area) {
   const Layer& layer = render.layers[l];
-  return !info_of(layer.role).feature || intersect(part_of(render, layer).data_window, area) == area;
+  const Rect shown = intersect(area, render.window);
+  return !info_of(layer.role).feature || shown.empty() || intersect(part_of(render, layer).data_window, shown) == shown;
 }
 
 /// Pixel i of a band.

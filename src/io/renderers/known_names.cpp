@@ -77,11 +77,6 @@ std::optional<Role> feature_in_words(const std::string& pass) {
   return std::nullopt;
 }
 
-bool is_position(const std::string& pass) {
-  const std::string name = normalised(pass);
-  return name == "p" || name.find("position") != std::string::npos;
-}
-
 bool can_have(const std::string& beauty, Role role) {
   bool is_known = false;
   for (const Renderer& renderer : renderers()) {

@@ -28,10 +28,6 @@ std::optional<PassClass> classify_letter(const std::string& letter);
 /// The feature that a pass seems to be by the words in its name, "my_normals", where no renderer is known to use it.
 std::optional<Role> feature_in_words(const std::string& pass);
 
-/// Whether the pass holds the places of points in the world: it has "position" in its name, or the name P of
-/// RenderMan's shading language.
-bool is_position(const std::string& pass);
-
 /// Whether a renderer that gives its beauty this name has a name for the role. True if no renderer is known to.
 bool can_have(const std::string& beauty, Role role);
 
