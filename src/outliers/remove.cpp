@@ -194,7 +194,7 @@ bool rare(const Replacement& found, int width, int height, int x, int y, const O
 }  // namespace
 
 std::vector<Outlier> remove_outliers(HalfPair& pair, const PairNoise& known, const OutlierParams& params,
-                                     Progress& progress, const Image& fireflies) {
+                                     Progress& progress) {
   const int width = pair.width(), height = pair.height();
   const int channels = ColorLayout(pair.color[0].channels()).layer_channels();
   const std::array<Replacement, 2> found{find(pair, 0, known, params, progress),
@@ -207,7 +207,7 @@ std::vector<Outlier> remove_outliers(HalfPair& pair, const PairNoise& known, con
     for (int x = 0; x < width; ++x)
       for (std::size_t h = 0; h < 2; ++h) {
         const std::size_t i = pair.variance.index(x, y);
-        if (found[h].source[i] < 0 || !in_mask(fireflies, i) || !rare(found[h], width, height, x, y, params)) continue;
+        if (found[h].source[i] < 0 || !rare(found[h], width, height, x, y, params)) continue;
         const auto from = static_cast<std::size_t>(found[h].source[i]);
         Outlier outlier{x, y, {}};
         for (int c = 0; c < channels; ++c) {

@@ -26,9 +26,9 @@ struct PairNoise {
 /// still do.
 ///
 /// A spike that both halves have is a feature of the scene and stays. Without independent halves, the same pixel of
-/// the other half is no evidence for that, and the second test is not made. fireflies: mask of the pixels that may be
-/// outliers (outliers/sky.h). Returns the outliers in the order of rows, half 0 before half 1.
+/// the other half is no evidence for that, and the second test is not made. Returns the outliers in the order of rows,
+/// half 0 before half 1.
 std::vector<Outlier> remove_outliers(HalfPair& pair, const PairNoise& known, const OutlierParams& params,
-                                     Progress& progress, const Image& fireflies = {});
+                                     Progress& progress);
 
 }  // namespace polyrecon

@@ -114,9 +114,8 @@ MemoryNeeds memory_needs(const FrameShape& passes, const Params& params) {
     return static_cast<std::size_t>(allocator * static_cast<double>(bytes));
   };
   const auto image_bytes = [&](std::size_t channels) { return shape.pixels * channels * sizeof(Real); };
-  constexpr std::size_t firefly_mask = 1;
   const std::size_t preparing = count(shape.channels + shape.other_channels) + noise_variance_channels +
-                                pair_channels(shape) + feature_in_preparation_channels + firefly_mask;
+                                pair_channels(shape) + feature_in_preparation_channels;
   const std::size_t denoising = kept_channels(shape) + pair_channels(shape) + denoiser_features_channels;
   const std::size_t validating =
       shape.prior_has_halves ? pair_channels(shape) + validation_channels(count(model_features(shape))) : 0;

@@ -5,7 +5,6 @@
 #include "blend/noise_bound.h"
 #include "noise/variance_floor.h"
 #include "outliers/remove.h"
-#include "outliers/sky.h"
 
 namespace polyrecon {
 namespace {
@@ -36,7 +35,6 @@ NoisyHalves make_noisy_halves(Frame& frame, HalvesFor purpose, std::uint64_t str
   // Before the features are taken from the frame.
   if (purpose != HalvesFor::Fit) out.geometry = geometry_of(frame);
   if (purpose == HalvesFor::FitWithNeighbours) out.surfaces_noise = surface_noise(frame);
-  const Image fireflies = params.steps.fireflies ? firefly_mask(frame) : Image();
   out.prepared = phases.run("features", rows_of(frame) / 4, [&](Progress& progress) {
     return prepare(frame, preparation, noise.variance, params.prefilter, params.reconstruct_alpha, progress);
   });
@@ -46,8 +44,7 @@ NoisyHalves make_noisy_halves(Frame& frame, HalvesFor purpose, std::uint64_t str
   if (params.components.noise_bound && noise.measured) pair.bound = noise_bound(pair.variance);
   out.outliers = phases.run("fireflies", rows_of(frame) * 2, [&](Progress& progress) {
     const PairNoise known{out.prepared.independent_halves, noise.measured};
-    return params.steps.fireflies ? remove_outliers(pair, known, params.outliers, progress, fireflies)
-                                  : std::vector<Outlier>();
+    return params.steps.fireflies ? remove_outliers(pair, known, params.outliers, progress) : std::vector<Outlier>();
   });
   // After the removal, so that the variance of an outlier does not spread to its neighbours.
   if (params.components.variance_floor) pair.variance = floor_variance(pair.variance);
