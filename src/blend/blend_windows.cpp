@@ -25,7 +25,7 @@ enum WindowConstant : std::size_t {
   Variance = RelativeBias + ColorLayout::primaries,
   Order = Variance + ColorLayout::primaries,
   Weight,
-  constants
+  Constants
 };
 
 /// Sums of equation (3) for one bandwidth over an area. Channels are interleaved, since a window adds to all of them at
@@ -35,7 +35,7 @@ class BlendSums {
   /// Sets all sums of the area to zero.
   void begin(const Rect& area, int responses) {
     area_ = area;
-    channels_ = static_cast<std::size_t>(responses) + constants;
+    channels_ = static_cast<std::size_t>(responses) + Constants;
     sums_.assign(area.area() * channels_, 0.0);
   }
 
@@ -60,7 +60,7 @@ struct BlendPlane {
   std::vector<Real> sums;
 
   BlendPlane(int w, int h, int responses)
-      : channels(static_cast<std::size_t>(responses) + constants),
+      : channels(static_cast<std::size_t>(responses) + Constants),
         width(w),
         sums(static_cast<std::size_t>(w) * static_cast<std::size_t>(h) * channels, Real(0)) {}
   Real* at(int x, int y) {
@@ -215,14 +215,14 @@ POLYRECON_SIMD void add_pixels(const Window& window, const Real* weight, const R
     if (w == 0) continue;
     double* out = sums.at(window.x[j], window.y[j]);
     for (std::size_t c = 0; c < responses; ++c) out[c] += w * static_cast<double>(fit[j * pitch + c]);
-    for (std::size_t k = 0; k < constants; ++k) out[responses + k] += w * constant[k];
+    for (std::size_t k = 0; k < Constants; ++k) out[responses + k] += w * constant[k];
   }
 }
 
 /// Adds a window to the sums. energy: weighted mean of yhat^2.
 void blend(const FitSource& source, const OrderChoice& choice, const double* energy, std::size_t responses, Scratch& s,
            BlendSums& sums) {
-  double constant[constants];
+  double constant[Constants];
   for (std::size_t c = 0; c < 3; ++c) {
     constant[RelativeBias + c] = std::sqrt((choice.error[c] - choice.variance[c]) / (energy[c] + source.epsilon));
     constant[Variance + c] = choice.variance[c];
@@ -392,10 +392,10 @@ std::vector<unsigned char> needed_centers(const std::vector<unsigned char>& acti
 }  // namespace
 
 std::size_t blended_fit_channels(std::size_t color_channels) {
-  return color_channels + constants - 1;  // all sums but the weight, which they are divided by
+  return color_channels + Constants - 1;  // all sums but the weight, which they are divided by
 }
 
-std::size_t blend_sums_channels(std::size_t color_channels) { return color_channels + constants; }
+std::size_t blend_sums_channels(std::size_t color_channels) { return color_channels + Constants; }
 
 int fit_halo(const FitParams& params) {
   // One radius from a pixel to the centres that cover it, and one from these to the pixels of their windows. Whether a

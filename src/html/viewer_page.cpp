@@ -161,7 +161,7 @@ std::string ViewerPage::html(const std::string& subtitle, const std::string& rep
   const std::string style_hash = hash_source(viewer_text.style_hash),
                     script_hash = hash_source(viewer_text.script_hash);
   const std::string main = report.empty() ? report : "<main class=\"report\">\n" + report + "</main>";
-  const std::string scene = "<script type=\"application/json\" id=\"scene\">" + embedded(scene_) + "</script>";
+  const std::string scene = R"(<script type="application/json" id="scene">)" + embedded(scene_) + "</script>";
   return filled(viewer_text.page, {{"TITLE", title},
                                    {"HEADER", header},
                                    {"STYLE", viewer_text.style},
@@ -175,8 +175,8 @@ std::string ViewerPage::html(const std::string& subtitle, const std::string& rep
 }
 
 std::string ViewerPage::add_block(const std::string& text) {
-  const std::string id = fmt::format("block{}", block_count_++);
-  blocks_ += fmt::format("<script type=\"text/plain\" id=\"{}\">", id) + text + "</script>\n";
+  std::string id = fmt::format("block{}", block_count_++);
+  blocks_ += fmt::format(R"(<script type="text/plain" id="{}">)", id) + text + "</script>\n";
   return id;
 }
 

@@ -17,7 +17,7 @@ struct CorrectedPrior {
 
 /// Channels that add_prior holds in addition to the tiles of select_correction: the corrected prior, and the beauty of
 /// both halves before and after.
-constexpr std::size_t prior_candidate_channels = 3 * 2 * std::size_t{ColorLayout::primaries};
+constexpr std::size_t prior_candidate_channels = std::size_t{3} * 2 * std::size_t{ColorLayout::primaries};
 
 /// Prepares a prior for add_prior. It is the mean of the pass's halves where it has them (which averages their noise),
 /// else its mean.

@@ -144,7 +144,9 @@ std::string ComparisonPage::figures(const std::vector<std::vector<Comparison>>& 
   for (const Column& column : columns())
     if (flickers || column.name != std::string("flicker")) html += fmt::format("<th>{}</th>", column.name);
   html += "</tr>\n";
-  for (const auto& [image, figures] : rows) {
+  for (const auto& row : rows) {
+    const std::size_t image = row.first;
+    const SequenceFigures& figures = row.second;
     const auto to = [&](const char* what) -> std::string {
       if (what == std::string("relMSE") || what == std::string("FLIP"))
         return main ? link(image, 0, fmt::format("&amp;layer={}", what)) : "";

@@ -438,13 +438,12 @@ std::vector<std::string> aovs_named_by(const FrameSource& source, const std::vec
   };
   for (const std::string& text : texts)
     for (const std::string& word : layer_words(text, source.layers)) {
-      const auto is_named = [&](const Layer& layer) { return layer.name == word || layer.pass == word; };
+      const bool named = std::any_of(source.layers.begin(), source.layers.end(),
+                                     [&](const Layer& layer) { return layer.name == word || layer.pass == word; });
       const auto fits = [&](const Layer& layer) { return fits_pattern(layer, word); };
-      if (std::any_of(source.layers.begin(), source.layers.end(), is_named)) {
-        add(word);
-      } else if (word == "all") {
+      if (!named && word == "all") {
         for (const std::string& name : light) add(name);
-      } else if (is_layer_pattern(word) && std::any_of(source.layers.begin(), source.layers.end(), fits)) {
+      } else if (!named && is_layer_pattern(word) && std::any_of(source.layers.begin(), source.layers.end(), fits)) {
         for (const Layer& layer : source.layers)
           if (fits(layer) && std::find(light.begin(), light.end(), layer.name) != light.end()) add(layer.name);
       } else {

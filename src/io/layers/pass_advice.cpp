@@ -23,8 +23,9 @@ constexpr std::array lacks{Lack{Role::Albedo, "textures get blurred"}, Lack{Role
 
 std::string letters_of(const std::string& text) {
   std::string out;
-  for (const unsigned char c : text)
-    if (std::isalnum(c)) out += static_cast<char>(std::tolower(c));
+  for (const char c : text)
+    if (const auto byte = static_cast<unsigned char>(c); std::isalnum(byte))
+      out += static_cast<char>(std::tolower(byte));
   return out;
 }
 
