@@ -106,7 +106,7 @@ std::string added_pass(const std::string& word) {
 /// The pass of the file `other` of the render whose files have these parts; empty where it is none of them.
 std::string pass_of(const std::string& other, const NameParts& parts) {
   if (!parts.pass.empty()) {
-    const std::string word = between(parts.before, other, parts.after);
+    std::string word = between(parts.before, other, parts.after);
     if (is_pass(parts.before, word) || has_known_ending(parts.before, word) || is_beauty_companion(word) ||
         is_other_pass_file(word))
       return word;
