@@ -47,8 +47,8 @@ TEST_F(OidnPrior, CountsInABudgetOfTime) {
   SKIP_WITHOUT_OIDN();
   write_render(path("in.exr"));
   const auto choice_with = [&](const std::vector<std::string>& options) {
-    std::vector<std::string> arguments{"denoise",  "-i",          "in.exr",  "-o",           "out.exr",
-                                       "--report", "report.json", "--quiet", "--time-budget"};
+    std::vector<std::string> arguments{"denoise",  "-i",          "in.exr",      "-o",      "out.exr",
+                                       "--report", "report.json", "--overwrite", "--quiet", "--time-budget"};
     arguments.insert(arguments.end(), options.begin(), options.end());
     const Outcome done = run(arguments);
     EXPECT_EQ(done.code, 0) << done.err;
