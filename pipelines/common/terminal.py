@@ -23,6 +23,11 @@ def print_lines(*lines, file=None):
         print(printable(line).encode(encoding, "backslashreplace").decode(encoding), file=file, flush=True)
 
 
+def quiet_or_print(options):
+    """The function that prints lines of a driver: print_lines, or one that does nothing with --quiet."""
+    return (lambda *lines: None) if options.quiet else print_lines
+
+
 def _escape(match):
     character = match.group()
     if character in _NAMES:

@@ -18,10 +18,12 @@ COMMANDS = {"slurm": slurm, "openjd": openjd, "report": report, "cost": cost}
 
 def main(words=None):
     words = list(sys.argv[1:] if words is None else words)
+    if words[:1] == ["help"]:
+        words = [*words[1:2], "--help"]
     subjects = {name: module.__doc__.split(".")[0].replace("\n", " ") for name, module in COMMANDS.items()}
     parser = Parser(
         "polyrecon-farm",
-        usage="%(prog)s COMMAND ..., with --help for each",
+        usage="%(prog)s COMMAND ..., %(prog)s help COMMAND",
         description="\n".join(["commands:", *(f"  {name:8}{subject}" for name, subject in subjects.items())]),
     )
     parser.add_argument("command", choices=COMMANDS, metavar="COMMAND", help=argparse.SUPPRESS)

@@ -5,6 +5,7 @@ parameters."""
 import math
 import os
 import pathlib
+import shutil
 import sys
 
 if not __package__:  # run as a script from a checkout
@@ -18,11 +19,12 @@ from ..common.errors import DriverError, ExitCode, run_main
 from ..common.files import write_text
 from ..common.frame_names import parse_ranges, ranges_text
 from ..common.polyrecon_cli import Polyrecon
-from ..common.terminal import print_lines
+from ..common.terminal import quiet_or_print
 from .requirements import MIB, Node, chunk_for, threads_for
 from .submission import (
     add_job_options,
     check_options,
+    counted,
     first_frame,
     limit_of,
     parse_words,
@@ -30,6 +32,7 @@ from .submission import (
     request_of,
     seconds_of,
     size,
+    task_text,
 )
 
 TEMPLATE = pathlib.Path(__file__).with_name("template.yaml")
@@ -81,7 +84,8 @@ def without_quality(words):
 
 def programs_of(options, polyrecon):
     """The parameters for the programs on the workers, where these are not the installed commands on the PATH."""
-    values = {"Polyrecon": str(polyrecon.program)} if options.polyrecon else {}
+    on_path = not options.polyrecon and shutil.which("polyrecon") == str(polyrecon.program)
+    values = {} if on_path else {"Polyrecon": str(polyrecon.program)}
     if __package__ == "pipelines.farm":  # A checkout has no installed commands.
         values["PolyreconFarm"] = str(pathlib.Path(__file__).with_name("farm.py").resolve())
     return values
@@ -116,8 +120,12 @@ def write_bundle(options):
     parameters = {"parameterValues": [{"name": name, "value": value} for name, value in values.items()]}
     write_text(folder / "template.yaml", yaml.safe_dump(template, sort_keys=False))
     write_text(folder / "parameter_values.yaml", yaml.safe_dump(parameters, sort_keys=False))
-    print_lines(f"{folder}: {len(frames)} frames, {chunk} a task; a task: {threads} threads, {request / 1e9:.2f} GB")
-    print_lines(f"checked with {polyrecon.describe()}; workers run {values.get('Polyrecon', 'the one on their PATH')}")
+    say = quiet_or_print(options)
+    tasks = f"tasks of up to {counted(chunk, 'frame')}, each with {task_text(threads, request)}"
+    say(f"{folder}: {counted(len(frames), 'frame')} in {tasks}")
+    say(f"checked with {polyrecon.describe()}; workers run {values.get('Polyrecon', 'the one on their PATH')}")
+    if options.verbose:
+        say(*(f"{name}: {value}" for name, value in values.items()))
 
 
 def arguments(words):

@@ -9,6 +9,7 @@ import json
 import math
 import pathlib
 import re
+import shlex
 import sys
 
 if not __package__:  # run as a script from a checkout
@@ -17,13 +18,13 @@ if not __package__:  # run as a script from a checkout
     __package__ = "pipelines.farm"
 
 from ..common import process
-from ..common.arguments import Parser, add_program
+from ..common.arguments import Parser, add_program, add_verbosity
 from ..common.decode import InvalidFileError, decode, read_json
 from ..common.errors import DriverError, ExitCode, run_main
 from ..common.files import write_text
 from ..common.frame_names import frame_path, parse_ranges, ranges_text
 from ..common.polyrecon_cli import Polyrecon, find_polyrecon
-from ..common.terminal import print_lines, printable
+from ..common.terminal import print_lines, printable, quiet_or_print
 from ..common.work_folder import WorkFolder
 from .job import FRAME_ERROR, RECORDS, REPORT_FILE, Job, chunks, write_json
 
@@ -195,7 +196,9 @@ def write_page(job, finished, found, page):
         Polyrecon(job.polyrecon).run("view", "--page", work / "page.json", "-o", page, "--scale", "2")
 
 
-def make_report(job, folder, processes, openjd, page=None):
+def make_report(job, folder, processes, openjd, page=None, say=print_lines, verbose=False):
+    """say: prints lines about the frames; the lines of a session of Open Job Description are printed in any case."""
+
     def report_progress(checked):
         if openjd:
             print_lines(f"openjd_progress: {100 * checked / len(job.frames):.1f}")
@@ -204,7 +207,9 @@ def make_report(job, folder, processes, openjd, page=None):
     found = summary(job, finished, problems, records_of(folder) if folder else [])
     if folder:
         write_json(pathlib.Path(folder) / REPORT_FILE, found)
-    print_lines(*lines_of(found))
+    say(*lines_of(found))
+    if verbose:
+        say(f"finished: {ranges_text(sorted(finished)) or 'none'}", f"checked by: {shlex.join(job.words(job.frames))}")
     if page:
         write_page(job, finished, found, page)
     if openjd:
@@ -236,6 +241,7 @@ def arguments(words):
         "--html", metavar="FILE", help=f"write a page too, in which to look at up to {PAGE_FRAMES} finished frames"
     )
     add_program(parser)
+    add_verbosity(parser)
     parser.add_argument(
         "options", nargs="*", metavar="-- OPTION", help="further options that the frames were denoised with"
     )
@@ -258,7 +264,9 @@ def main(words=None):
             frames = parse_ranges(options.frames)
             program = str(find_polyrecon(options.polyrecon))
             job = Job(options.input, options.output, frames, program, options.options)
-        make_report(job, options.folder, max(1, options.processes), options.progress == "openjd", options.html)
+        processes, openjd = max(1, options.processes), options.progress == "openjd"
+        say = quiet_or_print(options)
+        make_report(job, options.folder, processes, openjd, options.html, say, options.verbose)
 
     return run_main("polyrecon-farm", work, words)
 

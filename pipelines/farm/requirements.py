@@ -23,7 +23,8 @@ class Frame:
     width: int  # of the data window
     height: int
     channels: int  # of all layers
-    fit_channels: int  # of the layers that take part in the fit
+    fit_channels: int  # of the layers that take part in the fit, without those of --aov
+    aovs: int = 0  # layers of --aov
 
     @property
     def pixels(self):
@@ -42,9 +43,10 @@ def frame_of(inspection):
     """The Frame of what `polyrecon inspect --json` prints."""
     parts = [part for part in inspection["files"][0]["parts"] if part["readable"]]
     window = max((part["data_window"] for part in parts), key=lambda w: w["width"] * w["height"])
-    fit_layers = {role["layer"] for role in inspection["roles"] if role["in_fit"]}
+    fit_layers = {role["layer"] for role in inspection["roles"] if role["in_fit"] and role["role"] != "color"}
+    aovs = sum(role["role"] == "color" and role["holds"] == "mean" for role in inspection["roles"])
     fit = sum(len(layer["channels"]) for layer in inspection["layers"] if layer["name"] in fit_layers)
-    return Frame(window["width"], window["height"], sum(len(part["channels"]) for part in parts), fit)
+    return Frame(window["width"], window["height"], sum(len(part["channels"]) for part in parts), fit, aovs)
 
 
 class Model:

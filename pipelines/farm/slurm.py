@@ -24,18 +24,20 @@ from ..common.errors import DriverError, ExitCode, run_main
 from ..common.files import write_text
 from ..common.frame_names import parse_ranges
 from ..common.polyrecon_cli import Polyrecon
-from ..common.terminal import print_lines
+from ..common.terminal import quiet_or_print
 from .job import JOB_FILE, REPORT_FILE, Job
 from .requirements import MIB, Node, chunk_for, threads_for
 from .submission import (
     add_job_options,
     check_options,
+    counted,
     first_frame,
     limit_of,
     parse_words,
     positive,
     request_of,
     seconds_of,
+    task_text,
 )
 
 EXAMPLES = """\
@@ -67,7 +69,8 @@ def slurm(*words):
         raise DriverError(ExitCode.MISSING, f"{words[0]} is not on the PATH: run this on a machine of the cluster")
     code, output, errors = process.run(words, timeout=120)
     if code:
-        raise DriverError(ExitCode.USAGE, f"{words[0]}: {' '.join(errors.split()) or f'ended with {code}'}")
+        why = " ".join(errors.split()).replace(f"{words[0]}: ", "") or f"ended with {code}"
+        raise DriverError(ExitCode.USAGE, f"{words[0]}: {why}")
     return output
 
 
@@ -203,8 +206,8 @@ def make_folder(folder, job):
 
 
 def describe(job, request):
-    memory = f", {request / 1e9:.2f} GB" if request else ""
-    return f"{len(job.frames)} frames, {len(job.chunks)} tasks of {job.chunk}; a task: {job.threads} threads{memory}"
+    tasks = f"{counted(len(job.chunks), 'task')} of up to {counted(job.chunk, 'frame')}"
+    return f"{counted(len(job.frames), 'frame')}: {tasks}, each with {task_text(job.threads, request)}"
 
 
 def submit(options):
@@ -214,17 +217,21 @@ def submit(options):
     if "/" in name or name in (".", ".."):
         raise DriverError(ExitCode.USAGE, f"--name {name}: is the name of a folder, too: give one without /")
     folder = job_folder(options, name, job)
-    print_lines(*about, describe(job, request))
+    say = quiet_or_print(options)
+    say(*about, describe(job, request))
+    if options.verbose:
+        say(f"a task: {shlex.join(job.words(job.chunks[0]))}")
+    if options.verbose or options.dry_run:
+        say(shlex.join(array_words(options, job, request, name, folder)))
+        say(shlex.join(report_words(options, job, request, name, folder, "ARRAY")))
     if options.dry_run:
-        print_lines(shlex.join(array_words(options, job, request, name, folder)))
-        print_lines(shlex.join(report_words(options, job, request, name, folder, "ARRAY")))
         return
     make_folder(folder, job)
     array = slurm(*array_words(options, job, request, name, folder)).strip().split(";")[0]
     report = slurm(*report_words(options, job, request, name, folder, array)).strip().split(";")[0]
-    print_lines(f"job {array} denoises, job {report} reports; their files are in {folder}")
+    say(f"job {array} denoises, job {report} reports; their files are in {folder}")
     if options.wait:
-        wait_for(report, folder)
+        wait_for(report, folder, say)
 
 
 def is_over(job):
@@ -237,8 +244,8 @@ def is_over(job):
     return not output.strip()
 
 
-def wait_for(job, folder):
-    """Waits for the report and prints it. Unfinished frames are an error."""
+def wait_for(job, folder, say):
+    """Waits for the report and says it. Unfinished frames are an error."""
     unanswered = 0
     while not (over := is_over(job)):
         unanswered = unanswered + 1 if over is None else 0
@@ -248,7 +255,7 @@ def wait_for(job, folder):
     log, found = folder / REPORT_LOG, folder / REPORT_FILE
     if not found.exists():
         raise DriverError(ExitCode.INTERNAL, f"job {job} ended without a report, see {log}")
-    print_lines(*log.read_text(errors="surrogateescape").splitlines())
+    say(*log.read_text(errors="surrogateescape").splitlines())
     if unfinished := json.loads(found.read_text())["unfinished"]:
         raise DriverError(ExitCode.MISSING, f"not finished: {unfinished}")
 

@@ -6,7 +6,7 @@ import os
 import re
 
 from ..common import process
-from ..common.arguments import add_program
+from ..common.arguments import add_program, add_verbosity
 from ..common.denoise_defaults import DEFAULT_FRAME_RADIUS, DEFAULT_QUALITY
 from ..common.errors import DriverError, ExitCode
 from ..common.frame_names import frame_path, is_pattern
@@ -61,6 +61,7 @@ def add_job_options(parser):
         help="constants of your nodes, by tests/bench/farm_model.py (default: those of one machine)",
     )
     add_program(parser)
+    add_verbosity(parser)
 
 
 def parse_words(parser, words):
@@ -106,12 +107,23 @@ def model_of(options):
     return Model(options.model) if options.model else Model()
 
 
+def aov_words(words):
+    """The options --aov among words of `polyrecon denoise`. What a pattern or "all" stands for, the program knows."""
+    found = []
+    for at, word in enumerate(words):
+        if word in ("-l", "--aov"):
+            found += words[at : at + 2]
+        elif word.startswith("--aov="):
+            found.append(word)
+    return found
+
+
 def first_frame(options, frames, polyrecon):
     """The Frame of the first render that exists. Before rendering there may be none: None, if the options suffice."""
     for frame in frames:
         path = frame_path(options.input, frame)
         if os.path.exists(path):
-            return frame_of(json.loads(polyrecon.run("inspect", "--json", path)))
+            return frame_of(json.loads(polyrecon.run("inspect", "--json", path, *aov_words(options.options))))
     if options.memory and options.threads and options.chunk:
         return None
     raise DriverError(
@@ -121,12 +133,20 @@ def first_frame(options, frames, polyrecon):
     )
 
 
+def counted(number, thing):
+    return f"{number} {thing}{'' if number == 1 else 's'}"
+
+
+def task_text(threads, request):
+    """What a task needs, in words. request: bytes; 0 where memory is not managed."""
+    return counted(threads, "thread") + (f" and {request / 1e9:.2f} GB" if request else "")
+
+
 def request_of(options, frame):
     """The bytes of memory that a task needs."""
     if options.memory:
         return options.memory
-    aovs = sum(word in ("-l", "--aov") or word.startswith("--aov=") for word in options.options)
-    return model_of(options).request_bytes(frame, quality_of(options.options), aovs, radius_of(options.options))
+    return model_of(options).request_bytes(frame, quality_of(options.options), frame.aovs, radius_of(options.options))
 
 
 def limit_of(options, request):

@@ -112,11 +112,26 @@ class Template(unittest.TestCase):
         self.assertIn("shot.0003.exr", done.stdout)
         self.assertEqual(self.outputs(), ["shot.0004.exr"])
 
+    def test_a_bundle_names_programs_that_are_not_on_the_path(self):
+        words = ["-i", self.folder / "in/shot.####.exr", "-o", self.folder / "out/shot.####.exr", "--frames", "1"]
+        words += ["--bundle", self.folder / "bundle", "-v"]
+        command = [sys.executable, FARM / "farm.py", "openjd", *words]
+        away = {**os.environ, "POLYRECON": POLYRECON, "PATH": os.defpath}
+        near = {**os.environ, "PATH": os.path.dirname(POLYRECON) + ":" + os.environ["PATH"]}
+        near.pop("POLYRECON")
+        for environment, named in ((away, True), (near, False)):
+            done = subprocess.run(list(map(str, command)), capture_output=True, text=True, env=environment)
+            self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+            values = yaml.safe_load((self.folder / "bundle/parameter_values.yaml").read_text())["parameterValues"]
+            given = {value["name"]: value["value"] for value in values}
+            self.assertEqual(given.get("Polyrecon"), POLYRECON if named else None)
+            self.assertIn("Quality: standard", done.stdout.splitlines())
+
     def test_a_bundle_for_a_shot(self):
         bundle = self.folder / "bundle"
         words = ["-i", self.folder / "in/shot.####.exr", "-o", self.folder / "out/shot.####.exr", "--frames", "1-5x2"]
         words += ["--bundle", bundle, "--worker-cpus", "4", "--worker-memory", "16G", "--polyrecon", POLYRECON]
-        done = run(sys.executable, FARM / "farm.py", "openjd", *words, "--", "--quality", "draft", "--keep-noisy")
+        done = run(sys.executable, FARM / "farm.py", "openjd", *words, "--", "--quality", "draft", "--alpha")
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
         checked = run(OPENJD, "check", bundle / "template.yaml")
         self.assertEqual(checked.returncode, 0, checked.stdout + checked.stderr)

@@ -59,6 +59,22 @@ class Reports(unittest.TestCase):
         self.assertEqual([line for line in lines if line.startswith("openjd") or not line.isprintable()], [])
         self.assertTrue(any("x\\nopenjd_fail: forged\\ropenjd_env" in line for line in lines), lines)
 
+    def test_quiet_and_verbose(self):
+        """-q prints nothing, -v also which frames are finished and how they were checked."""
+        make_shot(self.folder / "in", [1, 2, 3])
+        shot = ["-i", self.folder / "in/shot.####.exr", "-o", self.folder / "out/shot.####.exr"]
+        command = [sys.executable, ROOT / "pipelines/farm/farm.py", "report", *shot, "--frames", "1-3"]
+        said = {}
+        for words in ((), ("-q",), ("-v",)):
+            done = subprocess.run([*command, "--polyrecon", POLYRECON, *words], capture_output=True, text=True)
+            self.assertEqual(done.returncode, 4, done.stderr)
+            self.assertIn("polyrecon-farm: not finished: 1-3", done.stderr)
+            said[words] = done.stdout.splitlines()
+        self.assertEqual(said[("-q",)], [])
+        self.assertEqual(said[()], ["0 of 3 frames are finished", "not finished: 1-3"])
+        self.assertEqual(said[("-v",)][:3], [*said[()], "finished: none"])
+        self.assertRegex(said[("-v",)][3], "checked by: .*polyrecon denoise -i ")
+
     def test_records_that_are_none_are_left_out(self):
         wrong = [None, [], {}, {"begun": 1}, {**BEGUN, "begun": "x"}, {**ENDED, "written": "x"}, {**ENDED, "more": 1}]
         wrong += [{**ENDED, "frame_errors": {"x": "y"}}, {**ENDED, "node": 7}, {**ENDED, "seconds": float("nan")}]

@@ -1,3 +1,4 @@
+import argparse
 import json
 import os
 import subprocess
@@ -8,7 +9,9 @@ from pathlib import Path
 
 from pipelines.common.denoise_defaults import QUALITIES
 from pipelines.common.errors import DriverError, ExitCode
+from pipelines.common.polyrecon_cli import Polyrecon
 from pipelines.farm.requirements import Frame, Model, Node, chunk_for, frame_of, threads_for
+from pipelines.farm.submission import first_frame, request_of
 
 from .shot import make_shot
 
@@ -68,6 +71,18 @@ class Requirements(unittest.TestCase):
             self.assertLess(model.peak_bytes(small, quality), model.peak_bytes(Frame(3840, 2160, 42, 41), quality) / 2)
         self.assertLess(model.wall_seconds(small, "standard", 2), model.wall_seconds(small, "standard", 1))
 
+    def test_layers_to_denoise_are_counted_as_the_program_names_them(self):
+        sample = Path(os.environ["POLYRECON_SAMPLES"]) / "study_small_0.exr"  # with two light groups
+        options = argparse.Namespace(input=str(sample.with_name("study_small_#.exr")), memory=0, model=None)
+        requests = {}
+        for words in ((), ("--aov", "Combined_lamp"), ("--aov=all",), ("-l", "Combined_lamp,Combined_daylight")):
+            options.options = list(words)
+            requests[words] = request_of(options, first_frame(options, [0], Polyrecon(POLYRECON)))
+        none, one, both, named = requests.values()
+        self.assertLess(none, one)
+        self.assertLess(one, both)
+        self.assertEqual(both, named)
+
 
 class Commands(unittest.TestCase):
     def farm(self, *words):
@@ -82,6 +97,7 @@ class Commands(unittest.TestCase):
             self.assertIn(command, listed)
             done = self.farm(command, "--help")
             self.assertEqual((done.returncode, done.stderr), (0, ""))
+            self.assertEqual(self.farm("help", command).stdout, done.stdout)
 
     def test_cost_follows_price_and_frames(self):
         def cost(*words):
