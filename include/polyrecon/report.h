@@ -54,8 +54,10 @@ struct Report {
   std::size_t outliers = 0;                ///< Fireflies: pixels replaced by the median of equation (10).
   std::array<double, 3> outlier_energy{};  ///< Sum of e_o, equation (11), per channel, radiance x pixels.
   std::array<double, 3> restored_gain{};   ///< Factor by which each channel was brought to the input's mean, minus 1.
-  std::array<double, 3> energy_before{};   ///< Mean of the noisy beauty per channel, radiance.
+  std::array<double, 3> energy_before{};   ///< Mean of the noisy beauty's usable pixels per channel, radiance.
   std::array<double, 3> energy_after{};    ///< Mean of the result per channel, radiance.
+  std::array<double, 3> energy_change{};   ///< Change of each channel's sum, over the pixels that are usable in the
+                                           ///< input, relative to the sum of the input's magnitudes there.
   double estimated_relative_mse = 0;       ///< ErrorMap::mean_relative_mse.
 };
 

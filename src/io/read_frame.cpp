@@ -168,6 +168,8 @@ struct WantedPass {
   Image *mean = nullptr, *variance = nullptr, *half_a = nullptr, *half_b = nullptr;
 };
 
+constexpr double most_overflows = 0.01;  // share of a variance's samples whose value half floats may have lost
+
 /// Makes a frame of the chosen layers.
 class FrameBuilder {
  public:
@@ -306,6 +308,15 @@ class FrameBuilder {
     if (!wanted.variance) return {};
     const Layer& from = layer(wanted.choice.variance);
     const Companion kind = kind_of(from, options_.variance_kind);
+    const std::size_t beyond = half_overflows(reader_.part_of(from), from, *wanted.variance);
+    const auto samples = static_cast<double>(wanted.variance->pixels() * from.channels.size());
+    if (static_cast<double>(beyond) > most_overflows * samples) {
+      result_.notes.push_back(
+          fmt::format("{} is not used: {} of its half-float samples are +Inf, beyond the largest half {}; save it as "
+                      "32-bit float",
+                      from.name, beyond, largest_half));
+      return {};
+    }
     Image variance = take(wanted.variance, wanted.choice.role, wanted.choice.variance, mean.channels(),
                           kind != Companion::SecondMoment);
     if (kind != Companion::VarianceOfMean && !counts_.known()) {

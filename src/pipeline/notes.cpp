@@ -1,18 +1,26 @@
 #include "pipeline/notes.h"
 
+#include <algorithm>
 #include <array>
+#include <cstddef>
 #include <string>
 
+#include "core/repair.h"
 #include "outliers/restore.h"
 
 namespace polyrecon {
 namespace {
 
-/// Mean of each channel of the beauty.
+/// Mean of each channel of the beauty over its usable pixels.
 std::array<double, 3> energy_of(const Image& beauty) {
   const std::vector<double> sums = channel_sums(beauty);
-  const auto pixels = static_cast<double>(beauty.pixels());
-  return {sums[0] / pixels, sums[1] / pixels, sums[2] / pixels};
+  std::array<double, 3> means{};
+  for (std::size_t c = 0; c < means.size(); ++c) {
+    const Real* plane = beauty.plane(static_cast<int>(c));
+    const auto pixels = std::count_if(plane, plane + beauty.pixels(), usable);
+    if (pixels > 0) means[c] = sums[c] / static_cast<double>(pixels);
+  }
+  return means;
 }
 
 }  // namespace

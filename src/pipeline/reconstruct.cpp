@@ -113,11 +113,23 @@ Image average(const HalfPair& pair, const Candidate& solved) {
   return out;
 }
 
-/// Sums of the input's colour channels: beauty, then each AOV.
-std::vector<double> color_totals(const Frame& frame) {
-  std::vector<double> totals = channel_sums(frame.beauty.mean);
-  for (const Pass& aov : frame.aovs)
-    for (const double sum : channel_sums(aov.mean)) totals.push_back(sum);
+/// The sums that the colour channels of the result are to have, beauty first, then each AOV: those of the input. In
+/// pixels that are not usable there, what the repair has put in counts, else it would be taken from all other pixels.
+std::vector<double> color_totals(const Frame& frame, const Image& result) {
+  std::vector<double> totals;
+  const auto add = [&](const Pass& pass) {
+    for (int c = 0; c < pass.mean.channels(); ++c) {
+      const auto channel = static_cast<int>(totals.size());
+      totals.push_back(ordered_sum(static_cast<std::size_t>(result.height()), [&](std::size_t y) {
+        const Real *in = pass.mean.row(c, static_cast<int>(y)), *out = result.row(channel, static_cast<int>(y));
+        double row = 0;
+        for (int x = 0; x < result.width(); ++x) row += static_cast<double>(usable(in[x]) ? in[x] : out[x]);
+        return row;
+      }));
+    }
+  };
+  add(frame.beauty);
+  for (const Pass& aov : frame.aovs) add(aov);
   return totals;
 }
 
@@ -130,7 +142,8 @@ Image restore(const Frame& frame, const NoisyHalves& halves, const Candidate& so
     report.pixels_raised_to_input = raise_undershoot(mean_of_halves(pair.color, out.channels()), out);
   restore_energy(halves.outliers, pair.variance, max_restored_gain, out);
   if (params.components.restore_totals)
-    report.restored_gain = restore_totals(color_totals(frame), pair.variance, max_restored_gain, max_total_gain, out);
+    report.restored_gain =
+        restore_totals(color_totals(frame, out), pair.variance, max_restored_gain, max_total_gain, out);
   return out;
 }
 
@@ -152,8 +165,10 @@ void put_layers(const Image& image, const Image& input_alpha, Result& result) {
       layout.has_alpha() ? within_coverage(crop(image, image.bounds(), layout.alpha_channel(), 1)) : input_alpha;
 }
 
-/// Throws where a channel of the result has another energy than the input, over the pixels that are usable there.
-void require_energy(const Pass& beauty, const Image& result) {
+/// The change of each channel's sum over the pixels that are usable in the input, relative to the input's energy there.
+/// Throws where that is too much.
+std::array<double, 3> require_energy(const Pass& beauty, const Image& result) {
+  std::array<double, 3> changes{};
   for (int c = 0; c < beauty.mean.channels(); ++c) {
     const auto sum = [&](const auto& term) {
       return ordered_sum(static_cast<std::size_t>(result.height()), [&](std::size_t y) {
@@ -173,7 +188,9 @@ void require_energy(const Pass& beauty, const Image& result) {
                       "its halves, variance or features are not those of this picture; render them again, or "
                       "leave them out",
                       beauty.name, c, 100 * change / energy, 100 * most_energy_change));
+    if (energy > 0) changes[static_cast<std::size_t>(c)] = change / energy;
   }
+  return changes;
 }
 
 /// Reconstructs a panorama with columns of its other end beyond both ends, and takes them away again.
@@ -268,7 +285,7 @@ Result reconstruct(Frame& frame, const std::vector<TimedNeighbour>& neighbours, 
   // The image, with the energy of the input (equations 10 and 11).
   Image image = phases.run("energy", 1, [&](Progress&) { return restore(frame, halves, solved, params, report); });
   if (!ours.empty()) image = follow_beauty(std::move(ours), image);
-  require_energy(frame.beauty, image);
+  report.energy_change = require_energy(frame.beauty, image);
   put_layers(image, frame.alpha, result);
   note_result(result);
   return result;

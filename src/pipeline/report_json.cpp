@@ -79,6 +79,7 @@ Json report_json(const Report& r) {
            {{"before", rgb(r.energy_before)},
             {"after", rgb(r.energy_after)},
             {"restored_gain", rgb(r.restored_gain)},
+            {"channel_change", rgb(r.energy_change)},
             {"relative_change", number(energy_change(r))}}},
           {"estimated_relmse", number(r.estimated_relative_mse)}};
 }

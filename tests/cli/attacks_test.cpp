@@ -224,6 +224,37 @@ TEST_F(Attacks, PipesDevicesAndFoldersAreNoInput) {
   }
 }
 
+TEST_F(Attacks, CostsThatCannotBeUsedAreRefusedBeforeTheFrameIsDenoised) {
+  render("in.exr");
+  std::ofstream(path("empty.exr")).close();
+  write_exr(path("small.exr"), 8, 8, {"Y"}, [](int, int, int) { return 1.0F; });
+  for (const auto& [cost, code] : {std::pair("empty.exr", 3), std::pair("small.exr", 3), std::pair("in.exr", 4)}) {
+    const Outcome o = denoise("in.exr", "out.exr", {"--sample-map", "s.exr", "--budget", "4", "--cost", cost});
+    EXPECT_EQ(o.code, code) << cost << o.err;
+    EXPECT_TRUE(is_one_error_line(o.err)) << o.err;
+    EXPECT_THAT(o.err, HasSubstr(cost));
+    EXPECT_FALSE(exists("out.exr")) << cost;
+  }
+}
+
+TEST_F(Attacks, FilesOfTheSystemWithoutAnEndAreNotRead) {
+  render("r.exr");
+  fs::create_directory(path("out"));
+  for (const std::string name : {"/proc/kmsg", "/proc/self/mem", "/proc/self/pagemap"}) {
+    fs::remove(path("x.exr"));
+    fs::create_symlink(name, path("x.exr"));
+    for (const auto& [arguments, code] : std::vector<std::pair<std::vector<std::string>, int>>{
+             {{"denoise", "-i", "r.exr", "x.exr", "--overwrite", "-o", "out"}, 4},
+             {{"denoise", "-i", "x.exr", "-o", "o.exr"}, 3},
+             {{"view", "--page", "x.exr", "-o", "o.html"}, 3}}) {
+      in_child_ = [] { ::alarm(60); };
+      const Outcome o = run(arguments);
+      EXPECT_EQ(o.code, code) << name << arguments[0] << o.err;
+      EXPECT_THAT(o.err, HasSubstr("x.exr")) << name;
+    }
+  }
+}
+
 TEST_F(Attacks, PipesAndDevicesAreNoLibrary) {
   ::mkfifo(path("pipe.so").c_str(), 0600);
   fs::create_symlink("/dev/zero", path("device.so"));
@@ -528,6 +559,41 @@ TEST_F(Attacks, ValuesBeyondTheLimitAreTold) {
   const Outcome all = denoise("in.exr", "out.exr");
   EXPECT_EQ(all.code, 6);
   EXPECT_THAT(all.err, HasSubstr("1e15"));
+}
+
+TEST_F(Attacks, HolesTakeNoEnergyFromTheOtherPixels) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const auto hole = [](int x, int y) { return (7 * x + 13 * y) % 29 == 0; };  // 3.4 % of the pixels
+  render("in.exr",
+         [=](int x, int y, const std::string& c, float v) { return c.find("Combined.") < 99 && hole(x, y) ? nan : v; });
+  const Outcome o = denoise("in.exr", "out.exr", {"--report", "r.json"});
+  ASSERT_EQ(o.code, 0) << o.err;
+  const std::vector<float> in = beauty("in.exr"), out = beauty("out.exr");
+  double before = 0, after = 0;
+  for (std::size_t i = 0; i < in.size(); ++i) {
+    if (std::isnan(in[i])) continue;
+    before += static_cast<double>(in[i]);
+    after += static_cast<double>(out[i]);
+  }
+  EXPECT_NEAR(after / before, 1, 1e-3);
+  const nlohmann::json energy = json("r.json")["energy"];
+  for (const double change : energy["channel_change"]) EXPECT_NEAR(change, 0, 1e-3);
+  EXPECT_NEAR(energy["relative_change"].get<double>(), 0, 0.01);
+}
+
+TEST_F(Attacks, AChangeOfTheEnergyIsTold) {
+  // Halves that contradict the mean of a few pixels by less than their noise: they are used.
+  render("in.exr", [](int x, int y, const std::string& c, float v) {
+    if (!is_half(c) || x < 16 || x >= 26 || y < 8 || y >= 18) return v;
+    return c.find(" A") < 99 ? 4 * v : 0.F;
+  });
+  const Outcome o = denoise("in.exr", "out.exr", {"--report", "r.json"});
+  ASSERT_EQ(o.code, 0) << o.err;
+  const std::string note = "the energy of the picture changed: ";
+  EXPECT_THAT(o.out, HasSubstr(note));
+  EXPECT_THAT(json("r.json")["notes"].dump(), HasSubstr(note));
+  const nlohmann::json changes = json("r.json")["energy"]["channel_change"];
+  EXPECT_GT(std::max({changes[0].get<double>(), changes[1].get<double>(), changes[2].get<double>()}), 0.05);
 }
 
 TEST_F(Attacks, AVarianceThatThePictureContradictsIsTold) {

@@ -47,6 +47,8 @@ const std::vector<Names>& all_names() {
       {"shot_0001_beauty", "shot_0001_albedo", "shot_0001_normal"},
       {"shot.0001", "shot_albedo.0001", "shot.normal.0001"},
       {"shot", "shot_albedo", "shot-normal"},
+      {"beauty_shot.0001", "albedo_shot.0001", "normal_shot.0001"},
+      {"Beauty.Shot_010_v03", "Albedo.Shot_010_v03", "Normals.Shot_010_v03"},
   };
   return names;
 }

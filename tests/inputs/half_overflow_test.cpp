@@ -47,6 +47,26 @@ TestPart lamp(Imf::PixelType type, int seed, double brightness = inf) {
   return part;
 }
 
+/// The lamp's wall with a variance that is +Inf in the first `columns` columns.
+ReadResult wall_with_variance(const TemporaryFolder& folder, int columns, Imf::PixelType type) {
+  TestPart part = lamp(Imf::FLOAT, 1, 0.5);
+  for (const char letter : {'R', 'G', 'B'})
+    part.channels.push_back(
+        {std::string("RGBA_variance.") + letter, type, [=](int x, int) { return x < columns ? inf : 1e-3; }});
+  return read_frame(write_exr(folder / "wall.exr", {part}));
+}
+
+TEST(HalfOverflow, AVarianceThatHalvesCannotHoldIsLeftOut) {
+  const TemporaryFolder folder;
+  const ReadResult half = wall_with_variance(folder, 1, Imf::HALF);
+  EXPECT_TRUE(half.frame.beauty.variance.empty());
+  EXPECT_THAT(half.notes, ElementsAre(HasSubstr("is not used: 120 of its half-float samples are +Inf")));
+  EXPECT_FALSE(wall_with_variance(folder, 0, Imf::HALF).frame.beauty.variance.empty());
+  const ReadResult floats = wall_with_variance(folder, 1, Imf::FLOAT);
+  EXPECT_FALSE(floats.frame.beauty.variance.empty());
+  EXPECT_THAT(floats.notes, ElementsAre(HasSubstr("120 samples are not finite")));
+}
+
 TEST(HalfOverflow, RadianceThatAHalfCannotHoldIsTheLargestHalf) {
   const TemporaryFolder folder;
   const ReadResult read = read_frame(write_exr(folder / "lamp.exr", {lamp(Imf::HALF, 1)}));

@@ -141,6 +141,38 @@ TEST(InputViews, AFeatureWithoutAViewBelongsToBoth) {
   expect_picture(path, {"", "right"}, right_beauty, left_albedo);
 }
 
+TEST(InputViews, PartsMayCallTheEyesLAndR) {
+  const TemporaryFolder folder;
+  const std::string path = write_exr(
+      folder / "a.exr", {part_of({{"", left_beauty}}, "beauty.L"), part_of({{"", right_beauty}}, "beauty.R"),
+                         part_of({{"", left_albedo}}, "albedo.L"), part_of({{"", right_albedo}}, "albedo.R")});
+  EXPECT_THAT(read_frame_header(path).source.pictures, ElementsAre(LayerView{"", "L"}, LayerView{"", "R"}));
+  expect_picture(path, {"", "L"}, left_beauty, left_albedo);
+  expect_picture(path, {"", "R"}, right_beauty, right_albedo);
+}
+
+TEST(InputViews, EyesAloneAreViewsWithoutFeaturesOfTheirOwn) {
+  const TemporaryFolder folder;
+  const std::string path =
+      write_exr(folder / "a.exr", {part_of({{"albedo", left_albedo}, {"left", left_beauty}, {"right", right_beauty}})});
+  EXPECT_THAT(read_frame_header(path).source.pictures, ElementsAre(LayerView{"", "left"}, LayerView{"", "right"}));
+  expect_picture(path, {"", "left"}, left_beauty, left_albedo);
+  expect_picture(path, {"", "right"}, right_beauty, left_albedo);
+}
+
+TEST(InputViews, ALoneLayerCalledRightIsNoted) {
+  const TemporaryFolder folder;
+  const std::string path = write_exr(folder / "a.exr", {part_of({{"", left_beauty}, {"right", right_beauty}})});
+  const auto notes = [&](const ReadOptions& options) { return read_frame_header(path, options).notes; };
+  EXPECT_THAT(notes({}), ElementsAre(HasSubstr("right stays as it is: --aov right")));
+  ReadOptions light;
+  light.aovs = {"right"};
+  EXPECT_THAT(notes(light), ElementsAre());
+  ReadOptions eye;
+  eye.map = {{Role::Beauty, Companion::Mean, "right", {}}};
+  EXPECT_THAT(notes(eye), ElementsAre());
+}
+
 TEST(InputViews, ALightCalledRightIsNoView) {
   const TemporaryFolder folder;
   const std::string path =

@@ -39,6 +39,14 @@ const Layer* sample_count_layer(const LayeredFile& file, const Layer& of) {
   return best;
 }
 
+/// The layer that says what a sample costs.
+const Layer& cost_layer(const LayeredFile& file) {
+  for (const Layer& layer : file.layers)
+    if (is_render_time(layer.pass) && layer.channels.size() == 1) return layer;
+  if (file.layers.size() == 1 && file.layers[0].channels.size() == 1) return file.layers[0];
+  throw Error(ExitCode::Missing, file.info.path + ": no render-time pass and more than one channel: no cost per pixel");
+}
+
 std::string unused(const LayeredFile& file, const Layer& layer, const std::string& why) {
   return fmt::format("{}: {} is not used: {}", file.info.path, layer.name, why);
 }
@@ -122,12 +130,17 @@ KnownVariance read_variance(const LayeredFile& file, const Layer& layer, const I
   return {std::move(values), {}};
 }
 
+void require_cost(const std::string& path, int width, int height) {
+  const LayeredFile file = open_layers(path);
+  const Rect window = file.info.parts[static_cast<std::size_t>(cost_layer(file).part)].data_window;
+  if (window.width() != width || window.height() != height)
+    throw Error(ExitCode::BadInput, fmt::format("{}: has {} x {} pixels, the frame has {} x {}", path, window.width(),
+                                                window.height(), width, height));
+}
+
 Image read_cost(const std::string& path) {
   const LayeredFile file = open_layers(path);
-  for (const Layer& layer : file.layers)
-    if (is_render_time(layer.pass) && layer.channels.size() == 1) return read_layer(file, layer);
-  if (file.layers.size() == 1 && file.layers[0].channels.size() == 1) return read_layer(file, file.layers[0]);
-  throw Error(ExitCode::Missing, path + ": no render-time pass and more than one channel: no cost per pixel");
+  return read_layer(file, cost_layer(file));
 }
 
 }  // namespace polyrecon

@@ -52,6 +52,10 @@ struct KnownVariance {
 /// The variance of the mean of a layer, whose values are `mean`, as read_radiance reads them.
 KnownVariance read_variance(const LayeredFile& file, const Layer& layer, const Image& mean);
 
+/// Checks the headers of a file of costs before any work. Throws where read_cost would, and Error{BadInput} where it
+/// has another size than the frame.
+void require_cost(const std::string& path, int width, int height);
+
 /// The cost of a sample in each pixel, 1 channel: a render-time pass, or the only channel of the file.
 /// Throws Error{Missing} where there is neither.
 Image read_cost(const std::string& path);

@@ -89,11 +89,8 @@ std::string make_and_write_sample_map(const std::string& target, const ErrorMap&
                                       const MapWindows& windows, const SampleMapOptions& options, Progress& progress) {
   Image cost;
   if (!options.cost.empty()) {
+    require_cost(options.cost, error.relative_mse.width(), error.relative_mse.height());
     cost = read_cost(options.cost);
-    if (!cost.same_shape(error.relative_mse))
-      throw Error(ExitCode::BadInput,
-                  fmt::format("{}: has {} x {} pixels, the frame has {} x {}", options.cost, cost.width(),
-                              cost.height(), error.relative_mse.width(), error.relative_mse.height()));
   }
   const SampleMap map = make_sample_map(error, sample_count, cost, options.params, progress);
   write_sample_map(target, map, windows, {options.params.budget, options.params.target, options.frame, options.seed},

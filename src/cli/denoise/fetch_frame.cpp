@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "cli/common/checks.h"
+#include "cli/common/layers.h"
 #include "cli/denoise/finished.h"
 #include "core/stopwatch.h"
 #include "io/files/file_identity.h"
@@ -77,7 +78,6 @@ auto FrameFetcher::wait_for(const std::string& path, double seconds, const Attem
 std::optional<LoadedFrame> FrameFetcher::fetch(const FrameFiles& files) {
   return wait_for(files.input, job_.run.wait, [&]() -> std::optional<LoadedFrame> {
     if (job_.run.skip_existing && is_finished(job_, files)) return std::nullopt;
-    if (job_.sample_map && !job_.sample_map->cost.empty()) require_readable(sample_map_for(job_, files).cost);
     return load_with_neighbours(files, read_options_for(job_, files.number_in_names()));
   });
 }
@@ -88,6 +88,11 @@ LoadedFrame FrameFetcher::fetch(const FrameFiles& files, const PictureChoice& pi
 
 LoadedFrame FrameFetcher::load_with_neighbours(const FrameFiles& files, const ReadOptions& options) {
   LoadedFrame loaded = load_frame(files.input, options);
+  if (job_.sample_map && !job_.sample_map->cost.empty()) {
+    const std::string cost = sample_map_for(job_, files).cost;
+    require_readable(cost);
+    require_cost(cost, loaded.in.frame.width(), loaded.in.frame.height());
+  }
   for (std::string& note : fixed_file_notes(job_, loaded.in.source)) loaded.in.notes.push_back(std::move(note));
   if (!files.neighbours.empty()) add_neighbours(files, loaded);
   return loaded;

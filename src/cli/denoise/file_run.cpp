@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstdio>
 #include <limits>
 #include <utility>
@@ -18,7 +20,8 @@
 namespace polyrecon {
 namespace {
 
-constexpr double least_shared_noise = 0.1;  // share of the noisy pixels; below it chance may be the cause
+constexpr double least_shared_noise = 0.1;          // share of the noisy pixels; below it chance may be the cause
+constexpr double most_silent_energy_change = 0.01;  // the least step in brightness that is visible (Weber)
 
 /// The note on neighbours that repeat the noise of a frame.
 void note_shared_noise(const Report& report, std::vector<std::string>& notes) {
@@ -27,6 +30,20 @@ void note_shared_noise(const Report& report, std::vector<std::string>& notes) {
       fmt::format("in {:.0f} % of the noisy pixels the frames before and after repeat this frame's noise and bring "
                   "nothing: animate the seed, so that each frame has its own",
                   100 * report.neighbour_shared_noise));
+}
+
+/// The note on a picture that became brighter or darker.
+void note_energy(const Report& report, std::vector<std::string>& notes) {
+  constexpr std::array<const char*, 3> names{"red", "green", "blue"};
+  std::string changes;
+  for (std::size_t c = 0; c < names.size(); ++c)
+    if (std::abs(report.energy_change[c]) > most_silent_energy_change)
+      changes += fmt::format("{}{} {:+.1f} %", changes.empty() ? "" : ", ", names[c], 100 * report.energy_change[c]);
+  if (!changes.empty())
+    notes.push_back(
+        fmt::format("the energy of the picture changed: {}; look whether the variance, the halves and the "
+                    "features are those of this render",
+                    changes));
 }
 
 std::vector<TimedNeighbour> neighbours_of(const LoadedFrame& loaded) {
@@ -122,6 +139,7 @@ void FileRun::denoise(LoadedFrame loaded, std::size_t max_memory, RunProgress& p
   report.notes = done.in.notes;
   report.advice = pass_advice(done.in.source);
   note_shared_noise(done.result.report, report.notes);
+  note_energy(done.result.report, report.notes);
   report.read_seconds = loaded.read_seconds;
   report.seconds = loaded.read_seconds + watch.seconds();
   report.reconstruction = done.result.report;

@@ -1,8 +1,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -82,13 +84,29 @@ PageContents contents_of_arguments(const ViewOptions& o) {
   return page;
 }
 
+/// The text of a description. Files of the system may be of no size and without an end, so no more than the size is
+/// read.
+std::string text_of_page_file(const std::string& path) {
+  constexpr std::uintmax_t most = std::uintmax_t{64} << 20;
+  require_readable(path);
+  std::error_code failure;
+  const std::uintmax_t size = std::filesystem::file_size(path, failure);
+  if (failure || size == 0 || size > most)
+    throw Error(ExitCode::BadInput,
+                fmt::format("{}: no description of a page: it is empty or larger than {} MB", path, most >> 20));
+  std::string text(static_cast<std::size_t>(size), '\0');
+  std::ifstream file(path, std::ios::binary);
+  if (!file.read(text.data(), static_cast<std::streamsize>(text.size())))
+    throw Error(ExitCode::BadInput, path + ": cannot be read");
+  return text;
+}
+
 /// Reads what docs/reference/view.md describes.
 PageContents contents_of_page_file(const std::string& path) {
-  require_readable(path);
-  std::ifstream file(path, std::ios::binary);
+  const std::string text = text_of_page_file(path);
   PageContents page;
   try {
-    const nlohmann::json json = nlohmann::json::parse(file);
+    const nlohmann::json json = nlohmann::json::parse(text);
     page.title = json.at("title").get<std::string>();
     page.subtitle = json.value("subtitle", page.subtitle);
     page.report = json.value("report", "");

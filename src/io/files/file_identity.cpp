@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <vector>
@@ -37,15 +39,17 @@ std::string file_identity(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   // The file is hashed in blocks, because it may not fit into memory. The hash of a block seeds the next one.
   std::vector<char> block(std::size_t{4} << 20);
+  // Files of the system may be of no size and without an end, so no more than the size is read.
+  const std::uintmax_t size = std::filesystem::file_size(path, ignored);
   unsigned long long hash = 0, bytes = 0;
-  while (file) {
-    file.read(block.data(), static_cast<std::streamsize>(block.size()));
+  while (bytes < size) {
+    const auto wanted = static_cast<std::size_t>(std::min<std::uintmax_t>(block.size(), size - bytes));
+    file.read(block.data(), static_cast<std::streamsize>(wanted));
     const auto count = static_cast<std::size_t>(file.gcount());
-    if (count == 0) break;
+    if (count < wanted) throw Error(ExitCode::BadInput, path + ": cannot be read, check its permissions");
     hash = OIIO::xxhash::XXH64(block.data(), count, hash);
     bytes += count;
   }
-  if (!file.eof()) throw Error(ExitCode::BadInput, path + ": cannot be read, check its permissions");
   return fmt::format("{}, {} bytes, xxh64 {:016x}", std::filesystem::path(path).filename().string(), bytes, hash);
 }
 

@@ -21,7 +21,9 @@ using Letters = std::array<std::string_view, 4>;  ///< The channels of a colour 
 constexpr std::array<Letters, 4> color_letters{
     {{"R", "G", "B", "A"}, {"r", "g", "b", "a"}, {"red", "green", "blue", "alpha"}, {"Red", "Green", "Blue", "Alpha"}}};
 constexpr std::array<Letters, 2> vector_letters{{{"X", "Y", "Z", "A"}, {"x", "y", "z", "a"}}};
-constexpr std::array<std::string_view, 2> eyes{"left", "right"};  // OpenEXR's names of the views of a stereo render
+using Eyes = std::array<std::string_view, 2>;
+constexpr Eyes eyes{"left", "right"};  // OpenEXR's names of the views of a stereo render
+constexpr std::array<Eyes, 3> eyes_of_parts{{eyes, {"L", "R"}, {"l", "r"}}};
 constexpr std::string_view separators = "._ -:/";
 
 bool is_separator(char c) { return separators.find(c) != std::string_view::npos; }
@@ -80,27 +82,42 @@ std::string take_view(const PartViews& views, std::string& name) {
 
 /// The eye that a part has by its name where another part is that of the other eye: "rgba_left" next to "rgba_right".
 std::string eye_by_name(const FileInfo& file, const PartInfo& part) {
-  for (std::size_t e = 0; e < eyes.size(); ++e) {
-    std::string eye(eyes[e]);
-    const std::string other(eyes[1 - e]), rest = without_view(part.name, eye);
-    if (rest == part.name) continue;
-    for (const PartInfo& candidate : file.parts)
-      if (candidate.name != part.name && without_view(candidate.name, other) == rest) return eye;
-  }
+  for (const Eyes& pair : eyes_of_parts)
+    for (std::size_t e = 0; e < pair.size(); ++e) {
+      std::string eye(pair[e]);
+      const std::string other(pair[1 - e]), rest = without_view(part.name, eye);
+      if (rest == part.name) continue;
+      for (const PartInfo& candidate : file.parts)
+        if (candidate.name != part.name && without_view(candidate.name, other) == rest) return eye;
+    }
   return {};
 }
 
-/// The eyes of a part that does not say which views it has. One layer called "right" may be a light; two are an eye.
+bool is_feature(const std::string& name) {
+  const auto known = classify_pass(std::string(after_last_dot(name)));
+  return known && info_of(known->role).feature;
+}
+
+/// The eyes of a part that does not say which views it has. One layer called "right" may be a light; two are an eye,
+/// and so are "left" and "right" where no other colour can be the beauty.
 PartViews eyes_in_names(const PartInfo& part) {
   std::map<std::string, std::set<std::string>> layers;  // of each eye, without it
+  bool others = false;
   for (const ChannelInfo& channel : part.channels) {
     const auto dot = channel.name.rfind('.');
-    if (dot == std::string::npos) continue;
+    if (dot == std::string::npos) {
+      others |= place_of(channel.name) == 0;
+      continue;
+    }
     std::string name = channel.name.substr(0, dot);
     const std::string eye = take_view({{eyes.begin(), eyes.end()}, {}}, name);
-    if (!eye.empty()) layers[eye].insert(name);
+    if (!eye.empty())
+      layers[eye].insert(name);
+    else
+      others |= place_of(channel.name.substr(dot + 1)) == 0 && !is_feature(name);
   }
-  const bool stereo = std::any_of(layers.begin(), layers.end(), [](const auto& eye) { return eye.second.size() > 1; });
+  const bool stereo = (layers.size() == eyes.size() && !others) ||
+                      std::any_of(layers.begin(), layers.end(), [](const auto& eye) { return eye.second.size() > 1; });
   if (!stereo) return {};
   PartViews views{{eyes.begin(), eyes.end()}, {}};
   if (layers.size() == 1) views.of_the_rest = eyes[layers.begin()->first == eyes[0] ? 1 : 0];

@@ -559,6 +559,25 @@ void note_other_beauties(LayerChoice& choice, const ReadOptions& options) {
   }
 }
 
+/// Notes a layer with the name of one eye next to a beauty without a view: it may be a light, or the other eye.
+void note_lone_eye(LayerChoice& choice, const ReadOptions& options) {
+  const FrameSource& source = choice.source;
+  if (options.picture || !options.own_windows.empty() || source.pictures.size() != 1) return;
+  const auto has = [&](const char* eye) {
+    return std::any_of(source.layers.begin(), source.layers.end(), [&](const Layer& l) { return l.pass == eye; });
+  };
+  for (const Layer& layer : source.layers) {
+    const bool is_eye = (layer.pass == "left" || layer.pass == "right") && !(has("left") && has("right"));
+    const bool is_aov = std::any_of(choice.passes.begin(), choice.passes.end(), [&](const PassChoice& pass) {
+      return source.layers[static_cast<std::size_t>(pass.mean)].name == layer.name;
+    });
+    if (is_eye && !is_aov && is_light_aov(layer) && place_of(layer) == place_of(source))
+      choice.notes.push_back(fmt::format(
+          "{} stays as it is: --aov {} denoises it if it is a light, --map beauty={} if it is the other eye",
+          layer.name, layer.name, layer.name));
+  }
+}
+
 /// Repeats what `merge` noted of the noise of the file.
 void note_shared_samples(LayerChoice& choice, const ReadOptions& options) {
   if (options.picture) return;
@@ -671,6 +690,7 @@ LayerChoice choose_layers(const std::string& path, const ReadOptions& options) {
   }
   choose_aovs(choice, options);
   note_other_beauties(choice, options);
+  note_lone_eye(choice, options);
   note_shared_samples(choice, options);
   note_own_result(choice, source.layers[static_cast<std::size_t>(beauty)], options);
   choose_alpha(choice, source.layers[static_cast<std::size_t>(beauty)]);

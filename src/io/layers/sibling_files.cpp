@@ -73,8 +73,15 @@ std::size_t numbers_at_end(const std::string& name) {
   return begin;
 }
 
-/// The pass is at the end of the name, or numbers of a frame and a version follow it: ".0001", "_v02.-0005". It is
-/// empty where no pass is known.
+/// The word before the first separator if it names a beauty: "beauty_shot.0001".
+std::string beauty_at_begin(const std::string& name) {
+  const std::string word = name.substr(0, name.find_first_of(separators));
+  return word.size() < name.size() && is_pass({}, word) && classify_pass(word)->role == Role::Beauty ? word
+                                                                                                     : std::string();
+}
+
+/// The pass is at the end of the name, or numbers of a frame and a version follow it: ".0001", "_v02.-0005"; a beauty
+/// may also stand in front: "beauty_shot.0001". It is empty where no pass is known.
 NameParts parts_of(const std::string& path) {
   const std::string stem = fs::path(path).stem().string();
   NameParts parts{stem, pass_at_end(stem), {}};
@@ -82,6 +89,8 @@ NameParts parts_of(const std::string& path) {
     const std::string name = stem.substr(0, numbers);
     parts = {name, pass_at_end(name), stem.substr(numbers)};
   }
+  if (parts.pass.empty())
+    if (const std::string first = beauty_at_begin(stem); !first.empty()) return {"", first, stem.substr(first.size())};
   parts.before.resize(parts.before.size() - parts.pass.size());
   return parts;
 }

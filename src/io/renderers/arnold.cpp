@@ -13,7 +13,7 @@ Renderer arnold() {
       {"N_noice", Role::Normal, 1},        {"N", Role::Normal, 3},
       {"Z_noice", Role::Depth, 1},         {"Z", Role::Depth, 2},
       {"AO", Role::Visibility, 3},         {"P", Role::Other, 1},
-      {"motionvector", Role::Other, 1},
+      {"motionvector", Role::Other, 1},    {"denoise_albedo_noice", Role::Albedo, 1},
   };
   r.beauty_companions = {{"variance", Companion::VarianceOfMean}};
   r.switches = {

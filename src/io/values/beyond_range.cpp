@@ -75,6 +75,15 @@ std::size_t drop_lone_overflows(Sample* plane, int width, int height) {
 template std::size_t drop_lone_overflows(float*, int, int);
 template std::size_t drop_lone_overflows(double*, int, int);
 
+std::size_t half_overflows(const PartInfo& part, const Layer& layer, const Image& image) {
+  std::size_t count = 0;
+  for (int c = 0; c < image.channels(); ++c)
+    if (is_half_float(part, layer.channels[static_cast<std::size_t>(c)]))
+      count += static_cast<std::size_t>(
+          std::count(image.plane(c), image.plane(c) + image.pixels(), std::numeric_limits<Real>::infinity()));
+  return count;
+}
+
 std::string lone_overflow_note(const std::string& layer, std::size_t samples) {
   return fmt::format(
       "{}: {} half-float samples of +Inf stand alone and are fireflies of unknown value; they count as missing; "

@@ -34,6 +34,9 @@ std::size_t drop_lone_overflows(Sample* plane, int width, int height);
 
 constexpr int lone_reach = 2;
 
+/// The number of samples of +Inf in the half-float channels of a layer, whose channels the image holds.
+std::size_t half_overflows(const PartInfo& part, const Layer& layer, const Image& image);
+
 /// The note on a layer in which so many half samples were dropped.
 std::string lone_overflow_note(const std::string& layer, std::size_t samples);
 
