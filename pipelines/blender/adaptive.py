@@ -54,6 +54,7 @@ def work(words):
             "scene": str(options.scene.resolve()),
             "visibility": options.visibility,
             "view_layer": options.view_layer,
+            "device": options.device,
         },
     )
 

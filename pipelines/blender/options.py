@@ -26,6 +26,12 @@ def add_common(parser):
     blender.add_argument(
         "--bpy", action="store_const", const="bpy", dest="blender", help="use the module bpy of this Python as Blender"
     )
+    parser.add_argument(
+        "--device",
+        choices=("auto", "cpu", "gpu"),
+        default="auto",
+        help="what Cycles renders on: auto: graphics cards if the scene renders on the GPU and there is one",
+    )
     add_pass_timeout(parser, 3600)
 
 
@@ -34,4 +40,12 @@ def renderer_of(options, method="auto"):
     if not options.scene.is_file():
         raise DriverError(ExitCode.MISSING, f"{options.scene}: no such file")
     visibility = None if options.visibility == "none" else options.visibility
-    return BlenderRenderer(options.scene, options.blender, method, visibility, options.pass_timeout, options.view_layer)
+    return BlenderRenderer(
+        options.scene,
+        options.blender,
+        method,
+        visibility,
+        options.pass_timeout,
+        options.view_layer,
+        options.device,
+    )

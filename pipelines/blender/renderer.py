@@ -40,13 +40,17 @@ class BlenderRenderer(Renderer):
     method       The way of extra samples: 'osl' (a camera with a mask, Blender 5 or later), 'regions' (rectangles), or
                  'auto'.
     visibility   The pass for that feature: 'shadow', 'ambient-occlusion' or None.
-    view_layer   The name of the view layer; None: the first that is switched on."""
+    view_layer   The name of the view layer; None: the first that is switched on.
+    device       'cpu', 'gpu', or 'auto': a graphics card if the scene renders on the GPU and there is one."""
 
-    def __init__(self, scene, blender=None, method="auto", visibility=None, timeout=3600.0, view_layer=None):
+    def __init__(
+        self, scene, blender=None, method="auto", visibility=None, timeout=3600.0, view_layer=None, device="auto"
+    ):
         self.scene = pathlib.Path(scene).absolute()
         self.method = method
         self.visibility = visibility
         self.view_layer = view_layer
+        self.device = device
         self.session = BlenderSession(blender, timeout)
         self.inputs = SceneInputs()
         self.overhead_seconds = OVERHEAD_SECONDS
@@ -77,6 +81,7 @@ class BlenderRenderer(Renderer):
             frame=self.frame,
             visibility=self.visibility,
             view_layer=self.view_layer,
+            device=self.device,
             mask_camera=self.method != "regions",
             cache_folder=None if self.session.not_confined else str(self.session.new_folder()),
         )
@@ -98,6 +103,8 @@ class BlenderRenderer(Renderer):
             )
         if found["path_guiding"]:
             notes.append("path guiding learns anew in every render pass, so it helps less than in one long render")
+        if self.device == "auto" and found["scene_device"] == "GPU" and found["device"] == "CPU":
+            notes.append("the scene renders on the GPU, but Cycles finds no graphics card: the processor renders")
         if self.session.not_confined:
             notes.append(f"Blender can write where the file says: {self.session.not_confined}")
         method = "masks by a camera shader" if self.masked else f"rectangles, because {found['no_mask_camera']}"
@@ -109,7 +116,7 @@ class BlenderRenderer(Renderer):
             switches=switches,
             passes=passes,
             notes=notes,
-            details=["effects: " + ", ".join(effects)],
+            details=[f"device: {found['device']}", "effects: " + ", ".join(effects)],
             method=method,
             inputs=self.input_digests,
             features=["albedo", "normal", "depth", *(["visibility"] if self.visibility else [])],

@@ -44,15 +44,16 @@ shader camera(string mask = "", float left = 0, float bottom = 0, float width = 
 """
 
 
-def why_not(scene, camera_object, depsgraph):
-    """The reason why the mask camera would differ from the scene's camera; empty if it would not."""
+def why_not(scene, camera_object, depsgraph, device):
+    """The reason why the mask camera would differ from the scene's camera; empty if it would not. device: see
+    device.py."""
     camera = camera_object.data
     if bpy.app.version < (5, 0):
         return "Blender before 5.0 has no camera shaders"
     if camera.type not in ("PERSP", "ORTHO"):
         return f"the camera is of type {camera.type}"
-    if scene.cycles.device != "CPU":
-        return "the scene renders on the GPU"
+    if device not in ("CPU", "OPTIX"):
+        return f"Cycles has no camera shaders on {device}"
     if scene.render.use_motion_blur and camera.animation_data:
         return "the lens may change within the shutter"
     if scene.cycles.use_camera_cull or scene.cycles.use_distance_cull:

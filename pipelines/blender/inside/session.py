@@ -22,6 +22,7 @@ if not sys.dont_write_bytecode:  # A checkout stays as it is.
 import audit
 import caches
 import camera
+import device as devices
 import inputs
 
 MARK = "@polyrecon "
@@ -36,12 +37,13 @@ class Session:
     def __init__(self):
         self.scene = self.view_layer = self.mask_camera = None
 
-    def open(self, path, frame, visibility, view_layer, mask_camera, cache_folder):
+    def open(self, path, frame, visibility, view_layer, device, mask_camera, cache_folder):
         """Opens the file, if it is not open, at a frame, sets it up, and returns what it is. Nothing is ever saved.
 
-        cache_folder: where simulations write; None if they cannot be kept from writing elsewhere."""
+        device: "cpu", "gpu" or "auto". cache_folder: where simulations write; None if they cannot be kept from writing
+        elsewhere."""
         if self.scene is None:
-            self.load(path, visibility, view_layer, cache_folder)
+            self.load(path, visibility, view_layer, device, cache_folder)
         scene = self.scene
         self.go_to(self.file_frame if frame is None else frame)
         if scene.camera is None:
@@ -50,7 +52,7 @@ class Session:
             self.mask_camera.use(None)  # Frames may have different cameras.
         reason = "rectangles were requested"
         if mask_camera:
-            reason = camera.why_not(scene, scene.camera, bpy.context.evaluated_depsgraph_get())
+            reason = camera.why_not(scene, scene.camera, bpy.context.evaluated_depsgraph_get(), self.device)
         self.mask_camera = None if reason else camera.MaskCamera(scene)
         scale = scene.render.resolution_percentage / 100
         return {
@@ -62,6 +64,8 @@ class Session:
             "effects": self.effects,
             "switches": self.switches,
             "user_passes": [name for _, name in self.user_passes if name != "use_pass_combined"],
+            "device": self.device,
+            "scene_device": self.scene_device,
             "no_mask_camera": reason,
             "denoising_data": self.denoising_data,
             "path_guiding": bool(getattr(scene.cycles, "use_guiding", False)),
@@ -71,7 +75,7 @@ class Session:
             "files": self.files,
         }
 
-    def load(self, path, visibility, view_layer, cache_folder):
+    def load(self, path, visibility, view_layer, device, cache_folder):
         try:
             bpy.ops.wm.open_mainfile(filepath=path, load_ui=False, use_scripts=False)
         except RuntimeError as error:
@@ -87,6 +91,8 @@ class Session:
             raise RuntimeError(f"the scene's renderer is {scene.render.engine}, not Cycles")
         self.file_frame, self.file_seed = scene.frame_current, scene.cycles.seed
         self.view_layer = self.choose_view_layer(view_layer)
+        self.scene_device = scene.cycles.device
+        self.device = devices.choose(scene, device)
         self.effects = audit.effects(scene, self.view_layer)
         self.switches = audit.switch_off(scene, self.view_layer, is_chosen=view_layer is not None)
         self.output = self.output_of(scene.render.image_settings)

@@ -95,6 +95,10 @@ def seed_animated(scene):
     scene.frame_set(1)
 
 
+def on_a_card(scene):
+    scene.cycles.device = "GPU"
+
+
 def switched_on(scene):
     """Everything that the audit switches off."""
     scene.render.use_motion_blur = True
@@ -249,6 +253,7 @@ MADE = (
     still_motion_blur,
     moving,
     seed_animated,
+    on_a_card,
     switched_on,
     hostile,
     linking,
