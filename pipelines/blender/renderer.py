@@ -26,6 +26,7 @@ PART_LAYERS = {
     "Ambient Occlusion",
     "AO",
 }
+VECTORS = "Vector"  # The layer of the motion vectors, which the first part alone has
 RENDER_TIME = "Render Time"  # Cycles' pass: milliseconds of a thread for all samples of a pixel
 OVERHEAD_SECONDS = 0.045  # fixed seconds of a pass, until they are measured
 
@@ -84,6 +85,7 @@ class BlenderRenderer(Renderer):
             device=self.device,
             mask_camera=self.method != "regions",
             cache_folder=None if self.session.not_confined else str(self.session.new_folder()),
+            shot=self.shot,
         )
         if is_new:
             self.inputs.opened(self.opened["files"]["opened"], begin)
@@ -93,6 +95,9 @@ class BlenderRenderer(Renderer):
         passes = {"Combined": "the picture", "Denoising Albedo, Normal, Depth": "features"}
         if self.visibility:
             passes[self.visibility] = "feature: visibility"
+        if self.shot:
+            blur = " without motion blur, at one sample" if found["motion_blur"] else ""
+            passes[VECTORS] = f"motion to the frames before and after; rendered once{blur}"
         if found["user_passes"]:
             passes[", ".join(found["user_passes"])] = "switched on in the file; rendered once, in the first part"
         effects = (f"{name}: {_effect_text(value)}" for name, value in found["effects"].items())
@@ -135,13 +140,20 @@ class BlenderRenderer(Renderer):
             wanted.add("Shadow")
         if "use_pass_ambient_occlusion" in self.opened["user_passes"]:
             wanted |= {"Ambient Occlusion", "AO"}
+        if self.shot and "use_pass_vector" not in self.opened["user_passes"]:
+            return sorted((PART_LAYERS - {"Combined"} - wanted) | {"Debug Sample Count", VECTORS})
         return sorted((PART_LAYERS - {"Combined"} - wanted) | {"Debug Sample Count"})
 
     def uniform(self, first, samples, target):
         user_passes = first == 0 and bool(self.opened["user_passes"])
-        channels, seconds = self._render(first=first, samples=samples, user_passes=user_passes)
+        vectors = first == 0 and self.shot
+        with_picture = vectors and not self.opened["motion_blur"]
+        channels, seconds = self._render(first=first, samples=samples, user_passes=user_passes, vectors=with_picture)
         counts = np.full(self.shape, float(samples))
         self.seconds_per_sample = max(seconds - self.overhead_seconds, 0) / counts.sum()
+        if vectors and not with_picture:
+            still, _ = self._render_once(first=first, samples=1, vectors=True)
+            channels.update({name: values for name, values in still.items() if _layer_of(name) == VECTORS})
         self._write(target, channels, counts, keep_all=user_passes)
 
     def extra(self, first, counts, target):
@@ -203,15 +215,19 @@ class BlenderRenderer(Renderer):
     def close(self):
         self.session.close()
 
-    def _render(self, first, samples, user_passes=False, **job):
+    def _render(self, first, samples, user_passes=False, vectors=False, **job):
         """Renders a pass; returns (channels, seconds).
 
-        Samples of several sequences take a pass for each sequence, and the result is their mean. The user's passes then
-        come from the first one."""
+        Samples of several sequences take a pass for each sequence, and the result is their mean. The user's passes and
+        the motion vectors then come from the first one."""
         channels, seconds, done = {}, 0.0, 0
         for begin, length in _sequences_of(first, samples, self.opened["sequence"] or first + samples):
             more, more_seconds = self._render_once(
-                first=begin, samples=length, user_passes=user_passes and not done, **job
+                first=begin,
+                samples=length,
+                user_passes=user_passes and not done,
+                vectors=vectors and not done,
+                **job,
             )
             done += length
             for name, values in more.items():
@@ -238,7 +254,7 @@ class BlenderRenderer(Renderer):
         part = {
             name: values
             for name, values in channels.items()
-            if (keep_all and not _is_time(name)) or name.split(".")[-2] in PART_LAYERS
+            if (keep_all and not _is_time(name)) or _layer_of(name) in PART_LAYERS or _layer_of(name) == VECTORS
         }
         part[f"{layer}.{SAMPLE_COUNT}"] = counts
         if time is not None:
@@ -257,7 +273,12 @@ def _sequences_of(first, samples, length):
 
 
 def _is_time(name):
-    return name.split(".")[-2] == RENDER_TIME
+    return _layer_of(name) == RENDER_TIME
+
+
+def _layer_of(name):
+    """The pass of a channel ViewLayer.Pass.X, without the view layer."""
+    return name.split(".")[-2]
 
 
 def _effect_text(value):

@@ -75,21 +75,13 @@ class Notes:
             self.printed.add(note)
 
 
-def each_frame(options, renderer, work, may_exist=False):
-    """Calls work(frame, polyrecon, progress) for the Frame of every frame of the options, then closes the renderer.
-
-    may_exist: whether the outputs may be there already, because `work` continues an earlier run."""
+def each_frame(options, renderer, work):
+    """Calls work(frame, polyrecon, progress) for the Frame of every frame of the options, then closes the renderer."""
     try:
-        numbers = parse_ranges(options.frames) if options.frames else [options.frame]
-        frames = [_frame_of(options, number) for number in numbers]
-        files = [path for frame in frames for path in frame.outputs]
-        outputs.check_new(files, options.overwrite or may_exist)
-        outputs.check_writable(files)
-        polyrecon = Polyrecon(options.polyrecon)
-        described = polyrecon.describe()  # It fails where the program does not run.
-        if options.verbose:
-            print_lines(described)
-        with Progress("none" if options.quiet else options.progress, len(frames)) as progress:
+        frames = frames_of(options)
+        check_outputs([path for frame in frames for path in frame.outputs], options.overwrite)
+        polyrecon = found_polyrecon(options)
+        with progress_of(options, len(frames)) as progress:
             for frame in frames:
                 progress.begin_frame()
                 work(frame, polyrecon, progress)
@@ -97,7 +89,33 @@ def each_frame(options, renderer, work, may_exist=False):
         renderer.close()
 
 
-def _frame_of(options, number):
+def frames_of(options, of_all=()):
+    """The Frame of every frame of the options. of_all: outputs whose name may lack a place for the number, as there is
+    one file for all frames; a Frame does not have such a file."""
+    numbers = parse_ranges(options.frames) if options.frames else [options.frame]
+    return [_frame_of(options, number, of_all if len(numbers) > 1 else ()) for number in numbers]
+
+
+def check_outputs(files, may_exist):
+    """Refuses files that cannot be written, before any work. may_exist: whether they may be there already."""
+    outputs.check_new(files, may_exist)
+    outputs.check_writable(files)
+
+
+def found_polyrecon(options):
+    """The program, which runs."""
+    polyrecon = Polyrecon(options.polyrecon)
+    described = polyrecon.describe()  # It fails where the program does not run.
+    if options.verbose:
+        print_lines(described)
+    return polyrecon
+
+
+def progress_of(options, frames, together=False):
+    return Progress("none" if options.quiet else options.progress, frames, together)
+
+
+def _frame_of(options, number, of_all):
     """The files of one frame. A single frame needs no place for its number."""
     named = {name: path for name in OUTPUTS if (path := getattr(options, name, None))}
     paths = {}
@@ -105,6 +123,8 @@ def _frame_of(options, number):
         outputs.check_ending(path, OUTPUTS[name])
         if number is not None and is_pattern(path):
             path = frame_path(path, number)
+        elif name in of_all:
+            continue
         elif options.frames:
             option = "-o" if name == "output" else f"--{name.replace('_', '-')}"
             raise DriverError(ExitCode.USAGE, f"{option} {path}: several frames need #### or %04d in the file's name")

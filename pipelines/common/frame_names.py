@@ -87,6 +87,15 @@ def frame_path(pattern, frame):
     return (folder if os.path.isdir(folder) else filled(folder)) + filled(name)
 
 
+def without_number(pattern, name):
+    """The path of a file for all frames of a pattern: shot.####.html -> shot.html. `name` is its name where nothing but
+    the number was in it."""
+    folder, text = _split(pattern)
+    place = list(_PLACE.finditer(text))[-1]
+    stem, suffix = text[: place.start()].rstrip("._- "), text[place.end() :]
+    return folder + (stem + suffix if stem else name + suffix)
+
+
 def _split(path):
     """The folder with the slash that ends it, and the file's name."""
     folder, slash, name = str(path).rpartition("/")

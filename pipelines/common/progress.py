@@ -14,11 +14,13 @@ MIN_SHARE = 0.02  # Share of the run before which the remaining time is unknown
 
 class Progress:
     """Shows the progress of `frames` frames in one of STYLES. 'auto' is 'bar' on a terminal, and elsewhere a line at
-    most once a minute."""
+    most once a minute.
 
-    def __init__(self, style="auto", frames=1):
+    together: whether the frames take turns, so that the figure `done` is that of all."""
+
+    def __init__(self, style="auto", frames=1, together=False):
         self.style = ("bar" if sys.stderr.isatty() else "log") if style == "auto" else style
-        self.frames, self.frame_index = frames, -1
+        self.frames, self.together, self.frame_index = frames, together, -1
         self.bar = None
         self.begin = self.last_line = time.monotonic()
 
@@ -58,7 +60,9 @@ class Progress:
 
     def _show(self, phase, figures):
         now = time.monotonic()
-        done = (max(self.frame_index, 0) + min(figures.get("done", 0.0), 1.0)) / self.frames
+        done = min(figures.get("done", 0.0), 1.0)
+        if not self.together:
+            done = (max(self.frame_index, 0) + done) / self.frames
         left = (now - self.begin) * (1 - done) / done if done >= MIN_SHARE else None
         text = self._text(phase, figures)
         if self.bar:
@@ -71,7 +75,8 @@ class Progress:
     def _text(self, phase, figures):
         known = []
         if self.frames > 1:
-            known.append(f"frame {figures.get('frame', '')} ({self.frame_index + 1} of {self.frames})")
+            number = f"frame {figures.get('frame', '')}"
+            known.append(number if self.together else f"{number} ({self.frame_index + 1} of {self.frames})")
         known.append(phase)
         known += [f"{figures['samples']:.3g} spp"] if "samples" in figures else []
         known += [f"relMSE {figures['error']:.3g}"] if "error" in figures else []

@@ -7,86 +7,24 @@ measured and refined, a pixel that is bright by chance would draw the samples th
 too dark (docs/guide/adaptive.md)."""
 
 import dataclasses
-import hashlib
-import json
 import math
-import pathlib
 import time
-from typing import Optional
 
-from ..common.command import Frame
-from ..common.denoise_defaults import DEFAULT_QUALITY
-from ..common.digests import digest
-from ..common.outputs import DEFAULT_DWA_LEVEL
 from .budget import (
     SAMPLES_SPENT,
     SECONDS_SPENT,
-    Budget,
     reason_to_stop,
     result_over_decision,
     samples_left,
     samples_of_next_round,
     uniform_share,
 )
-from .decision import (
-    UNIFORM_STEPS,
-    first_pass_parts,
-    map_pays,
-    plan_round,
-    uniform_counts,
-    uniform_samples,
-    what_is_spent,
-)
+from .decision import UNIFORM_STEPS, what_is_spent
 from .folder import PassFolder
-from .journal import HALVES, Journal, Round, State
-from .reconstruction import Reconstruction
-from .renderer import Audit
-from .rendering import PartRendering
+from .frame import NO_ERROR_LEFT, FrameLoop
+from .journal import Round
 
-MIN_UNIFORM_COUNT = 1  # Samples of each half: a uniform round of fewer does not exist.
 NO_DECISION = ", too few of them to judge where samples should go"
-NO_ERROR_LEFT = "no error is left that more samples could lower"
-
-
-@dataclasses.dataclass(frozen=True)
-class Settings:
-    files: Frame
-    budget: Budget
-    first_pass: int = 8  # Samples per pixel
-    max_rounds: int = 8
-    quality: str = DEFAULT_QUALITY  # That of the last reconstruction
-    resume: bool = False
-    with_prior: bool = False  # Whether Open Image Denoise gives a second opinion
-    keep_passes: bool = False  # Whether the picture has the channels that only the reconstruction needs
-    compression: Optional[str] = None  # The picture's, in OpenImageIO's words; None: the scene's
-    dwa_level: float = DEFAULT_DWA_LEVEL
-    identity: dict = dataclasses.field(default_factory=dict)  # Digests of the scene: see journal.State
-    scene: Optional[str] = None  # Path of the input that is compared where the renderer lists none
-
-    @property
-    def passes_identity(self):
-        """Identity of the render passes. Passes of another identity cannot be added to them."""
-        return {**self.identity, "frame": self.files.number, "first_pass": self.first_pass}
-
-    def digest(self):
-        """The SHA-256 of the scene and of every setting that changes the picture."""
-        chosen = [self.passes_identity, dataclasses.asdict(self.budget), self.max_rounds, self.quality, self.with_prior]
-        scene = digest(self.scene) if self.scene else None
-        return hashlib.sha256(json.dumps([scene, *chosen], sort_keys=True).encode()).hexdigest()
-
-
-@dataclasses.dataclass(frozen=True)
-class Result:
-    audit: Audit
-    renderer: str  # Name and version
-    state: State
-    merged: pathlib.Path
-    error_map: pathlib.Path
-    error: float  # Estimated mean relative MSE of the picture
-    noise: float  # Mean relative noise variance of the samples' mean
-    samples: float  # Per pixel, mean of the frame
-    seconds: float
-    why_ended: str
 
 
 def run(renderer, polyrecon, settings, progress, tell=lambda notes: None):
@@ -95,37 +33,26 @@ def run(renderer, polyrecon, settings, progress, tell=lambda notes: None):
     tell: gets the notes about the scene before anything is rendered."""
     folder = PassFolder(settings.files.passes)
     with folder.claimed():
-        return _Loop(renderer, polyrecon, settings, folder, progress).run(tell)
+        return _Loop(renderer, polyrecon, settings, progress).run(tell)
 
 
-class _Loop:
-    def __init__(self, renderer, polyrecon, settings, folder, progress):
-        self.renderer, self.polyrecon, self.settings, self.progress = renderer, polyrecon, settings, progress
-        self.budget, self.folder = settings.budget, folder
-        new_state = State(settings.passes_identity, first_pass_parts=first_pass_parts(settings.first_pass, self.budget))
-        self.journal = Journal.open(self.folder, new_state, settings.resume)
-        self.state = self.journal.state
+class _Loop(FrameLoop):
+    def __init__(self, renderer, polyrecon, settings, progress):
+        super().__init__(renderer, polyrecon, settings, progress)
         if self.state.rounds and not self.state.rounds[-1].next_samples:
             self.state.rounds.pop()  # The loop ended there. Today's budget may be larger, so it is decided again.
-        self.rendering = PartRendering(renderer, self.folder, self.journal, self.announce)
-        self.why_ended = ""
+        self.open_passes()
         self.decision_seconds = None  # Measured at the last decision, or estimated; None: unknown
 
     def run(self, tell):
-        audit = self.renderer.begin(self.settings.files.number)
-        tell(audit.notes)
-        scene = self.settings.scene
-        self.journal.compare_inputs(audit.inputs or ({scene: digest(scene)} if scene else {}))
-        self.reconstruction = Reconstruction(
-            self.polyrecon, self.renderer, self.folder, self.state, audit, self.settings.with_prior
-        )
+        self.begin(tell)
         self.rendering.render_first_pass(self.settings.first_pass)
         if self.budget.seconds:
             self.decision_seconds = self.reconstruction.estimate_decision_seconds()
         self.continue_first_pass()
         while plan := self.state.next_round or self.decide():
             self.rendering.render_round(plan)
-        return self.finish(audit)
+        return self.finish()
 
     def continue_first_pass(self):
         """More uniform samples before the first decision: a share of a budget of seconds. Where that is none, a half of
@@ -157,68 +84,31 @@ class _Loop:
         self.decision_seconds = self.reconstruction.reconstruct_halves(number)
         begin = time.monotonic()
         spent = dataclasses.replace(self.spent(), error=self.reconstruction.join_halves(number))
-        samples, counts = self.place_samples(number, spent)
-        self.decision_seconds += time.monotonic() - begin
         error = spent.error if math.isfinite(spent.error) else None
+        samples, self.why_ended = self.samples_of_next_round(number, spent)
+        if samples:
+            if_uniform, _ = samples_of_next_round(self.budget, spent, UNIFORM_STEPS)
+            samples = self.start_placed_round(number, samples, if_uniform)
+            self.why_ended = "" if samples else NO_ERROR_LEFT
+        self.decision_seconds += time.monotonic() - begin
         self.state.rounds.append(
             Round(number, spent.samples, spent.seconds, self.decision_seconds, error, next_samples=samples)
         )
-        if samples:
-            self.rendering.start_round(plan_round(self.state, number + 1, counts, samples), counts)
         self.journal.save()
         return self.state.next_round
 
-    def place_samples(self, number, spent):
-        """(cost-weighted samples per pixel, counts of each half) of the next round; no samples where the loop ends, and
-        sets why_ended then."""
-        samples, self.why_ended = samples_of_next_round(self.budget, spent)
+    def samples_of_next_round(self, number, spent):
+        """(cost-weighted samples per pixel, reason): as in budget.py, and none beyond --max-rounds."""
+        samples, reason = samples_of_next_round(self.budget, spent)
         if samples and number >= self.settings.max_rounds:
-            samples, self.why_ended = 0.0, f"{number} rounds are done (--max-rounds)"
-        if not samples:
-            return 0.0, {}
-        taken = self.rendering.taken
-        if self.budget.samples:  # Every sample counts alike then, whatever it costs.
-            taken = {half: dataclasses.replace(taken[half], seconds=None) for half in HALVES}
-        counts = self.reconstruction.sample_counts(number, samples, taken)
-        uniform = self.uniform_samples(samples)
-        if uniform >= 2 and not map_pays(self.reconstruction.error_maps(number), taken, counts, uniform):
-            samples, _ = samples_of_next_round(self.budget, spent, UNIFORM_STEPS)
-            counts = self.uniform_counts(self.uniform_samples(samples))
-        if not any(values.any() for values in counts.values()):
-            self.why_ended = NO_ERROR_LEFT
-            return 0.0, {}
-        return samples, counts
+            return 0.0, f"{number} rounds are done (--max-rounds)"
+        return samples, reason
 
-    def start_uniform_round(self, number, samples):
-        """Starts a uniform round, or continues one, that takes as long as `samples` of a masked round would. None where
-        they are too few."""
-        counts = self.uniform_counts(self.uniform_samples(samples))
-        most = int(counts["a"].max())
-        if most < MIN_UNIFORM_COUNT:
-            return None
-        plan = plan_round(self.state, number, counts, len(HALVES) * most)
-        self.rendering.start_round(plan, counts)
-        return self.state.next_round
-
-    def finish(self, audit):
+    def finish(self):
         self.announce("result", done=1.0)
         error, noise = self.reconstruction.finish(self.settings)
         self.journal.save()
-        return Result(
-            audit=audit,
-            renderer=self.renderer.name,
-            state=self.state,
-            merged=self.folder.merged,
-            error_map=self.folder.error_map,
-            error=error,
-            noise=noise,
-            samples=self.state.samples,
-            seconds=self.journal.seconds(),
-            why_ended=self.why_ended,
-        )
-
-    def variance_is_known(self):
-        return all(len(self.state.files(half)) > 1 for half in HALVES)
+        return self.result(error, noise)
 
     def samples_left(self):
         """Samples per pixel that the budget still allows."""
@@ -233,12 +123,6 @@ class _Loop:
             self.decision_seconds,
             result_over_decision(self.settings.quality, self.settings.with_prior),
         )
-
-    def uniform_samples(self, samples):
-        return uniform_samples(self.budget, self.state.parts, samples)
-
-    def uniform_counts(self, samples):
-        return uniform_counts(self.rendering.taken["a"].counts.shape, self.state.parts, samples)
 
     def announce(self, phase, **figures):
         seconds, budget = self.journal.seconds(), self.budget

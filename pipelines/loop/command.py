@@ -1,16 +1,19 @@
 """The command line options of the adaptive loop, and the loop over the frames that they name."""
 
+import pathlib
 import shlex
 
 from ..common import exr, outputs
 from ..common.arguments import positive
-from ..common.command import Notes, each_frame
+from ..common.command import Notes, check_outputs, found_polyrecon, frames_of, progress_of
 from ..common.denoise_defaults import DEFAULT_QUALITY, QUALITIES
 from ..common.errors import DriverError, ExitCode
+from ..common.frame_names import is_pattern, without_number
 from ..common.terminal import print_lines
-from . import adaptive, prior, report
+from . import adaptive, prior, report, shot, shot_report
 from .budget import Budget
 from .folder import PassFolder
+from .frame import Settings
 from .journal import HALVES
 from .reconstruction import SETTINGS_ATTRIBUTE
 
@@ -20,11 +23,15 @@ MIN_FIRST_PASS = 2 * len(HALVES)
 def add_loop_arguments(parser, first_pass, first_pass_help):
     """Adds the options of the loop. first_pass is the driver's default number of uniform samples."""
     budget = parser.add_mutually_exclusive_group(required=True)
-    budget.add_argument("--budget-spp", type=positive, metavar="N", help="samples per pixel on average")
     budget.add_argument(
-        "--budget-seconds", type=positive, metavar="S", help="seconds for each frame, from start to result"
+        "--budget-spp", type=positive, metavar="N", help="samples per pixel, mean of all pixels of all --frames"
     )
-    budget.add_argument("--target", type=positive, metavar="E", help="estimated mean relative MSE of the result")
+    budget.add_argument(
+        "--budget-seconds", type=positive, metavar="S", help="seconds from start to result, for all --frames together"
+    )
+    budget.add_argument(
+        "--target", type=positive, metavar="E", help="estimated relative MSE, mean of all pixels of all --frames"
+    )
     parser.add_argument("--first-pass", type=int, default=first_pass, metavar="N", help=first_pass_help)
     parser.add_argument("--max-rounds", type=int, default=8, metavar="N", help="limit of the rounds of extra samples")
     parser.add_argument(
@@ -34,7 +41,11 @@ def add_loop_arguments(parser, first_pass, first_pass_help):
         "--with-prior", action="store_true", help="use Open Image Denoise's picture where it is better (--prior oidn)"
     )
     parser.add_argument("--error-map", metavar="FILE.exr", help="write the estimated error of each pixel")
-    parser.add_argument("--report", metavar="FILE.html", help="write a page with pictures and figures of every round")
+    parser.add_argument(
+        "--report",
+        metavar="FILE.html",
+        help="write a page with pictures and figures of every round; of several frames, one of the shot too",
+    )
     outputs.add_encoding(parser)
     parser.add_argument(
         "--keep-passes",
@@ -43,7 +54,7 @@ def add_loop_arguments(parser, first_pass, first_pass_help):
         "their variance and halves too",
     )
     parser.add_argument(
-        "--resume", action="store_true", help="continue with the passes of an earlier run; finished frames are skipped"
+        "--resume", action="store_true", help="continue with the passes of an earlier run; what is finished is skipped"
     )
 
 
@@ -57,54 +68,95 @@ def check_budget(parser, options):
 
 
 def run_frames(options, renderer, identity):
-    """Runs the loop for every frame of the options.
+    """Runs the loop for the frame of the options, or for several frames as a shot.
 
     identity: every setting that changes a sample, with a name; `scene` is the path of a file. --resume continues only
     passes of the same identity, frame and --first-pass, and of the same inputs (Audit.inputs)."""
-
-    def work(frame, polyrecon, progress):
-        settings = adaptive.Settings(
-            files=frame,
-            budget=Budget(options.budget_spp, options.budget_seconds, options.target),
-            first_pass=options.first_pass,
-            max_rounds=options.max_rounds,
-            quality=options.quality,
-            resume=options.resume,
-            with_prior=options.with_prior,
-            keep_passes=options.keep_passes,
-            compression=options.compression,
-            dwa_level=options.dwa_level,
-            identity=identity,
-            scene=identity.get("scene"),
-        )
-        if options.resume and is_finished(settings, options.overwrite):
-            said = [f"{frame.output}: finished already: skipped"]
-        else:
-            said = one_frame(settings, options.verbose, renderer, polyrecon, progress, notes.tell)
+    try:
+        frames = frames_of(options, of_all=("report",))
+        numbers = tuple(frame.number for frame in frames) if len(frames) > 1 else ()
+        page = shot_page(options.report, numbers)
+        files = [path for frame in frames for path in frame.outputs] + ([page] if page else [])
+        check_outputs(files, options.overwrite or options.resume)
+        if options.with_prior:
+            prior.check(options.polyrecon)
+        polyrecon = found_polyrecon(options)
+        settings = [
+            Settings(
+                files=frame,
+                budget=Budget(options.budget_spp, options.budget_seconds, options.target),
+                first_pass=options.first_pass,
+                max_rounds=options.max_rounds,
+                quality=options.quality,
+                resume=options.resume,
+                with_prior=options.with_prior,
+                keep_passes=options.keep_passes,
+                compression=options.compression,
+                dwa_level=options.dwa_level,
+                identity=identity,
+                scene=identity.get("scene"),
+                shot=numbers,
+            )
+            for frame in frames
+        ]
+        notes = Notes(options.quiet)
+        with progress_of(options, len(frames), together=bool(numbers)) as progress:
+            progress.begin_frame()
+            arguments = (options.verbose, renderer, polyrecon, progress, notes.tell)
+            if options.resume and is_finished(settings, options.overwrite):
+                said = [f"{entry.files.output}: finished already: skipped" for entry in settings]
+            else:
+                said = whole_shot(settings, page, *arguments) if numbers else one_frame(settings[0], *arguments)
         if not options.quiet:
             print_lines(*said)
+    finally:
+        renderer.close()
 
-    notes = Notes(options.quiet)
-    if options.with_prior:
-        prior.check(options.polyrecon)
-    each_frame(options, renderer, work, may_exist=options.resume)
+
+def shot_page(report_file, numbers):
+    """The path of a shot's page; None without --report and for a frame by itself."""
+    if not report_file or not numbers:
+        return None
+    return pathlib.Path(without_number(report_file, "shot") if is_pattern(report_file) else report_file)
 
 
 def is_finished(settings, overwrite):
-    """Whether an earlier run has finished a frame and removed its passes. A result of other settings is refused unless
-    `overwrite`."""
-    output, folder = settings.files.output, PassFolder(settings.files.passes)
-    if folder.journal.exists() or not output.exists():
+    """Whether an earlier run has finished all frames and removed the passes of one at least; those of the others are
+    removed then. Results of other settings are refused unless `overwrite`."""
+    gone = [entry for entry in settings if not PassFolder(entry.files.passes).journal.exists()]
+    made = [entry for entry in gone if entry.files.output.exists()]
+    if not made:
         return False
-    if exr.metadata(output).get(SETTINGS_ATTRIBUTE) == settings.digest():
+    strange = [entry for entry in made if not is_made_by(entry)]
+    if not strange and all(is_made_by(entry) for entry in settings):
+        for entry in settings:
+            if entry not in gone:
+                remove_passes(PassFolder(entry.files.passes))
         return True
     if overwrite:
         return False
+    if strange:
+        raise DriverError(
+            ExitCode.USAGE,
+            f"{strange[0].files.output}: is there, but not from this scene with these options, and its passes are not "
+            f"in {strange[0].files.passes}: add --overwrite to render it again",
+        )
     raise DriverError(
         ExitCode.USAGE,
-        f"{output}: is there, but not from this scene with these options, and its passes are not in {folder.path}: "
+        f"{made[0].files.output}: is finished and its passes are gone, but other frames of the shot are not finished: "
         "add --overwrite to render it again",
     )
+
+
+def is_made_by(settings):
+    """Whether the output is there and is a result of these settings."""
+    output = settings.files.output
+    return output.exists() and exr.metadata(output).get(SETTINGS_ATTRIBUTE) == settings.digest()
+
+
+def remove_passes(folder):
+    with folder.claimed():
+        folder.remove()
 
 
 def one_frame(settings, verbose, renderer, polyrecon, progress, tell):
@@ -123,9 +175,40 @@ def one_frame(settings, verbose, renderer, polyrecon, progress, tell):
     said = report.lines(result, settings, verbose)
     if settings.keep_passes:
         return [*said, f"  {passes_text(folder)}"]
-    with folder.claimed():
-        folder.remove()
+    remove_passes(folder)
     return said
+
+
+def whole_shot(settings, page, verbose, renderer, polyrecon, progress, tell):
+    """Renders the frames of a shot; returns the lines about them. page: path of the shot's page, or None."""
+    folders = [PassFolder(entry.files.passes) for entry in settings]
+    try:
+        result = shot.run(renderer, polyrecon, settings, progress, tell)
+    except BaseException as error:
+        if any(folder.journal.exists() for folder in folders):
+            size = outputs.size_text(sum(folder.size for folder in folders))
+            error.advice = f"; passes in {folders[0].path} and so on ({size}): --resume continues with them"
+        raise
+    write_pages(result, page, polyrecon)
+    for _, frame in result.frames:
+        tell(frame.audit.notes)
+    said = shot_report.lines(result, verbose)
+    if settings[0].keep_passes:
+        size = outputs.size_text(sum(folder.size for folder in folders))
+        return [*said, f"  passes in {folders[0].path} and so on ({size}): --resume continues with them"]
+    for folder in folders:
+        remove_passes(folder)
+    return said
+
+
+def write_pages(result, page, polyrecon):
+    """The pages of the frames, which show the passes, and that of the shot, which links them."""
+    for settings, frame in result.frames:
+        in_folder = PassFolder(settings.files.passes).report if settings.keep_passes else None
+        if pages := [path for path in (settings.files.report, in_folder) if path]:
+            report.write(frame, settings, polyrecon, pages)
+    if page:
+        shot_report.write(result, polyrecon, page)
 
 
 def passes_text(folder):

@@ -93,7 +93,7 @@ class Journal:
 
     def __init__(self, path, state):
         self.path, self.state = path, state
-        self._started = time.monotonic() - state.seconds
+        self.start_clock()
 
     @classmethod
     def open(cls, folder, new_state, resume):
@@ -129,9 +129,16 @@ class Journal:
                     "choose another --passes-dir",
                 )
 
+    def start_clock(self):
+        self._started = time.monotonic() - self.state.seconds
+
+    def stop_clock(self):
+        """Until it is started again, the clock stands: the loop works on another frame."""
+        self.state.seconds, self._started = self.seconds(), None
+
     def seconds(self):
-        """Seconds since the loop began, without the time between a kill and the next run."""
-        return time.monotonic() - self._started
+        """Seconds that the loop has worked on the frame, without the time between a kill and the next run."""
+        return self.state.seconds if self._started is None else time.monotonic() - self._started
 
     def save(self):
         self.state.seconds = self.seconds()

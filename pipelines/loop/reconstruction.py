@@ -106,16 +106,41 @@ class Reconstruction:
             file.unlink()
         return counts
 
-    def finish(self, settings):
-        """Merges all parts, reconstructs them, and writes the outputs of the settings. Returns the mean relative MSE
-        that is estimated for the picture, and that of the noise before."""
-        merged, clean, error_map = self.folder.merged, self.folder.clean, self.folder.error_map
+    def noise(self):
+        """Mean over the frame of the relative variance of the uniform samples' mean, by the difference of its halves.
+        No denoising is needed for it. NaN where no pixel is finite."""
+        a, b = (self._uniform_mean(half) for half in HALVES)
+        difference = sum(np.square(a[channel] - b[channel]) for channel in a)
+        total = sum(np.square(a[channel] + b[channel]) for channel in a)
+        return float(np.nanmean(difference / np.maximum(total, 1e-12)))
+
+    def _uniform_mean(self, half):
+        """Channels of the picture: the mean of the uniform samples of a half."""
+        parts = [part for part in self.state.parts if part.half == half and not part.masked]
+        samples = sum(part.samples for part in parts)
+        pictures = [self._picture(self.folder.path / part.file) for part in parts]
+        return {
+            c: sum(part.samples / samples * picture[c] for part, picture in zip(parts, pictures)) for c in pictures[0]
+        }
+
+    def merge_all(self, merged):
+        """Merges all parts into a file."""
         a, b = (self._files(half) for half in HALVES)
         self.polyrecon.run("merge", *a, "--half-b", *b, "-o", merged, *UNCOMPRESSED, "--quiet")
         self.renderer.complete(merged)
-        options = ["--quality", settings.quality, "--error-map", error_map, *self.prior, "--quiet"]
-        self.polyrecon.run("denoise", "-i", merged, "-o", clean, *options)
-        files = settings.files
+
+    def finish(self, settings):
+        """Merges all parts, reconstructs them, and writes the outputs of the settings. Returns the mean relative MSE
+        that is estimated for the picture, and that of the noise before."""
+        self.merge_all(self.folder.merged)
+        options = ["--quality", settings.quality, "--error-map", self.folder.error_map, *self.prior, "--quiet"]
+        self.polyrecon.run("denoise", "-i", self.folder.merged, "-o", self.folder.clean, *options)
+        return self.deliver(settings)
+
+    def deliver(self, settings):
+        """Writes the outputs of the settings from the reconstruction in the folder, which is removed there. Returns as
+        finish does."""
+        files, clean, error_map = settings.files, self.folder.clean, self.folder.error_map
         if files.error_map:
             outputs.copy(error_map, files.error_map)
         compression = outputs.encoding(settings.compression or self.audit.compression, settings.dwa_level)

@@ -79,9 +79,19 @@ class Renderer(abc.ABC):
     # sample twice, and may take more than the largest count.
     extra_in_sequence = True
 
+    # Whether frames before and after join in the reconstruction. Then the samples of different frames must be
+    # independent, as far as the renderer has seeds, and the first part of a frame holds its motion vectors, as far as
+    # the renderer has them. Set before the first frame.
+    shot = False
+
+    completes = False  # Whether `complete` adds anything.
+
     @abc.abstractmethod
     def begin(self, frame: Optional[int]) -> Audit:
-        """Opens a frame; None is the scene's current frame. Called once before the passes of a frame."""
+        """Opens a frame; None is the scene's current frame. Called before the passes of a frame.
+
+        The frames of a shot take turns, so a frame may be opened again. Its samples and features must be the same as
+        before."""
 
     @abc.abstractmethod
     def uniform(self, first: int, samples: int, target: pathlib.Path) -> None:

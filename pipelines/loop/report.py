@@ -10,9 +10,9 @@ from ..common.errors import DriverError
 from ..common.files import write_text
 from ..common.terminal import printable
 from ..common.work_folder import WorkFolder
-from .adaptive import NO_ERROR_LEFT
 from .budget import CONVERGENCE_RATE
 from .folder import PassFolder
+from .frame import NO_ERROR_LEFT
 
 TEMPLATE = pathlib.Path(__file__).with_name("report.html.j2")
 FEW_SAMPLES = 64  # per pixel; with more, --with-prior does not pay (docs/guide/adaptive.md)
@@ -30,21 +30,24 @@ def lines(result, settings, verbose):
         f"{result.samples:.3g} samples per pixel"
         + (f" in {len(rounds)} rounds" if len(rounds) > 1 else "")
         + (f"; features: {features}" if features else "; no features"),
-        f"  relative MSE {_error_text(result.noise)} before, {_error_text(result.error)} estimated after, "
-        f"{_seconds_text(result.seconds)}; {result.why_ended or 'the budget is spent'}",
-        f"  better: {_advice(result, settings)}",
+        f"  relative MSE {error_text(result.noise)} before, {error_text(result.error)} estimated after, "
+        f"{seconds_text(result.seconds)}; {result.why_ended or 'the budget is spent'}",
+        f"  better: {advice(result, settings)}",
     ]
     if not verbose:
         return found
-    found += [
-        f"  round {entry.round}: {entry.samples:.3g} spp, {entry.seconds:.1f} s, relMSE {_error_text(entry.error)}"
-        for entry in rounds
+    return [*found, *round_lines(result), *(f"  {line}" for line in audit.lines())]
+
+
+def round_lines(result):
+    return [
+        f"  round {entry.round}: {entry.samples:.3g} spp, {entry.seconds:.1f} s, relMSE {error_text(entry.error)}"
+        for entry in result.state.rounds
     ]
-    return [*found, *(f"  {line}" for line in audit.lines())]
 
 
-def _advice(result, settings):
-    """What would lower the error, as options of the driver."""
+def advice(result, settings):
+    """What would lower the error, as options of the driver. result: of a frame or a shot."""
     budget, factor = settings.budget, 2 ** (1 / CONVERGENCE_RATE)
     if result.why_ended == NO_ERROR_LEFT:
         return "nothing, the picture has no noise left"
@@ -65,15 +68,7 @@ def _advice(result, settings):
 def write(result, settings, polyrecon, pages):
     """Writes the report to each path of `pages`: a viewer with what each round knew, and figures. It holds its
     pictures and loads nothing. Where these cannot be made, a note says so."""
-    environment = jinja2.Environment(
-        autoescape=True,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        undefined=jinja2.StrictUndefined,
-        finalize=lambda value: printable(value) if isinstance(value, str) else value,
-    )
-    environment.filters["error_text"] = _error_text
-    template = environment.from_string(TEMPLATE.read_text(encoding="utf-8"))
+    template = template_of(TEMPLATE)
     with WorkFolder("report") as folder:
         try:
             page = _make_page(result, settings, polyrecon, template, _images(result, settings), folder)
@@ -82,6 +77,18 @@ def write(result, settings, polyrecon, pages):
             page = _make_page(result, settings, polyrecon, template, [], folder)
     for path in pages:
         write_text(path, page)
+
+
+def template_of(path):
+    environment = jinja2.Environment(
+        autoescape=True,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        undefined=jinja2.StrictUndefined,
+        finalize=lambda value: printable(value) if isinstance(value, str) else value,
+    )
+    environment.filters["error_text"] = error_text
+    return environment.from_string(path.read_text(encoding="utf-8"))
 
 
 def _make_page(result, settings, polyrecon, template, images, folder):
@@ -116,11 +123,11 @@ def _images(result, settings):
     return images
 
 
-def _seconds_text(seconds):
+def seconds_text(seconds):
     return f"{seconds:.1f} s" if seconds < 120 else f"{seconds / 60:.1f} min"
 
 
-def _error_text(error):
+def error_text(error):
     return "unknown" if error is None or not math.isfinite(error) else f"{error:.3g}"
 
 
@@ -133,8 +140,8 @@ def _curve(result):
     ]
     if not points:
         return {"points": [], "across": [], "upwards": []}
-    across = _LogAxis([x for _, x, _ in points], CURVE["left"], CURVE["right"])
-    upwards = _LogAxis([y for _, _, y in points], CURVE["bottom"], CURVE["top"])
+    across = LogAxis([x for _, x, _ in points], CURVE["left"], CURVE["right"])
+    upwards = LogAxis([y for _, _, y in points], CURVE["bottom"], CURVE["top"])
     return {
         "points": [
             {"x": across.at(x), "y": upwards.at(y), "label": f"{x:.3g} s, {y:.3g}", "frame": frame}
@@ -145,7 +152,7 @@ def _curve(result):
     }
 
 
-class _LogAxis:
+class LogAxis:
     """A logarithmic axis over some values, with room at both ends, from one pixel of the drawing to another."""
 
     def __init__(self, values, begin, end):

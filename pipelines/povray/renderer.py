@@ -24,6 +24,7 @@ from .subpixels import blocks
 
 LARGEST_GRID = 64
 MAX_OVER_WANTED = 2.0  # limit of a crop's samples over those that its counts want, if other crops left some over
+OF_A_FRAME = ("scene", "inputs", "choice", "first", "features", "seconds_per_sample", "audit")
 GRIDS = "polyreconGrids"  # attribute of a part: [[x0, y0, x1, y1, n], ...] in JSON
 
 
@@ -34,6 +35,7 @@ class PovrayRenderer(Renderer):
     number. camera: its place, "x,y,z", or None."""
 
     extra_in_sequence = False  # See _free_grids.
+    completes = True
 
     def __init__(self, path, options, povray, timeout, first_pass, camera=None):
         self.path, self.options, self.povray, self.timeout, self.camera = path, options, povray, timeout, camera
@@ -43,9 +45,25 @@ class PovrayRenderer(Renderer):
                 ExitCode.USAGE, f"--first-pass {first_pass}: must be the square of an even number: 4, 16, 36, 64"
             )
         self.scene = None
+        self.opened = {}  # What is known of each frame: see begin
 
     def begin(self, frame):
-        self.close()
+        """The frames of a shot take turns. What was made of a frame stays until the end, but for the subpixels of the
+        first pass, which are in its parts then."""
+        if not self.shot:
+            self.close()
+        if self.scene:
+            self.first = None
+            self.opened[self.frame] = {name: getattr(self, name) for name in OF_A_FRAME}
+            self.scene = None
+        self.frame = frame
+        if frame in self.opened:
+            vars(self).update(self.opened.pop(frame))
+            return self.audit
+        self.audit = self._open(frame)
+        return self.audit
+
+    def _open(self, frame):
         options = [*self.options, *([f"+SF{frame}", f"+EF{frame}"] if frame is not None else [])]
         self.inputs = SceneInputs()
         input_digests = self.inputs.begin_frame(inputs.used(self.path, options))
@@ -105,8 +123,10 @@ class PovrayRenderer(Renderer):
         exr.write(merged, {**exr.read(merged), **self.features})
 
     def close(self):
-        if self.scene:
-            self.scene.close()
+        for scene in [self.scene, *(known["scene"] for known in self.opened.values())]:
+            if scene:
+                scene.close()
+        self.scene, self.opened = None, {}
 
     def _shots(self, crops, counts, used):
         """Each crop with a grid that none of its pixels has had, and with no more samples than its counts want and

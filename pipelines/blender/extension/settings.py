@@ -42,10 +42,10 @@ class PolyreconSettings(bpy.types.PropertyGroup):
         ),
     )
     seconds: FloatProperty(
-        name="Seconds", default=120, min=1, soft_max=3600, precision=0, description="Time for each frame"
+        name="Seconds", default=120, min=1, soft_max=3600, precision=0, description="Time for all frames together"
     )
     spp: IntProperty(
-        name="Samples", default=64, min=1, soft_max=4096, description="Average samples per pixel of a frame"
+        name="Samples", default=64, min=1, soft_max=4096, description="Average samples per pixel of all frames"
     )
     target: FloatProperty(
         name="Error",
@@ -53,7 +53,7 @@ class PolyreconSettings(bpy.types.PropertyGroup):
         min=1e-6,
         soft_max=0.1,
         precision=4,
-        description="Mean relative squared error to reach",
+        description="Relative squared error to reach, the mean of all frames",
     )
     frames: EnumProperty(
         name="Frames",

@@ -7,6 +7,7 @@ It reads jobs from standard input, one JSON object a line, and answers each with
 with MARK. What Blender prints goes to standard error, since names in a file can hold such lines too. No script of the
 file runs, because of -Y and use_scripts=False."""
 
+import contextlib
 import json
 import os
 import sys
@@ -37,14 +38,15 @@ class Session:
     def __init__(self):
         self.scene = self.view_layer = self.mask_camera = None
 
-    def open(self, path, frame, visibility, view_layer, device, mask_camera, cache_folder):
+    def open(self, path, frame, visibility, view_layer, device, mask_camera, cache_folder, shot):
         """Opens the file, if it is not open, at a frame, sets it up, and returns what it is. Nothing is ever saved.
 
         device: "cpu", "gpu" or "auto". cache_folder: where simulations write; None if they cannot be kept from writing
-        elsewhere."""
+        elsewhere. shot: whether frames before and after will join, so that each frame needs a seed of its own."""
         if self.scene is None:
             self.load(path, visibility, view_layer, device, cache_folder)
         scene = self.scene
+        scene.cycles.use_animated_seed = shot or self.file_animates_seed
         self.go_to(self.file_frame if frame is None else frame)
         if scene.camera is None:
             raise RuntimeError("the scene has no camera")
@@ -63,6 +65,7 @@ class Session:
             "version": bpy.app.version_string,
             "effects": self.effects,
             "switches": self.switches,
+            "motion_blur": bool(scene.render.use_motion_blur),
             "user_passes": [name for _, name in self.user_passes if name != "use_pass_combined"],
             "device": self.device,
             "scene_device": self.scene_device,
@@ -90,6 +93,7 @@ class Session:
         if scene.render.engine != "CYCLES":
             raise RuntimeError(f"the scene's renderer is {scene.render.engine}, not Cycles")
         self.file_frame, self.file_seed = scene.frame_current, scene.cycles.seed
+        self.file_animates_seed = scene.cycles.use_animated_seed
         self.view_layer = self.choose_view_layer(view_layer)
         self.scene_device = scene.cycles.device
         self.device = devices.choose(scene, device)
@@ -98,6 +102,7 @@ class Session:
         self.output = self.output_of(scene.render.image_settings)
         self.choose_output(scene.render)
         self.user_passes = self.passes_on()
+        self.user_requests_vectors = any(name == "use_pass_vector" for _, name in self.user_passes)
         self.denoising_data = bool(self.view_layer.cycles.denoising_store_passes)
         self.choose_passes(visibility)
         scene.render.use_persistent_data = True
@@ -170,22 +175,35 @@ class Session:
                 setattr(owner, name, True)
         self.part_passes = self.passes_on()
 
-    def render(self, target, first, samples, crop=None, mask=None, user_passes=False):
+    def render(self, target, first, samples, crop=None, mask=None, user_passes=False, vectors=False):
         """Renders samples first .. first + samples - 1, which are of one sequence, to an EXR file.
 
         crop: [x0, y0, x1, y1] in pixels from the top left, end excluded. mask: see camera.py. user_passes: whether the
-        passes that the user switched on are rendered too."""
+        passes that the user switched on are rendered too. vectors: whether the motion vectors are."""
         scene = self.scene
         for owner, name in self.user_passes:
             setattr(owner, name, user_passes or (owner, name) in self.part_passes)
+        if vectors or not self.user_requests_vectors:
+            self.view_layer.use_pass_vector = vectors
         self.choose_samples(first, samples)
         self.choose_crop(crop)
         if self.mask_camera:
             self.mask_camera.use(mask)
         scene.render.filepath = target
         begin = time.monotonic()
-        bpy.ops.render.render(write_still=True, scene=scene.name)
+        with self.no_motion_blur() if vectors else contextlib.nullcontext():
+            bpy.ops.render.render(write_still=True, scene=scene.name)
         return {"seconds": time.monotonic() - begin}
+
+    @contextlib.contextmanager
+    def no_motion_blur(self):
+        """Cycles writes no motion vectors of a picture with motion blur."""
+        render = self.scene.render
+        blurs, render.use_motion_blur = render.use_motion_blur, False
+        try:
+            yield
+        finally:
+            render.use_motion_blur = blurs
 
     def choose_samples(self, first, samples):
         cycles = self.scene.cycles

@@ -88,6 +88,24 @@ def moving(scene):
     scene.frame_set(2)
 
 
+def shot(scene):
+    """Four frames with a moving camera. In the third a small lamp behind glass lights the scene in place of the sky,
+    which makes that frame far noisier."""
+    caustic(scene)
+    scene.render.resolution_x, scene.render.resolution_y = 48, 28
+    camera, lamp, glass = bpy.data.objects["Camera"], bpy.data.lights["Lamp"], bpy.data.objects["Sphere.001"]
+    lamp.size = 0.1
+    sky = scene.world.node_tree.nodes["Background"].inputs[1]
+    for frame in range(1, 5):
+        camera.location.x = 0.3 + 0.1 * frame
+        camera.keyframe_insert("location", frame=frame)
+        lamp.energy, sky.default_value, glass.hide_render = (3000, 0.003, False) if frame == 3 else (0, 1, True)
+        lamp.keyframe_insert("energy", frame=frame)
+        sky.keyframe_insert("default_value", frame=frame)
+        glass.keyframe_insert("hide_render", frame=frame)
+    scene.frame_set(1)
+
+
 def seed_animated(scene):
     for frame in (1, 2):
         scene.cycles.seed = 40 + frame
@@ -252,6 +270,7 @@ MADE = (
     panoramic,
     still_motion_blur,
     moving,
+    shot,
     seed_animated,
     on_a_card,
     switched_on,

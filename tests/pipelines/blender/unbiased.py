@@ -21,6 +21,7 @@ from pipelines.common.polyrecon_cli import Polyrecon
 from pipelines.common.progress import Progress
 from pipelines.loop import adaptive
 from pipelines.loop.budget import Budget
+from pipelines.loop.frame import Settings
 
 MAKE_SCENE = pathlib.Path(__file__).with_name("make_scene.py")
 
@@ -56,9 +57,7 @@ def main():
             for seed in range(options.seeds):
                 renderer.offset = seed * 4096
                 passes = folder / f"p{seed}"
-                settings = adaptive.Settings(
-                    Frame(None, passes, folder / "o.exr"), Budget(samples=options.spp), quality="draft"
-                )
+                settings = Settings(Frame(None, passes, folder / "o.exr"), Budget(samples=options.spp), quality="draft")
                 result = adaptive.run(renderer, polyrecon, settings, Progress("none"))
                 adapted.append(picture(result.merged))
                 counts.append(exr.read(result.merged)["ViewLayer.Sample Count.X"])

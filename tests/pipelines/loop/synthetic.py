@@ -14,6 +14,7 @@ from pipelines.common.polyrecon_cli import Polyrecon
 from pipelines.common.progress import Progress
 from pipelines.loop import adaptive
 from pipelines.loop.budget import Budget
+from pipelines.loop.frame import Settings
 from pipelines.loop.renderer import RENDER_SECONDS, SAMPLE_COUNT, Audit, Renderer
 
 
@@ -70,7 +71,7 @@ def loop(
     **size,
 ):
     folder = pathlib.Path(folder)
-    settings = adaptive.Settings(
+    settings = Settings(
         Frame(frame, folder / "passes", folder / "out.exr"),
         budget,
         resume=resume,

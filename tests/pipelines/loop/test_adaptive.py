@@ -114,7 +114,7 @@ class Budgets(Folder):
     def test_a_half_without_samples_has_no_part_in_that_round(self):
         counts = {"a": np.zeros((64, 96), int), "b": np.repeat([[4, 0]], 48, axis=1) * np.ones((64, 1), int)}
         decided = unittest.mock.patch.object(Reconstruction, "sample_counts", return_value=counts)
-        with decided, unittest.mock.patch("pipelines.loop.adaptive.map_pays", return_value=True):
+        with decided, unittest.mock.patch("pipelines.loop.frame.map_pays", return_value=True):
             _, result = loop(self.folder, Budget(samples=64), max_rounds=1)
         parts = [part for part in result.state.parts if part.round == 1]
         self.assertEqual([(part.half, part.samples) for part in parts], [("b", 2)])

@@ -8,8 +8,8 @@ from pipelines.common.command import Frame
 from pipelines.common.errors import DriverError, ExitCode
 from pipelines.common.polyrecon_cli import Polyrecon
 from pipelines.loop import report
-from pipelines.loop.adaptive import Settings
 from pipelines.loop.budget import Budget
+from pipelines.loop.frame import Settings
 from tests.pipelines.loop.synthetic import loop
 
 

@@ -69,6 +69,22 @@ class Adaptive(InFolder):
         self.assertLess(errors[1], errors[0])
         self.assertTrue(os.path.getsize("ball.passes/report.html") > 10000)
 
+    def test_the_frames_of_a_shot_share_its_budget(self):
+        """The lamp is noisy in the second of three frames only."""
+        plain = "light_source { <0, 3, -2> rgb 1 }\n"
+        lamps = f"#if (frame_number = 2)\n{NOISY_LAMP}#else\n{plain}#end\n"
+        self.scene(HEAD % 1 + CAMERA + BALL + lamps, "ball.pov")
+        command = self.command("--budget-spp", "32", "--frames", "1-3", "--quality", "draft")
+        command[command.index("ball.exr")] = "ball_#.exr"
+        done = subprocess.run([*command, "+KFF3"], capture_output=True, text=True)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertRegex(done.stdout, r"shot: 3 frames, .* samples per pixel on average")
+        counts = [exr.read(f"ball_{n}.passes/merged.exr")["Sample Count.X"].mean() for n in (1, 2, 3)]
+        self.assertGreater(counts[1], max(counts[0], counts[2]))
+        self.assertLess(sum(counts), 3 * (32 + 1))
+        for n in (1, 2, 3):
+            self.assertIn("Denoising Normal.X", exr.read(f"ball_{n}.passes/merged.exr"))
+
     def test_case34_a_scene_without_noise_ends_after_the_first_pass(self):
         # The camera sees an even wall, so all subpixels are equal.
         wall = "plane { -z, -2 hollow pigment { rgb <0.5,0.25,0.125> } finish { ambient 1 diffuse 0 } }\n"
