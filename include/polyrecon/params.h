@@ -1,4 +1,4 @@
-// The parameters of a reconstruction, with their defaults and presets. Distances are pixels unless stated otherwise.
+// The parameters of a reconstruction, with the defaults of each quality. Distances are pixels unless stated otherwise.
 #pragma once
 
 #include <array>
@@ -89,7 +89,7 @@ struct Components {
   bool restore_totals = true;    ///< The sum of each channel of the result is that of the input.
 };
 
-/// All parameters of a reconstruction with the defaults of the preset Standard.
+/// All parameters of a reconstruction with the defaults of Quality::Standard.
 struct Params {
   int stages = 2;                            ///< Rounds of error estimation, equations (8) and (9), 1..4.
   int levels = 3;                            ///< Resolutions: the frame, its half, its quarter, ...; 1..5.
@@ -119,7 +119,7 @@ struct Params {
   std::size_t max_memory = std::size_t{4} << 30;  ///< Bytes; a frame that needs more is worked in tiles.
 };
 
-/// The parameters of a preset.
+/// The parameters of a quality.
 Params params_for(Quality quality);
 
 /// Throws Error{Usage} that names the first value out of its range.

@@ -30,7 +30,7 @@ extern "C" {
 
 // NOLINTBEGIN(modernize-use-using,readability-identifier-naming): names of C
 
-/// What a call came to. The values are the program's exit codes.
+/// The outcome of a call. The values are the program's exit codes.
 typedef enum polyrecon_error {
   POLYRECON_OK = 0,
   POLYRECON_INTERNAL = 1,      ///< A fault of the library.
@@ -114,8 +114,8 @@ POLYRECON_API polyrecon_error polyrecon_describe_image(polyrecon_filter* filter,
 POLYRECON_API polyrecon_error polyrecon_get_image(polyrecon_filter* filter, const char* name,
                                                   const polyrecon_image* target);
 
-/// What the last polyrecon_execute did, as JSON (docs/reference/report.md); empty before it. Valid until the next call
-/// with the filter.
+/// The report of the last polyrecon_execute, as JSON (docs/reference/report.md); empty before it. Valid until the next
+/// call with the filter.
 POLYRECON_API const char* polyrecon_get_report(const polyrecon_filter* filter);
 
 // NOLINTEND(modernize-use-using,readability-identifier-naming)

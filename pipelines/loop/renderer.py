@@ -49,13 +49,13 @@ class Audit:
     beauty: str = ""  # Layer of the picture in the parts, "ViewLayer.Combined"; "": bare R, G, B
     switches: list[Switch] = dataclasses.field(default_factory=list)  # Printed, and a table of the report
     passes: dict[str, str] = dataclasses.field(default_factory=dict)  # Name of each pass, and why it is rendered
-    notes: list[str] = dataclasses.field(default_factory=list)  # What the user should know before any rendering
-    details: list[str] = dataclasses.field(default_factory=list)  # What was found, for who wants to know
+    notes: list[str] = dataclasses.field(default_factory=list)  # Printed before any rendering
+    details: list[str] = dataclasses.field(default_factory=list)  # Printed with --verbose
     method: str = ""  # How extra samples are rendered, in a few words
-    features: list[str] = dataclasses.field(default_factory=list)  # What guides the reconstruction: "albedo"
+    features: list[str] = dataclasses.field(default_factory=list)  # The passes that guide the result: "albedo"
     working: list[str] = dataclasses.field(default_factory=list)  # Layers of the parts that the user did not request
     float_colours: bool = False  # Whether the scene requests a picture of 32-bit floats
-    compression: str = "zip"  # Of the picture: that of the scene's own output, in OpenImageIO's words
+    compression: str = "zip"  # The picture's: that of the scene's own output, in OpenImageIO's words
     inputs: dict[str, str] = dataclasses.field(
         default_factory=dict
     )  # SHA-256 of each file that the picture shows; none: that of the scene is compared
@@ -64,7 +64,7 @@ class Audit:
         self.notes += [str(switch) for switch in self.switches if switch.changes_picture]
 
     def lines(self):
-        """What was changed and decided, for the terminal."""
+        """Lines about changes and decisions, for the terminal."""
         found = [f"{switch} (saves {switch.saves})" if switch.saves else str(switch) for switch in self.switches]
         return [*found, f"extra samples: {self.method}", *self.details]
 

@@ -20,7 +20,7 @@ CURVE = {"width": 1000, "height": 300, "left": 74, "right": 984, "top": 14, "bot
 
 
 def lines(result, settings, verbose):
-    """What is printed of a frame: what was rendered, what came of it, what would make it better. `verbose`: what was
+    """The lines about a frame: what was rendered, what came of it, what would make it better. `verbose`: what was
     decided on the way, too."""
     audit, rounds, files = result.audit, result.state.rounds, settings.files
     frame = "" if files.number is None else f"frame {files.number}, "
@@ -47,7 +47,7 @@ def round_lines(result):
 
 
 def advice(result, settings):
-    """What would lower the error, as options of the driver. result: of a frame or a shot."""
+    """The options of the driver that would lower the error. result: of a frame or a shot."""
     budget, factor = settings.budget, 2 ** (1 / CONVERGENCE_RATE)
     if result.why_ended == NO_ERROR_LEFT:
         return "nothing, the picture has no noise left"
@@ -108,7 +108,7 @@ def _make_page(result, settings, polyrecon, template, images, folder):
 
 
 def _images(result, settings):
-    """What was known after each round, and at the end: the images of the page, with a file for each."""
+    """The images of the page, with a file for each: what was known after each round, and at the end."""
     passes, rounds = PassFolder(settings.files.passes), result.state.rounds
     in_rounds = [
         ("input", "noisy", 0, result.merged),

@@ -51,7 +51,7 @@ class Result:
     samples: np.ndarray | None
     """(height, width): extra samples of each pixel; None without `budget` or `target`."""
     report: dict[str, Any]
-    """What was done, counted and estimated: docs/reference/report.md."""
+    """The steps taken, with their counts and estimates: docs/reference/report.md."""
 
 
 def as_image(name: str, array: npt.ArrayLike) -> np.ndarray:

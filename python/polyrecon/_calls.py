@@ -106,7 +106,7 @@ def denoise(
 
 
 def _by_pass(value):  # type: ignore[no-untyped-def]
-    """What is given for the beauty alone, or by the names of passes."""
+    """The arguments by the names of passes; an argument without names is the beauty's."""
     if value is None:
         return {}
     return value if isinstance(value, Mapping) else {"beauty": value}

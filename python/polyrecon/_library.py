@@ -17,7 +17,7 @@ INTERRUPTED = 130
 
 
 class Error(Exception):
-    """What failed, in one line that names the image, file or parameter.
+    """A failure, in one line that names the image, file or parameter.
 
     exit_code: that of the program `polyrecon` (docs/reference/exit_codes.md): 2 wrong use, 3 a damaged input or one
     that does not fit, 4 something is missing, 5 a file cannot be written, 6 the result failed a check, 33 too little

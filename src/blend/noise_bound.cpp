@@ -9,10 +9,10 @@
 namespace polyrecon {
 namespace {
 
-constexpr int radius = 3;
+constexpr int bound_radius = 3;
 constexpr double deviations = 5;
 
-/// Applies reduce(first, end) to the values of a row within `radius` of each pixel.
+/// Applies reduce(first, end) to the values of a row within `bound_radius` of each pixel.
 template <typename Reduce>
 Image along_rows(const Image& in, const Reduce& reduce) {
   Image out(in.width(), in.height(), in.channels());
@@ -20,7 +20,7 @@ Image along_rows(const Image& in, const Reduce& reduce) {
     for (int c = 0; c < in.channels(); ++c) {
       const Real* row = in.row(c, y);
       for (int x = 0; x < in.width(); ++x)
-        out.at(x, y, c) = reduce(row + std::max(x - radius, 0), row + std::min(x + radius + 1, in.width()));
+        out.at(x, y, c) = reduce(row + std::max(x - bound_radius, 0), row + std::min(x + bound_radius + 1, in.width()));
     }
   });
   return out;
@@ -32,7 +32,7 @@ template <typename Combine, typename Finish>
 Image along_columns(const Image& in, const Combine& combine, const Finish& finish) {
   Image out(in.width(), in.height(), in.channels());
   for_rows(in.height(), [&](int y) {
-    const int first = std::max(y - radius, 0), end = std::min(y + radius + 1, in.height());
+    const int first = std::max(y - bound_radius, 0), end = std::min(y + bound_radius + 1, in.height());
     for (int c = 0; c < in.channels(); ++c) {
       Real* row = out.row(c, y);
       std::copy_n(in.row(c, first), in.width(), row);

@@ -11,7 +11,7 @@
 namespace polyrecon {
 namespace {
 
-constexpr int radius = 2;
+constexpr int around_radius = 2;
 
 double sum_over(const Image& image, int channel, const Rect& area) {
   double sum = 0;
@@ -49,7 +49,7 @@ std::size_t raise_undershoot(const Image& input, Image& image) {
   std::atomic<std::size_t> raised{0};
   for_rows(image.height(), [&](int y) {
     for (int x = 0; x < image.width(); ++x) {
-      const Rect around = intersect(grow({x, y, x + 1, y + 1}, radius), image.bounds());
+      const Rect around = intersect(grow({x, y, x + 1, y + 1}, around_radius), image.bounds());
       bool any = false;
       for (int c = 0; c < 3; ++c) {
         // A value that is not below the input of its pixel is not below all inputs around it.

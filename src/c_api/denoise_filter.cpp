@@ -5,46 +5,37 @@
 #include <utility>
 #include <vector>
 
-#include "c_api/filter.h"
 #include "c_api/memory_frame.h"
 #include "c_api/output_file.h"
+#include "c_api/reading_filter.h"
 #include "denoisers/denoisers.h"
 #include "pipeline/memory.h"
 #include "pipeline/part_of_beauty.h"
 #include "pipeline/report_json.h"
-#include "polyrecon/read_frame.h"
 #include "polyrecon/reconstruct.h"
 #include "polyrecon/sample_map.h"
 
 namespace polyrecon {
 namespace {
 
-constexpr double no_limit = 1e18;
-
 /// Reconstructs a frame: of images in memory, or of a file.
-class DenoiseFilter : public Filter {
+class DenoiseFilter : public ReadingFilter {
  public:
   DenoiseFilter() {
-    add("input", Parameter::of(input_));
-    add("output", Parameter::of(output_));
-    add("view layer", Parameter::of(view_layer_));
-    add("view", Parameter::of(view_));
-    add("map", Parameter::of(map_));
-    add("aov", Parameter::of(aovs_));
+    add_for_run("output", Parameter::of(output_));
     add("quality", Parameter::of(quality_));
     add("prior", Parameter::of(prior_));
     add("oidn", Parameter::of(oidn_));
     add("oidn device", Parameter::of(oidn_device_));
     add("stages", Parameter::of(stages_, 0, 4));
     add("order", Parameter::of(order_, -1, 4));
-    add("max memory", Parameter::of(max_memory_, 1, no_limit));
-    add("samples", Parameter::of(samples_, 0, no_limit, true));
+    add_for_run("max memory", Parameter::of(max_memory_, 1, Parameter::no_limit));
     add("alpha", Parameter::of(alpha_));
     add("wrap", Parameter::of(wrap_));
     add("keep noisy", Parameter::of(keep_noisy_));
-    add("budget", Parameter::of(map_params_.budget, 0, no_limit, true));
-    add("target", Parameter::of(map_params_.target, 0, no_limit, true));
-    add("max samples", Parameter::of(map_params_.max_samples, 0, no_limit, true));
+    add_for_run("budget", Parameter::of(map_params_.budget, 0, Parameter::no_limit, true));
+    add_for_run("target", Parameter::of(map_params_.target, 0, Parameter::no_limit, true));
+    add_for_run("max samples", Parameter::of(map_params_.max_samples, 0, Parameter::no_limit, true));
   }
 
  protected:
@@ -62,11 +53,11 @@ class DenoiseFilter : public Filter {
     if (map_params_.budget > 0 || map_params_.target > 0) add_sample_map(result, in, progress, made);
     if (!output_.empty()) {
       const WriteOptions options{keep_noisy_,
-                                 {settings(params), identity_of_input(in.source), result.error.mean_relative_mse}};
+                                 {settings(), identity_of_input(in.source), result.error.mean_relative_mse}};
       for (const std::string& note : write_like(in, result_layers(in, result, alpha_), output_, options))
         in.notes.push_back(note);
     }
-    made.report = {{"polyrecon", POLYRECON_VERSION}, {"input", input_}, {"output", output_}};
+    made.report = {{"polyrecon", POLYRECON_VERSION}, {"input", input_path()}, {"output", output_}};
     made.report.update(report_json(result.report));
     made.report["notes"] = in.notes;
     for (NamedImage& image : result_images(in.frame, std::move(result), alpha_))
@@ -76,13 +67,13 @@ class DenoiseFilter : public Filter {
 
  private:
   void check_parameters() const {
-    if (!input_.empty() && !inputs().empty())
+    if (!input_path().empty() && !inputs().empty())
       throw Error(ExitCode::Usage, "there are images and 'input': take one of them away");
-    if (!output_.empty() && input_.empty())
+    if (!output_.empty() && input_path().empty())
       throw Error(ExitCode::Usage,
                   "'output' is a copy of the file 'input' with new layers; images in memory are written by the filter "
                   "'write'");
-    if (input_.empty() && (!map_.empty() || !aovs_.empty() || !view_layer_.empty() || !view_.empty()))
+    if (input_path().empty() && chooses_layers())
       throw Error(ExitCode::Usage, "'map', 'aov', 'view layer' and 'view' choose layers of the file 'input'");
     quality();
     if (map_params_.budget > 0 || map_params_.target > 0) validate(map_params_);
@@ -132,26 +123,21 @@ class DenoiseFilter : public Filter {
 
   ReadResult read(const Params& params, bool runs_denoiser) const {
     ReadResult in;
-    if (input_.empty()) {
-      in.frame = frame_from_memory(inputs(), samples_, in.notes);
+    if (input_path().empty()) {
+      in.frame = frame_from_memory(inputs(), read_options().samples, in.notes);
       in.frame.wraps = wrap_;
       return in;
     }
-    ReadOptions options;
-    for (const std::string& role : map_) options.map.push_back(parse_mapping(role));
-    options.aovs = aovs_;
-    options.view_layer = view_layer_;
-    options.view = view_;
-    options.samples = samples_;
+    ReadOptions options = read_options();
     if (wrap_) options.wrap = Wrap::X;
     options.accept = [&](const std::string& path, FrameShape shape) {
       if (runs_denoiser) add_denoiser(shape);
       require_memory(path, shape, params);
     };
-    in = read_frame(input_, options);
+    in = read_frame(input_path(), options);
     if (in.source.pictures.size() > 1)
-      in.notes.push_back(fmt::format("{}: only {} is denoised; the other {} pictures of the file stay noisy", input_,
-                                     name_of(LayerView{in.source.view_layer, in.source.view}),
+      in.notes.push_back(fmt::format("{}: only {} is denoised; the other {} pictures of the file stay noisy",
+                                     input_path(), name_of(LayerView{in.source.view_layer, in.source.view}),
                                      in.source.pictures.size() - 1));
     return in;
   }
@@ -180,15 +166,8 @@ class DenoiseFilter : public Filter {
     return layers;
   }
 
-  /// What a result depends on, for its file.
-  std::string settings(const Params& params) const {
-    return fmt::format("library: quality {}, stages {}, order {}{}{}", quality_, params.stages, params.max_order,
-                       prior_.empty() ? "" : ", prior " + prior_, alpha_ ? ", alpha" : "");
-  }
-
-  std::string input_, output_, view_layer_, view_, quality_ = "standard", prior_, oidn_, oidn_device_;
-  std::vector<std::string> map_, aovs_;
-  double stages_ = 0, order_ = -1, samples_ = 0;
+  std::string output_, quality_ = "standard", prior_, oidn_, oidn_device_;
+  double stages_ = 0, order_ = -1;
   double max_memory_ = static_cast<double>(Params().max_memory);
   bool alpha_ = false, wrap_ = false, keep_noisy_ = false;
   SampleMapParams map_params_;

@@ -4,17 +4,14 @@
 #include <array>
 #include <utility>
 
-#include "c_api/filter.h"
 #include "c_api/memory_frame.h"
 #include "c_api/output_file.h"
+#include "c_api/reading_filter.h"
 #include "polyrecon/merge.h"
-#include "polyrecon/read_frame.h"
 #include "polyrecon/write_result.h"
 
 namespace polyrecon {
 namespace {
-
-constexpr double no_limit = 1e18;
 
 void require_path(const std::string& path, const char* name) {
   if (path.empty()) throw Error(ExitCode::Usage, fmt::format("set the text '{}'", name));
@@ -25,25 +22,13 @@ void require_path(const std::string& path, const char* name) {
 }
 
 /// Reads the passes of a frame, ready to be given to the filter "denoise".
-class ReadFilter : public Filter {
- public:
-  ReadFilter() {
-    add("input", Parameter::of(input_));
-    add("view layer", Parameter::of(options_.view_layer));
-    add("view", Parameter::of(options_.view));
-    add("map", Parameter::of(map_));
-    add("aov", Parameter::of(options_.aovs));
-    add("samples", Parameter::of(options_.samples, 0, no_limit, true));
-  }
-
+class ReadFilter : public ReadingFilter {
  protected:
   void check_image(const std::string& name) const override { refuse_image(name); }
 
   Made run(Progress& /*progress*/) override {
-    require_path(input_, "input");
-    ReadOptions options = options_;
-    for (const std::string& role : map_) options.map.push_back(parse_mapping(role));
-    const ReadResult in = read_frame(input_, options);
+    require_path(input_path(), "input");
+    const ReadResult in = read_frame(input_path(), read_options());
     Made made;
     made.images = named_images(in.frame);
     auto layers = nlohmann::ordered_json::array();
@@ -52,16 +37,11 @@ class ReadFilter : public Filter {
                         {"holds", name_of(choice.companion)},
                         {"layer", choice.layer},
                         {"why", choice.why}});
-    made.report = {{"input", input_},        {"view_layer", in.source.view_layer},
+    made.report = {{"input", input_path()},  {"view_layer", in.source.view_layer},
                    {"view", in.source.view}, {"wraps", in.frame.wraps},
                    {"roles", layers},        {"notes", in.notes}};
     return made;
   }
-
- private:
-  std::string input_;
-  std::vector<std::string> map_;
-  ReadOptions options_;
 };
 
 /// Writes images: as new layers of a copy of another file, or as a file of their own.
@@ -145,7 +125,7 @@ class MergeFilter : public Filter {
     add("input", Parameter::of(inputs_));
     add("half B", Parameter::of(half_b_));
     add("output", Parameter::of(output_));
-    add("samples", Parameter::of(samples_, 0, no_limit, true));
+    add("samples", Parameter::of(samples_, 0, Parameter::no_limit, true));
     add("compress", Parameter::of(compress_));
   }
 

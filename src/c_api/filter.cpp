@@ -21,6 +21,7 @@ Parameter Parameter::of(double& value, double least, double most, bool fraction)
       throw Error(ExitCode::Usage, fmt::format("{:g} is no whole number", given));
     value = given;
   };
+  parameter.values = [&value] { return std::vector<std::string>{fmt::format("{}", value)}; };
   return parameter;
 }
 
@@ -30,22 +31,38 @@ Parameter Parameter::of(bool& value) {
     if (given != 0 && given != 1) throw Error(ExitCode::Usage, fmt::format("{:g} is neither 0 nor 1", given));
     value = given == 1;
   };
+  parameter.values = [&value] { return std::vector<std::string>{value ? "1" : "0"}; };
   return parameter;
 }
 
 Parameter Parameter::of(std::string& value) {
   Parameter parameter;
   parameter.text = [&value, initial = value](const std::string* given) { value = given ? *given : initial; };
+  parameter.values = [&value] { return std::vector<std::string>{value}; };
   return parameter;
 }
 
 Parameter Parameter::of(std::vector<std::string>& values) {
   Parameter parameter;
   parameter.texts = &values;
+  parameter.values = [&values] { return values; };
   return parameter;
 }
 
-Filter::Filter() { add("threads", Parameter::of(threads_, 0, most_threads)); }
+Filter::Filter() { add_for_run("threads", Parameter::of(threads_, 0, most_threads)); }
+
+void Filter::add(const std::string& name, Parameter parameter) {
+  defaults_.emplace(name, parameter.values());
+  parameters_.emplace(name, std::move(parameter));
+}
+
+std::string Filter::settings() const {
+  std::vector<std::string> found;
+  for (const auto& [name, initial] : defaults_)
+    if (const std::vector<std::string> values = parameters_.at(name).values(); values != initial)
+      for (const std::string& value : values) found.push_back(fmt::format("{} '{}'", name, value));
+  return fmt::format("library: {}", fmt::join(found, ", "));
+}
 
 Parameter& Filter::parameter(const std::string& name) {
   const auto found = parameters_.find(name);

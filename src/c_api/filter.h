@@ -15,11 +15,14 @@
 
 namespace polyrecon {
 
-/// A parameter of a filter. Exactly one of the three functions is set.
+/// A parameter of a filter. Exactly one of number, text and texts is set.
 struct Parameter {
-  std::function<void(double)> number;            ///< Takes the value.
-  std::function<void(const std::string*)> text;  ///< Takes the value; null: the default.
-  std::vector<std::string>* texts = nullptr;     ///< Gets one more value with each call.
+  static constexpr double no_limit = 1e18;  ///< As the most of a number.
+
+  std::function<void(double)> number;                ///< Takes the value.
+  std::function<void(const std::string*)> text;      ///< Takes the value; null: the default.
+  std::vector<std::string>* texts = nullptr;         ///< Gets one more value with each call.
+  std::function<std::vector<std::string>()> values;  ///< The values as texts.
 
   /// A number from least to most, whole unless `fraction`.
   static Parameter of(double& value, double least, double most, bool fraction = false);
@@ -54,7 +57,7 @@ class Filter {
  protected:
   Filter();
 
-  /// What run made.
+  /// The results of run.
   struct Made {
     std::vector<NamedImage> images;
     nlohmann::ordered_json report = nlohmann::ordered_json::object();
@@ -64,7 +67,13 @@ class Filter {
   virtual void check_image(const std::string& name) const = 0;
   virtual Made run(Progress& progress) = 0;
 
-  void add(const std::string& name, Parameter parameter) { parameters_.emplace(name, std::move(parameter)); }
+  /// Adds a parameter that the result depends on.
+  void add(const std::string& name, Parameter parameter);
+  /// Adds a parameter that names files or says how the filter runs: it is not among the settings.
+  void add_for_run(const std::string& name, Parameter parameter) { parameters_.emplace(name, std::move(parameter)); }
+  /// The parameters that the result depends on and whose values differ from the defaults: "quality 'draft', stages
+  /// '2'".
+  std::string settings() const;
   const std::map<std::string, MemoryImage>& inputs() const { return inputs_; }
   /// The image of this name; empty without one.
   Image input(const std::string& name) const;
@@ -73,6 +82,7 @@ class Filter {
   Parameter& parameter(const std::string& name);
 
   std::map<std::string, Parameter> parameters_;
+  std::map<std::string, std::vector<std::string>> defaults_;  ///< For those that the result depends on.
   std::map<std::string, MemoryImage> inputs_;
   std::vector<NamedImage> images_;
   std::string report_;

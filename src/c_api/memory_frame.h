@@ -9,7 +9,7 @@
 
 namespace polyrecon {
 
-/// What an image of the filter "denoise" is to the frame, by its name: "albedo", "albedo variance", "aov Diffuse A".
+/// The place in a frame of an image of the filter "denoise", by name: "albedo", "albedo variance", "aov Diffuse A".
 struct ImagePlace {
   enum class Part { Mean, Variance, HalfA, HalfB };
 

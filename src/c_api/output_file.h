@@ -28,7 +28,7 @@ std::string identity_of_input(const FrameSource& source);
 /// New samples of the picture (Role::Beauty), of its alpha or of another layer (Role::Color).
 struct NewLayer {
   Role role = Role::Beauty;
-  std::string name;  ///< Of the layer, for Role::Color.
+  std::string name;  ///< The layer's, for Role::Color.
   Image image;
 };
 

@@ -12,17 +12,16 @@
 namespace polyrecon {
 namespace {
 
-constexpr double no_limit = 1e18;
 constexpr const char* cost_name = "cost";
 
 /// Distributes extra samples by an error map.
 class SampleMapFilter : public Filter {
  public:
   SampleMapFilter() {
-    add("budget", Parameter::of(params_.budget, 0, no_limit, true));
-    add("target", Parameter::of(params_.target, 0, no_limit, true));
-    add("max samples", Parameter::of(params_.max_samples, 0, no_limit, true));
-    add("samples", Parameter::of(samples_, 0, no_limit, true));
+    add("budget", Parameter::of(params_.budget, 0, Parameter::no_limit, true));
+    add("target", Parameter::of(params_.target, 0, Parameter::no_limit, true));
+    add("max samples", Parameter::of(params_.max_samples, 0, Parameter::no_limit, true));
+    add("samples", Parameter::of(samples_, 0, Parameter::no_limit, true));
   }
 
  protected:

@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <functional>
+#include <memory>
 
 namespace polyrecon {
 
@@ -15,6 +16,20 @@ struct Command {
   /// Throws Error{Usage} where the options contradict each other; looks at no file. May be empty.
   std::function<void()> check_options;
 };
+
+/// Parsing `sub` sets `chosen` to the work of a command whose exit code is always 0. check: null where no options
+/// contradict each other.
+template <typename Options>
+void set_callback(CLI::App& sub, const std::shared_ptr<Options>& options, void (*run)(const Options&),
+                  void (*check)(const Options&), Command& chosen) {
+  sub.callback([=, &chosen] {
+    chosen.run = [=] {
+      run(*options);
+      return 0;
+    };
+    if (check) chosen.check_options = [=] { check(*options); };
+  });
+}
 
 /// Each adds one command to app, with its options and examples. Parsing that command sets `chosen`.
 void setup_denoise(CLI::App& app, Command& chosen);

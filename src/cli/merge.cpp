@@ -93,13 +93,7 @@ void setup_merge(CLI::App& app, Command& chosen) {
       "  polyrecon merge part*.exr -o merged.exr\n"
       "  polyrecon merge subset*.exr -o merged.exr --samples 2\n"
       "  polyrecon merge a*.exr --half-b b*.exr -o merged.exr");
-  sub->callback([o, &chosen] {
-    chosen = {[o] {
-                run(*o);
-                return 0;
-              },
-              [o] { check(*o); }};
-  });
+  set_callback(*sub, o, run, check, chosen);
 }
 
 }  // namespace polyrecon

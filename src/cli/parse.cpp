@@ -57,7 +57,7 @@ std::vector<std::string> option_names(const CLI::App& app) {
   return names;
 }
 
-/// What is wrong with words that no option takes.
+/// The message about words that no option takes.
 std::string unexpected(const CLI::App& app, const std::string& message) {
   const auto subs = app.get_subcommands();
   const CLI::App& place = subs.empty() ? app : *subs.front();

@@ -16,6 +16,7 @@
 #include "cli/common/display_options.h"
 #include "cli/common/layers.h"
 #include "cli/common/memory_limit.h"
+#include "cli/common/numbers.h"
 #include "cli/common/progress_output.h"
 #include "cli/compare/comparison.h"
 #include "core/nearest.h"
@@ -163,7 +164,7 @@ void setup_preview(CLI::App& app, Command& chosen) {
       ->expected(4)
       ->type_name("X,Y,WIDTH,HEIGHT");
   sub->add_option("--zoom", o->zoom, "Pixels for each pixel, along both sides (default 1)")
-      ->check(CLI::Range(1, 32))
+      ->check(from_to(1, 32))
       ->type_name("N");
   sub->add_option("--reference", o->reference,
                   "Converged render: prints the errors of the pictures below them, as compare measures them")
@@ -180,13 +181,7 @@ void setup_preview(CLI::App& app, Command& chosen) {
       "  polyrecon preview noisy.exr clean.exr reference.exr error.exr -o compared.png\n"
       "  polyrecon preview error.exr -o error.png --layer mse --false-colour\n"
       "  polyrecon preview noisy.exr clean.exr -o crop.png --region 200,120,160,90 --zoom 3 --reference reference.exr");
-  sub->callback([o, &chosen] {
-    chosen = {[o] {
-                run(*o);
-                return 0;
-              },
-              [o] { check(*o); }};
-  });
+  set_callback(*sub, o, run, check, chosen);
 }
 
 }  // namespace polyrecon

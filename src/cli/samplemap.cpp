@@ -68,13 +68,7 @@ void setup_samplemap(CLI::App& app, Command& chosen) {
       "  polyrecon samplemap --error-map error.exr --budget 32 -o samples.exr\n"
       "  polyrecon samplemap --error-map error.exr --target 0.002 -o samples.exr\n"
       "  polyrecon samplemap --error-map error.exr --budget 16 --export appleseed -o samples.exr");
-  sub->callback([o, &chosen] {
-    chosen = {[o] {
-                run(*o);
-                return 0;
-              },
-              [o] { check(*o); }};
-  });
+  set_callback(*sub, o, run, check, chosen);
 }
 
 }  // namespace polyrecon

@@ -15,6 +15,7 @@
 #include "cli/common/display_options.h"
 #include "cli/common/layers.h"
 #include "cli/common/memory_limit.h"
+#include "cli/common/numbers.h"
 #include "cli/common/option_set.h"
 #include "cli/common/printed_text.h"
 #include "cli/common/progress_output.h"
@@ -176,7 +177,7 @@ void setup_sweep(CLI::App& app, Command& chosen) {
       ->check(one_of(setting_groups()))
       ->type_name("GROUP,...");
   sub->add_option("-t,--threads", o->threads, "Threads to use; 0: one for each processor")
-      ->check(CLI::Range(0, 4096))
+      ->check(from_to(0, 4096))
       ->capture_default_str();
   add_page_size(*sub, o->max_size);
   add_memory_limit(*sub, o->max_memory);
@@ -191,13 +192,7 @@ void setup_sweep(CLI::App& app, Command& chosen) {
       "  polyrecon sweep -i render.exr --reference ref.exr -o report.html --csv figures.csv\n"
       "  polyrecon sweep -i 16.exr -i 64.exr -i 256.exr --reference ref.exr -o report.html --vary quality\n"
       "  polyrecon sweep -i render.exr --reference ref.exr -o report.html --also OIDN=oidn.exr:0.9");
-  sub->callback([o, &chosen] {
-    chosen = {[o] {
-                run(*o);
-                return 0;
-              },
-              [o] { check(*o); }};
-  });
+  set_callback(*sub, o, run, check, chosen);
 }
 
 }  // namespace polyrecon

@@ -10,7 +10,7 @@ struct Range {
   char32_t first, last;
 };
 
-// The same characters as in pipelines/common/terminal.py.
+// The same characters as in pipelines/common/terminal.py, but for surrogates: here these are no UTF-8.
 constexpr std::array<Range, 6> controls{
     {{0, 0x1f}, {0x7f, 0x9f}, {0x61c, 0x61c}, {0x200e, 0x200f}, {0x2028, 0x202e}, {0x2066, 0x2069}}};
 

@@ -10,8 +10,6 @@
 namespace polyrecon {
 namespace {
 
-constexpr int rgb = ColorLayout::primaries;
-
 /// Ways to mirror an image.
 enum Turn : unsigned { AsItIs = 0, LeftRight = 1, UpDown = 2, Both = 3 };
 constexpr std::array<Turn, 2> half_turns{LeftRight, UpDown};
@@ -34,7 +32,7 @@ Image turned(const Image& image, Turn turn) {
 
 void add(const Image& image, Real factor, Image& to) {
   for_rows(to.height(), [&](int y) {
-    for (int c = 0; c < rgb; ++c)
+    for (int c = 0; c < ColorLayout::primaries; ++c)
       for (int x = 0; x < to.width(); ++x) to.at(x, y, c) += factor * image.at(x, y, c);
   });
 }
@@ -62,12 +60,12 @@ Pass denoise_frame(const Denoiser& denoiser, DenoiserInput input, const Denoiser
   }
   const int runs = mean_runs(input.independent_halves, params);
   if (runs == 0) {
-    out.mean = mean_of_halves({out.half_a, out.half_b}, rgb);
+    out.mean = mean_of_halves({out.half_a, out.half_b}, ColorLayout::primaries);
     return out;
   }
-  const Image noisy = mean_of_halves(input.halves, rgb);
+  const Image noisy = mean_of_halves(input.halves, ColorLayout::primaries);
   input.halves = {};
-  out.mean = Image(noisy.width(), noisy.height(), rgb);
+  out.mean = Image(noisy.width(), noisy.height(), ColorLayout::primaries);
   for (int k = 0; k < runs; ++k)
     add(denoised(noisy, mean_turns.at(static_cast<std::size_t>(k))), Real(1) / static_cast<Real>(runs), out.mean);
   return out;

@@ -3,12 +3,17 @@
 #include <array>
 #include <cstddef>
 
+#include "core/color_layout.h"
 #include "polyrecon/denoiser.h"
 #include "polyrecon/frame.h"
 #include "polyrecon/params.h"
 #include "polyrecon/progress.h"
 
 namespace polyrecon {
+
+constexpr std::size_t denoiser_features_channels = std::size_t{2} * ColorLayout::primaries;  ///< Albedo and normal.
+/// Channels that denoise_frame holds in addition to its input and its result: a picture and its features, mirrored.
+constexpr std::size_t denoise_frame_channels = ColorLayout::primaries + denoiser_features_channels;
 
 /// The input of a denoiser: a frame without values that are not finite.
 struct DenoiserInput {

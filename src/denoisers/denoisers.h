@@ -1,9 +1,11 @@
 #pragma once
 
+#include <cstddef>
 #include <map>
 #include <memory>
 #include <string>
 
+#include "core/color_layout.h"
 #include "denoisers/oidn_library.h"
 #include "polyrecon/denoiser.h"
 
@@ -15,6 +17,12 @@ struct DenoiserOptions {
 
   bool is_default() const { return oidn.path.empty() && oidn.device == OidnOptions().device; }
 };
+
+/// A run of a denoiser takes at least these image channels and bytes in addition to its arguments and its result. Open
+/// Image Denoise has copies of colour, albedo, normal and output, and one of them is on its way there or back; its code
+/// and weights have 350 MB for 1920 x 1080 and more (version 2.5).
+constexpr std::size_t denoiser_run_channels = std::size_t{4 + 1} * ColorLayout::primaries;
+constexpr std::size_t least_denoiser_bytes = std::size_t{384} << 20;
 
 using MakeDenoiser = std::unique_ptr<Denoiser> (*)(const DenoiserOptions& options);
 

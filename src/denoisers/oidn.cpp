@@ -10,10 +10,6 @@
 namespace polyrecon {
 namespace {
 
-// Images of a run next to its arguments and its result, in floats per pixel: the library's colour, albedo, normal and
-// output, and one of them on its way there or back.
-constexpr std::size_t floats_of_a_run = std::size_t{3} * (4 + 1);
-
 /// Open Image Denoise (Intel; Áfra 2019-2026), a network that was trained on renders.
 class Oidn final : public Denoiser {
  public:
@@ -43,9 +39,9 @@ class Oidn final : public Denoiser {
   /// share: of the units of a call.
   Image run(const OidnImages& images, double share, std::size_t max_bytes, Progress& progress) const {
     if (progress.cancelled()) throw Error(ExitCode::Interrupted, "interrupted");
-    const std::size_t own = images.shape().pixels() * floats_of_a_run * sizeof(float);
+    const std::size_t copies = images.shape().pixels() * denoiser_run_channels * sizeof(float);
     double owed = 0;
-    return library_.filter(images, max_bytes - std::min(max_bytes, own), [&](double part) {
+    return library_.filter(images, max_bytes - std::min(max_bytes, copies), [&](double part) {
       owed += part * share * static_cast<double>(units);
       const auto whole = static_cast<std::size_t>(owed);
       owed -= static_cast<double>(whole);

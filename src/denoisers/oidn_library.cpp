@@ -10,6 +10,7 @@
 #include <map>
 #include <system_error>
 
+#include "core/color_layout.h"
 #include "core/parallel.h"
 #include "polyrecon/error.h"
 
@@ -19,7 +20,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* library_file = "libOpenImageDenoise.so.2";
-constexpr int rgb = 3;
 
 // The part of the C interface that is used, as its reference documents it (oidn.h of version 2; the values of its
 // enumerations do not change within a major version).
@@ -132,18 +132,18 @@ std::string path_of(void* symbol, const std::string& requested) {
 }
 
 std::vector<float> packed(const Image& image) {
-  std::vector<float> out(image.pixels() * rgb);
-  for (int c = 0; c < rgb; ++c)
+  std::vector<float> out(image.pixels() * ColorLayout::primaries);
+  for (int c = 0; c < ColorLayout::primaries; ++c)
     for (std::size_t i = 0; i < image.pixels(); ++i)
-      out[i * rgb + static_cast<std::size_t>(c)] = static_cast<float>(image.plane(c)[i]);
+      out[i * ColorLayout::primaries + static_cast<std::size_t>(c)] = static_cast<float>(image.plane(c)[i]);
   return out;
 }
 
 Image unpacked(const std::vector<float>& values, int width, int height) {
-  Image out(width, height, rgb);
-  for (int c = 0; c < rgb; ++c)
+  Image out(width, height, ColorLayout::primaries);
+  for (int c = 0; c < ColorLayout::primaries; ++c)
     for (std::size_t i = 0; i < out.pixels(); ++i)
-      out.plane(c)[i] = static_cast<Real>(values[i * rgb + static_cast<std::size_t>(c)]);
+      out.plane(c)[i] = static_cast<Real>(values[i * ColorLayout::primaries + static_cast<std::size_t>(c)]);
   return out;
 }
 
@@ -261,7 +261,7 @@ Image OidnLibrary::filter(const OidnImages& images, std::size_t max_bytes,
   Handle device = loaded_->device.get();
   const Image& shape = images.shape();
   const auto width = static_cast<std::size_t>(shape.width()), height = static_cast<std::size_t>(shape.height());
-  const std::size_t bytes = shape.pixels() * rgb * sizeof(float);
+  const std::size_t bytes = shape.pixels() * ColorLayout::primaries * sizeof(float);
   std::vector<Owned> buffers;
   const Owned filter(call.new_filter(device, "RT"), call.release_filter);
   const auto check = [&] {
@@ -295,7 +295,7 @@ Image OidnLibrary::filter(const OidnImages& images, std::size_t max_bytes,
   call.execute_filter(filter.get());
   check();
   Monitor::call(&monitor, 1);
-  std::vector<float> values(shape.pixels() * rgb);
+  std::vector<float> values(shape.pixels() * ColorLayout::primaries);
   call.read_buffer(buffers.back().get(), 0, bytes, values.data());
   check();
   return unpacked(values, shape.width(), shape.height());

@@ -15,7 +15,7 @@
 namespace polyrecon {
 namespace {
 
-/// Of 9. Noisy halves get hardly smaller at higher levels, which take several times as long.
+/// zlib's level, 1 to 9. Noisy halves get hardly smaller at higher levels, which take several times as long.
 constexpr int level = 1;
 
 /// Bytes of a piece that one thread packs.

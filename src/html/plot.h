@@ -12,7 +12,7 @@ struct PlotPoint {
   double x = 0, y = 0;
   std::string name;          ///< Written next to the point.
   std::string details;       ///< Shown while the pointer is on it.
-  std::string address = {};  ///< Of a link, escaped; empty: none.
+  std::string address = {};  ///< A link's, escaped; empty: none.
 };
 
 struct PlotSeries {
@@ -48,7 +48,7 @@ struct FramePlot {
   struct Point {
     int frame = 0;
     double value = 0;     ///< Not drawn where it is not positive and finite.
-    std::string address;  ///< Of a link, escaped.
+    std::string address;  ///< A link's, escaped.
   };
   struct Series {
     std::string name, color;

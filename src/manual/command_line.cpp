@@ -11,9 +11,7 @@ OptionInfo describe(const CLI::Option& option) {
   OptionInfo info;
   for (const std::string& name : option.get_snames()) info.names.push_back("-" + name);
   for (const std::string& name : option.get_lnames()) info.names.push_back("--" + name);
-  // CLI11 appends the check of a value to its type: "FLOAT:POSITIVE".
-  if (option.get_items_expected_max() > 0)
-    info.value = option.get_type_name().substr(0, option.get_type_name().find(':'));
+  if (option.get_items_expected_max() > 0) info.value = option.get_type_name();
   info.help = option.get_description();
   info.group = option.get_group();
   info.required = option.get_required();

@@ -8,7 +8,7 @@ namespace polyrecon {
 struct MeasuredFrame {
   const Image& image;
   const Image& reference;
-  const Image& reference_variance;  ///< Of the reference's mean; empty where it is unknown.
+  const Image& reference_variance;  ///< The variance of its mean; empty where it is unknown.
 };
 
 /// How much the error changes from one frame to the next: half the mean over pixels and channels of

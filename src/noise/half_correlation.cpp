@@ -7,12 +7,11 @@
 #include "core/color_layout.h"
 #include "core/mask.h"
 #include "core/parallel.h"
+#include "noise/filter_correlation.h"
 
 namespace polyrecon {
 namespace {
 
-constexpr double least_correlation = 0.15;  // box filters: below 0.02; a tent, the narrowest other filter: 0.25
-constexpr double most_correlation = 0.5;    // wider filters blur the picture
 constexpr double half_pi = 1.57079632679489662;
 constexpr double least_agreement = 0.02;  // mean product of signs
 constexpr double chance = 3;              // standard deviations of that mean, 1 / sqrt(values)
@@ -50,7 +49,7 @@ double correlation_of_halves(const HalfPair& pair) {
   const double pairs = over_pairs([](int product) { return std::abs(product); });
   if (!(pairs > 0)) return 0;
   const double correlation = std::sin(half_pi * over_pairs([](int product) { return product; }) / pairs);
-  return correlation < least_correlation ? 0 : std::min(correlation, most_correlation);
+  return filter_correlation(correlation);
 }
 
 bool made_of_halves(const HalfPair& pair, const Image& a, const Image& b) {

@@ -17,6 +17,7 @@
 #include "noise/edge_variance.h"
 #include "noise/estimate_grid.h"
 #include "noise/feature_noise.h"
+#include "noise/filter_correlation.h"
 #include "noise/spike_variance.h"
 #include "regression/least_squares.h"
 
@@ -30,10 +31,8 @@ constexpr int least_flat_features = 5;        // channels without variation that
                                               // of which one may vary
 constexpr double most_far_correlation = 0.2;  // with residuals two pixels away; texture and shadows have more
 constexpr double least_flat_share = 0.03;     // of all windows
-constexpr double most_correlation = 0.5;      // wider filters blur the picture
-constexpr double left_by_plane = 0.85;      // of the correlation, in the residuals of a plane (0.84 to 0.86 for 0.1 to
-                                            // 0.5, by the covariance M C M of the residuals)
-constexpr double least_correlation = 0.15;  // box filters: below 0.05; a tent, the narrowest other filter: 0.25
+constexpr double left_by_plane = 0.85;  // of the correlation, in the residuals of a plane (0.84 to 0.86 for 0.1 to
+                                        // 0.5, by the covariance M C M of the residuals)
 constexpr double half_difference_sigma = 1.5;  // pixels; the variance from the halves of one pixel has one degree of
                                                // freedom, so it is averaged by a Gaussian
 
@@ -281,7 +280,7 @@ double noise_correlation(const Frame& frame, Progress& progress, const Image& ma
   const auto middle = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2);
   std::nth_element(all.begin(), middle, all.end());
   const double correlation = *middle / left_by_plane;
-  return correlation < least_correlation ? 0 : std::min(correlation, most_correlation);
+  return filter_correlation(correlation);
 }
 
 Image estimate_variance(const Image& y, const Image& features, Progress& progress, const Image& mask,

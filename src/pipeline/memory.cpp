@@ -7,6 +7,8 @@
 #include "core/color_layout.h"
 #include "core/frame_shape.h"
 #include "core/wrap.h"
+#include "denoisers/denoise_frame.h"
+#include "denoisers/denoisers.h"
 #include "features/prepare.h"
 #include "maps/error_map_images.h"
 #include "noise/variance.h"
@@ -24,13 +26,8 @@ namespace {
 
 constexpr double allocator = 1.08;  // unused memory between images of unequal sizes; tests/bench/scaling.py: up to 6 %
 
-// Memory of a denoiser's library under its least limit, in addition to the images of a run: its code and weights
-// included (Open Image Denoise 2.5: 350 MB for 1920 x 1080 and more).
-constexpr std::size_t least_denoiser_bytes = std::size_t{384} << 20;
-constexpr std::size_t rgb = ColorLayout::primaries;
-constexpr std::size_t denoiser_features_channels = 2 * rgb;  // albedo and normal
-constexpr std::size_t denoiser_run_channels = 8 * rgb;
-constexpr std::size_t validation_halves_channels = 2 * rgb;  // our halves next to those of a prior
+constexpr std::size_t primaries = ColorLayout::primaries;
+constexpr std::size_t validation_halves_channels = 2 * primaries;  // our halves next to those of a prior
 
 std::size_t count(int channels) { return static_cast<std::size_t>(channels); }
 
@@ -64,7 +61,7 @@ std::size_t fitting_channels(const FrameShape& shape) {
 std::size_t finishing_channels(const FrameShape& shape) {
   const std::size_t colors = count(shape.color_channels);
   constexpr std::size_t order_map = 1;
-  const std::size_t layers_without_prior = colors > rgb ? colors : 0;
+  const std::size_t layers_without_prior = colors > primaries ? colors : 0;
   const std::size_t using_prior = std::max(prior_candidate_channels, share_channels);
   const std::size_t prior = shape.prior_channels > 0 ? using_prior + layers_without_prior : 0;
   return pair_channels(shape) + candidate_channels(colors) + error_map_channels() + order_map +
@@ -124,7 +121,9 @@ MemoryNeeds memory_needs(const FrameShape& passes, const Params& params) {
   MemoryNeeds needs;
   needs.prepare = with_gaps(program_bytes + image_bytes(preparing));
   if (shape.runs_denoiser)
-    needs.denoiser = with_gaps(program_bytes + image_bytes(denoising + denoiser_run_channels)) + least_denoiser_bytes;
+    needs.denoiser =
+        with_gaps(program_bytes + image_bytes(denoising + denoise_frame_channels + denoiser_run_channels)) +
+        least_denoiser_bytes;
   needs.held = with_gaps(program_bytes + image_bytes(holding));
   needs.tile = with_gaps(std::min(smallest_tile_pixels(params), shape.pixels) *
                          stage_bytes_per_pixel(shape.color_channels, model_features(shape), params));

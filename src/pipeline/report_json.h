@@ -10,7 +10,7 @@ namespace polyrecon {
 
 nlohmann::ordered_json decisions_json(const std::vector<Decision>& decisions);
 
-/// What is known of a reconstruction, wherever its frame came from and its result goes.
+/// The part of a report that does not depend on where the frame came from and where the result goes.
 nlohmann::ordered_json report_json(const Report& report);
 
 /// Seconds of all phases together.

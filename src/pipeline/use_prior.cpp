@@ -21,7 +21,6 @@
 namespace polyrecon {
 namespace {
 
-constexpr int rgb = ColorLayout::primaries;
 constexpr double most_noise_in_prior = 0.9;  // above it the prior is the input, which would validate itself
 // The mean of a prior against that of its halves in the picture that is mixed in. Both are of the same samples; the
 // mean is denoised with more of them at once.
@@ -38,7 +37,7 @@ Image finite_mean(const Frame& frame, Role role) {
   return {};
 }
 
-Image beauty_of(const Image& color) { return crop(color, color.bounds(), 0, rgb); }
+Image beauty_of(const Image& color) { return crop(color, color.bounds(), 0, ColorLayout::primaries); }
 
 Image scaled(Image image, Real factor) {
   for_rows(image.height(), [&](int y) {
@@ -89,7 +88,7 @@ Image picture_of(const Pass& prior, const ValidationHalves& validation, const Ha
   Image mean = in_exposure(prior.mean, pair, reconstruction);
   if (validation.prior[0].empty()) return mean;
   for_rows(mean.height(), [&](int y) {
-    for (int c = 0; c < rgb; ++c)
+    for (int c = 0; c < ColorLayout::primaries; ++c)
       for (int x = 0; x < mean.width(); ++x) {
         const Real halves = Real(0.5) * (validation.prior[0].at(x, y, c) + validation.prior[1].at(x, y, c));
         mean.at(x, y, c) = halves + mean_share * (mean.at(x, y, c) - halves);
@@ -140,7 +139,8 @@ ReadyPrior ready_prior(Pass prior, bool made_here, const Prepared& prepared) {
     out.foreign_halves = true;
   }
   // The mean of a file may be any picture; only the mean of its halves is validated.
-  if (out.validated && !made_here) out.pass.mean = mean_of_halves({out.pass.half_a, out.pass.half_b}, rgb);
+  if (out.validated && !made_here)
+    out.pass.mean = mean_of_halves({out.pass.half_a, out.pass.half_b}, ColorLayout::primaries);
   return out;
 }
 
@@ -151,7 +151,8 @@ ValidationHalves make_validation(Pass& prior, const HalfPair& pair, const Params
   for (std::size_t h = 0; h < 2; ++h) {
     FitCounters not_reported;
     const HalfPair half = half_alone(pair, h, correlation);
-    out.ours[h] = mean_of_halves(solve(half, validation_params(params), max_bytes, not_reported, progress).half, rgb);
+    out.ours[h] = mean_of_halves(solve(half, validation_params(params), max_bytes, not_reported, progress).half,
+                                 ColorLayout::primaries);
     out.prior[h] = in_exposure(std::move(h == 0 ? prior.half_a : prior.half_b), pair, out.ours[h]);
   }
   return out;
@@ -160,7 +161,9 @@ ValidationHalves make_validation(Pass& prior, const HalfPair& pair, const Params
 std::size_t validation_units(const HalfPair& pair) { return 2 * fit_units(pair, validation_params(Params())); }
 
 std::size_t validation_channels(std::size_t feature_channels) {
-  return (half_pair_channels(rgb, feature_channels) + 2 * candidate_channels(rgb)) * 4 / 3;
+  return (half_pair_channels(ColorLayout::primaries, feature_channels) +
+          2 * candidate_channels(ColorLayout::primaries)) *
+         4 / 3;
 }
 
 Candidate use_prior(ReadyPrior prior, const HalfPair& pair, const Image& reconstruction, const SelectParams& params,

@@ -90,7 +90,7 @@ Rect middle_of(const Frame& frame) {
   return {x0, y0, x0 + width, y0 + height};
 }
 
-/// What the denoiser's prior adds to the seconds of each preset: its calls, timed on a part of the frame, and the
+/// Seconds that the denoiser's prior adds to each preset: its calls, timed on a part of the frame, and the
 /// validation, which reconstructs both halves at about the pilot's preset.
 std::array<double, preset_count> time_prior(const Frame& frame, const Denoiser& denoiser, double pilot_seconds,
                                             Progress& progress) {

@@ -17,7 +17,7 @@ struct Pilot {
   double relative_mse = 0;                           ///< Mean of its error map.
   double share = 0;                                  ///< Share of the frame's pixels that were reconstructed, 0..1.
   double spent = 0;                                  ///< Seconds that the run took.
-  std::array<double, preset_count> prior_seconds{};  ///< What a denoiser's prior adds to the time of each preset.
+  std::array<double, preset_count> prior_seconds{};  ///< Added to each preset by a denoiser's prior.
 };
 
 /// Reconstructs about an eighth of the frame, but at least four tiles, by "draft, stages 2". The tiles of 64 x 64

@@ -6,7 +6,6 @@
 namespace polyrecon {
 namespace {
 
-constexpr int beauty_channels = ColorLayout::primaries;
 // Largest ratio between the exposures of a frame and its prior; beyond it the prior is a different image.
 constexpr double most_gain = 2;
 
@@ -26,7 +25,7 @@ double exposure_gain(const Image& prior, const HalfPair& pair, int c) {
 }  // namespace
 
 Image in_exposure(Image prior, const HalfPair& pair, const Image& fallback) {
-  for (int c = 0; c < beauty_channels; ++c) {
+  for (int c = 0; c < ColorLayout::primaries; ++c) {
     const auto gain = static_cast<Real>(exposure_gain(prior, pair, c));
     for (std::size_t i = 0; i < prior.pixels(); ++i) {
       const Real value = prior.plane(c)[i];

@@ -14,7 +14,6 @@
 namespace polyrecon {
 namespace {
 
-constexpr int beauty_channels = ColorLayout::primaries;
 constexpr std::array<double, 3> share_sigmas{6, 12, 24};  // pixels
 constexpr double noise_sigma = 2;                         // pixels
 constexpr double kept_noise_sigma = 6;                    // pixels
@@ -37,9 +36,9 @@ Image relative_noise(const Image& y, const Image& p, double epsilon, const Image
   for_rows(v.height(), [&](int row) {
     for (int x = 0; x < v.width(); ++x) {
       double sum = 0;
-      for (int c = 0; c < beauty_channels; ++c) {
+      for (int c = 0; c < ColorLayout::primaries; ++c) {
         const double value = p.at(x, row, c), d = static_cast<double>(y.at(x, row, c)) - value;
-        sum += d * d / (value * value + epsilon) / beauty_channels;
+        sum += d * d / (value * value + epsilon) / ColorLayout::primaries;
       }
       v.at(x, row, 0) = storable(sum);
     }
@@ -51,9 +50,9 @@ Image relative_noise(const Image& y, const Image& p, double epsilon, const Image
 Image term_weights(const Image& y, const Image& p, double epsilon, const Image& sampled) {
   const Image v = relative_noise(y, p, epsilon, sampled);
   const double floor = mean_noise_part * sum_of(v, 0) / static_cast<double>(v.pixels()) + least_noise;
-  Image weights(p.width(), p.height(), beauty_channels);
+  Image weights(p.width(), p.height(), ColorLayout::primaries);
   for_rows(p.height(), [&](int row) {
-    for (int c = 0; c < beauty_channels; ++c)
+    for (int c = 0; c < ColorLayout::primaries; ++c)
       for (int x = 0; x < p.width(); ++x) {
         const double value = p.at(x, row, c), noise = v.at(x, row, 0);
         weights.at(x, row, c) =
@@ -67,7 +66,7 @@ Image term_weights(const Image& y, const Image& p, double epsilon, const Image& 
 void add_terms(const Image& y, const Image& p, const Image& d, double epsilon, const Image& sampled, Image& terms) {
   const Image s = term_weights(y, p, epsilon, sampled);
   for_rows(terms.height(), [&](int row) {
-    for (int c = 0; c < beauty_channels; ++c)
+    for (int c = 0; c < ColorLayout::primaries; ++c)
       for (int x = 0; x < terms.width(); ++x) {
         const double value = p.at(x, row, c), ours = static_cast<double>(d.at(x, row, c)) - value;
         const double weighted = ours * static_cast<double>(s.at(x, row, c));
@@ -78,9 +77,9 @@ void add_terms(const Image& y, const Image& p, const Image& d, double epsilon, c
 }
 
 Image difference(const Image& a, const Image& b) {
-  Image out(a.width(), a.height(), beauty_channels);
+  Image out(a.width(), a.height(), ColorLayout::primaries);
   for_rows(out.height(), [&](int y) {
-    for (int c = 0; c < beauty_channels; ++c)
+    for (int c = 0; c < ColorLayout::primaries; ++c)
       for (int x = 0; x < out.width(); ++x) out.at(x, y, c) = a.at(x, y, c) - b.at(x, y, c);
   });
   return out;
@@ -123,12 +122,12 @@ Image reconstruction_share(const HalfPair& pair, const ValidationHalves& halves)
 }
 
 Image unvalidated_share(const HalfPair& pair, const Image& prior, const Image& reconstruction) {
-  const Image noisy = mean_of_halves(pair.color, beauty_channels);
+  const Image noisy = mean_of_halves(pair.color, ColorLayout::primaries);
   const Image s = term_weights(noisy, prior, pair.epsilon, pair.sampled);
   const Image taken = difference(noisy, prior), kept = difference(reconstruction, prior);
   Image terms(pair.width(), pair.height(), 2);
   for_rows(terms.height(), [&](int y) {
-    for (int c = 0; c < beauty_channels; ++c)
+    for (int c = 0; c < ColorLayout::primaries; ++c)
       for (int x = 0; x < terms.width(); ++x) {
         const double of_noise = corner_at(taken, x, y, c), weight = s.at(x, y, c);
         terms.at(x, y, 0) += storable(of_noise * corner_at(kept, x, y, c) * weight);
@@ -150,7 +149,7 @@ Image unvalidated_share(const HalfPair& pair, const Image& prior, const Image& r
 Candidate mix_with_prior(Candidate reconstruction, const Image& prior, const Image& share) {
   for (Image& half : reconstruction.half)
     for_rows(prior.height(), [&](int y) {
-      for (int c = 0; c < beauty_channels; ++c)
+      for (int c = 0; c < ColorLayout::primaries; ++c)
         for (int x = 0; x < prior.width(); ++x)
           half.at(x, y, c) = prior.at(x, y, c) + share.at(x, y, 0) * (half.at(x, y, c) - prior.at(x, y, c));
     });
@@ -160,7 +159,7 @@ Candidate mix_with_prior(Candidate reconstruction, const Image& prior, const Ima
 Image follow_beauty(Image layers, const Image& beauty) {
   const int aovs = ColorLayout(layers.channels()).layers() - 1;
   for_rows(layers.height(), [&](int y) {
-    for (int c = 0; c < beauty_channels; ++c)
+    for (int c = 0; c < ColorLayout::primaries; ++c)
       for (int x = 0; x < layers.width(); ++x) {
         const double before = layers.at(x, y, c), after = beauty.at(x, y, c);
         const double factor = before > 0 ? std::clamp(after / before, 1 / most_factor, most_factor) : 1;

@@ -1,6 +1,9 @@
 // The C interface as a host uses it: only polyrecon.h and the shared library.
 
 #include <Imath/half.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfMultiPartInputFile.h>
+#include <OpenEXR/ImfStringAttribute.h>
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -164,6 +167,21 @@ TEST_F(CApiTest, AFileIsDenoisedAsByTheProgram) {
   double total = 0;
   for (const float s : samples.samples) total += static_cast<double>(s);
   EXPECT_NEAR(total / static_cast<double>(samples.samples.size()), 8, 1e-3);
+}
+
+TEST_F(CApiTest, TheFileSaysWhichParametersTheResultDependsOn) {
+  const Filter filter = filter_of("denoise");
+  polyrecon_set_text(filter.get(), "quality", "draft");
+  polyrecon_set_text(filter.get(), "map", "albedo=ViewLayer.Denoising Albedo");
+  polyrecon_set_text(filter.get(), "input", sample.c_str());
+  polyrecon_set_text(filter.get(), "output", path("clean.exr").c_str());
+  polyrecon_set_number(filter.get(), "samples", 16);
+  polyrecon_set_number(filter.get(), "wrap", 0);
+  polyrecon_set_number(filter.get(), "threads", 1);
+  ASSERT_EQ(polyrecon_execute(filter.get()), POLYRECON_OK) << message_of(filter);
+  const Imf::MultiPartInputFile file(path("clean.exr").c_str());
+  EXPECT_EQ(file.header(0).typedAttribute<Imf::StringAttribute>("polyrecon/settings").value(),
+            "library: map 'albedo=ViewLayer.Denoising Albedo', quality 'draft', samples '16'");
 }
 
 TEST_F(CApiTest, TheHostsFloatingPointModeChangesNothing) {

@@ -6,7 +6,7 @@
 
 namespace polyrecon {
 
-/// What a command writes into a file; the ending of its name has to fit.
+/// The kind of a file that a command writes; the ending of its name has to fit.
 enum class FileKind {
   Exr,      ///< Pictures, maps and merges.
   Picture,  ///< To look at: PNG, JPEG or TIFF.

@@ -25,7 +25,7 @@ enum class Changes {
 /// Accepts these names only; the message about another one suggests the nearest.
 CLI::Validator one_of(std::vector<std::string> names);
 
-/// What the names that an option takes stand for, in the order in which the help shows them.
+/// The names that an option takes and what they stand for, in the order in which the help shows them.
 template <typename Choice>
 using Choices = std::vector<std::pair<std::string, Choice>>;
 

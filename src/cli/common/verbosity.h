@@ -8,7 +8,7 @@ namespace polyrecon {
 /// How much a command prints on standard output.
 enum class Verbosity {
   Quiet,  ///< Nothing. Errors and missed targets still stand on standard error.
-  Short,  ///< What was read, what was done, and what could be better.
+  Short,  ///< The layers read, the work done, and advice.
   Full    ///< All figures.
 };
 

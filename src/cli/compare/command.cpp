@@ -163,13 +163,7 @@ void setup_compare(CLI::App& app, Command& chosen) {
       "  polyrecon compare noisy.exr clean.exr other.exr reference.exr --json\n"
       "  polyrecon compare noisy.exr clean.exr reference.exr --html compared.html --exposure 1\n"
       "  polyrecon compare clean.####.exr ref.####.exr --html compared.html");
-  sub->callback([o, &chosen] {
-    chosen = {[o] {
-                run(*o);
-                return 0;
-              },
-              [o] { check(*o); }};
-  });
+  set_callback(*sub, o, run, check, chosen);
 }
 
 }  // namespace polyrecon

@@ -49,7 +49,7 @@ double correlation(const std::vector<double>& a, const std::vector<double>& b) {
   return aa / n > no_structure && bb / n > no_structure ? ab / std::sqrt(aa * bb) : 1;
 }
 
-/// What is said of two pictures that do not show the same; empty for those that do.
+/// A note about two pictures that do not show the same; empty for those that do.
 std::string note_of_unrelated(const std::string& path, const Image& x, const Image& r) {
   constexpr double related = 0.5;
   const double found = correlation(blocks_of(x), blocks_of(r));
@@ -70,8 +70,8 @@ Comparison compare_layers(const LayeredFile& image, const Layer& layer, const La
   found.image = image.info.path;
   found.layer = layer.name;
   found.score = score(x, r, known.variance);
-  found.note = std::move(known.note);
-  if (std::string note = note_of_unrelated(image.info.path, x, r); !note.empty()) found.note = std::move(note);
+  for (const std::string& note : {note_of_unrelated(image.info.path, x, r), known.note})
+    if (!note.empty()) found.notes.push_back(note);
   Image map = flip(x, r, progress);
   found.flip = std::accumulate(map.plane(0), map.plane(0) + map.pixels(), 0.0) / static_cast<double>(map.pixels());
   if (with_images) {
@@ -116,7 +116,7 @@ Comparison without_images(const Comparison& comparison) {
   figures.layer = comparison.layer;
   figures.score = comparison.score;
   figures.flip = comparison.flip;
-  figures.note = comparison.note;
+  figures.notes = comparison.notes;
   figures.frame = comparison.frame;
   figures.flicker = comparison.flicker;
   return figures;

@@ -15,8 +15,8 @@ struct Comparison {
   std::string image, layer;  ///< Path of the image, whole name of the layer.
   Score score;
   double flip = 0;  ///< Mean of HDR-FLIP.
-  /// That the pictures do not show the same, or why the reference's variance is not used; empty where all is well.
-  std::string note;
+  /// That the pictures do not show the same, and why the reference's variance is not used; empty where all is well.
+  std::vector<std::string> notes;
   std::optional<int> frame;       ///< Number of the frame; nothing where no sequence is compared.
   std::optional<double> flicker;  ///< flicker() from the frame before; nothing in the first frame.
   /// Radiance of both (3 channels), the variance of the reference's mean where it is known, FLIP and relative error of

@@ -20,7 +20,8 @@ Json number(double v) { return std::isfinite(v) ? Json(v) : Json(); }
 std::vector<std::string> notes_of(const std::vector<Comparison>& comparisons) {
   std::vector<std::string> notes;
   for (const Comparison& c : comparisons)
-    if (!c.note.empty() && std::find(notes.begin(), notes.end(), c.note) == notes.end()) notes.push_back(c.note);
+    for (const std::string& note : c.notes)
+      if (std::find(notes.begin(), notes.end(), note) == notes.end()) notes.push_back(note);
   return notes;
 }
 

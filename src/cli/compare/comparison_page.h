@@ -40,7 +40,7 @@ class ComparisonPage {
     std::vector<ReliabilityDecile> deciles;
   };
 
-  std::vector<std::string> names_;  ///< Of the images, the reference the last one.
+  std::vector<std::string> names_;  ///< The images' names, the reference the last one.
   std::vector<int> frames_;
   ViewerPage page_;
   std::vector<Worst> worst_;

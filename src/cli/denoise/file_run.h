@@ -49,7 +49,7 @@ class FileRun {
   void add(PictureChoice picture);
   /// The limits for the next picture: its share of what the pictures before left.
   FrameLimits limits_left() const;
-  /// What the file missed of its limits, for people; empty where it kept them.
+  /// The limits that the file missed, for people; empty where it kept them.
   std::vector<std::string> missed_limits() const;
   void release_images(DonePicture& done) const;
 

@@ -10,7 +10,7 @@ namespace polyrecon {
 /// A render in a folder.
 struct FoundRender {
   std::string input;        ///< A file, or the pattern of a sequence.
-  std::vector<int> frames;  ///< Of the sequence, ascending; empty for a single file.
+  std::vector<int> frames;  ///< Numbers, ascending; empty for a single file.
 };
 
 /// A file, or the pattern of a sequence, that is no render to denoise.
@@ -18,7 +18,7 @@ struct LeftOut {
   std::string input, why;
 };
 
-/// What a folder holds.
+/// The files of a folder.
 struct FolderContents {
   std::vector<FoundRender> renders;
   std::vector<LeftOut> left_out;

@@ -67,7 +67,7 @@ struct FrameList {
   int radius = 0;            ///< How many frames before and after help each one.
 };
 
-/// Where the result of an input goes if no output was named: "shot_denoised.exr" beside "shot.exr", and
+/// The output of an input if none was named: "shot_denoised.exr" beside "shot.exr", and
 /// "shot_denoised.####.exr" beside "shot.####.exr".
 std::string default_output(const std::string& input);
 

@@ -87,7 +87,7 @@ void add_sequence_options(OptionSet& set, DenoiseOptions& o) {
               "Frames before and after that help each frame of a sequence, along its motion vectors if it has any; "
               "default: {}",
               default_frame_radius))
-      ->check(CLI::Range(0, 8))
+      ->check(from_to(0, 8))
       ->type_name("R");
   set.add_flag(Changes::Run, "--skip-existing", o.run.skip_existing,
                "Skip frames whose result was made from the same input by the same settings and version; other results "
@@ -128,7 +128,7 @@ void add_method_options(OptionSet& set, DenoiseOptions& o) {
 void add_run_options(OptionSet& set, DenoiseOptions& o) {
   set.begin_group("Run");
   set.add(Changes::Run, "-t,--threads", o.run.threads, "Threads to use; 0: one for each processor")
-      ->check(CLI::Range(0, 4096))
+      ->check(from_to(0, 4096))
       ->capture_default_str();
   set.add(Changes::Run, "--max-memory", o.max_memory, max_memory_help)
       ->transform(CLI::AsSizeValue(false).description(""))

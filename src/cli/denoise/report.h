@@ -27,18 +27,18 @@ struct RunReport {
   Report reconstruction;
   double noise_before = 0;  ///< Mean over the frame of relnoise.Y; NaN if unknown.
   std::vector<PassAdvice> advice;
-  std::vector<std::string> missed;       ///< What was missed of --time-budget and --target.
+  std::vector<std::string> missed;       ///< Limits of --time-budget and --target that were missed.
   std::optional<ChosenSettings> chosen;  ///< Set if --time-budget or --target chose the settings.
 };
 
 /// Peak resident memory of this process in bytes.
 std::size_t peak_memory();
 
-/// What was read, before the work: a line, or with Verbosity::Full the roles of all layers. picture: its name in a file
-/// of several.
+/// Text about the input, printed before the work: a line, or with Verbosity::Full the roles of all layers. picture: its
+/// name in a file of several.
 std::string input_text(const ReadResult& in, const std::string& picture, Verbosity verbosity);
 
-/// What was done, what could be better, and notes: a line each, or with Verbosity::Full the table of all figures.
+/// Text about the work, advice and notes: a line each, or with Verbosity::Full the table of all figures.
 std::string report_text(const RunReport& run, bool with_advice, Verbosity verbosity);
 
 /// The same as JSON (docs/reference/report.md).

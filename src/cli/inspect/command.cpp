@@ -92,13 +92,7 @@ void setup_inspect(CLI::App& app, Command& chosen) {
       "Examples:\n"
       "  polyrecon inspect render.exr\n"
       "  polyrecon inspect render.exr --json");
-  sub->callback([o, &chosen] {
-    chosen = {[o] {
-                run(*o);
-                return 0;
-              },
-              {}};
-  });
+  set_callback<InspectOptions>(*sub, o, run, nullptr, chosen);
 }
 
 }  // namespace polyrecon

@@ -18,6 +18,7 @@
 #include "cli/common/checks.h"
 #include "cli/common/display_options.h"
 #include "cli/common/memory_limit.h"
+#include "cli/common/numbers.h"
 #include "cli/common/printed_text.h"
 #include "cli/common/sequence_arguments.h"
 #include "cli/view/viewed_files.h"
@@ -52,7 +53,7 @@ std::optional<Rect> parse_region(const std::string& text) {
   return r;
 }
 
-/// What a page shows: of the command line, or of a file that --page names.
+/// The contents of a page: those of the command line, or of a file that --page names.
 struct PageContents {
   std::string title, subtitle = "polyrecon " POLYRECON_VERSION, report;
   std::string frame_name = "frame";
@@ -186,7 +187,7 @@ void setup_view(CLI::App& app, Command& chosen) {
   sub->add_option("--region", o->region, "Part of the pictures to take in, in pixels of the files")
       ->type_name("X,Y,WIDTH,HEIGHT");
   sub->add_option("--scale", o->scale, "Average N x N pixels to one")
-      ->check(CLI::Range(1, 64))
+      ->check(from_to(1, 64))
       ->type_name("N")
       ->capture_default_str();
   add_page_size(*sub, o->max_size);
@@ -201,13 +202,7 @@ void setup_view(CLI::App& app, Command& chosen) {
       "  polyrecon view noisy.exr clean.exr error.exr -o look.html\n"
       "  polyrecon view noisy.exr clean.exr other.exr --reference reference.exr -o look.html --view Filmic\n"
       "  polyrecon view noisy.####.exr clean.####.exr -o look.html --frames 1-20 --scale 2 --layer Combined");
-  sub->callback([o, &chosen] {
-    chosen = {[o] {
-                run(*o);
-                return 0;
-              },
-              [o] { check(*o); }};
-  });
+  set_callback(*sub, o, run, check, chosen);
 }
 
 }  // namespace polyrecon

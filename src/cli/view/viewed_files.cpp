@@ -123,7 +123,7 @@ ViewedLayer viewed_layer(const LayeredFile& file, const Wanted& wanted, const Pl
                      is_map(file, layer)};
   if (!wanted.is_picture && viewed.slot.empty()) viewed.slot = "RGB";
   if (viewed.is_map) viewed.scale = scale_of(layer, placed.image);
-  // What tells most about a pixel of the picture: its noise, its samples, and the maps of a file that has no picture.
+  // These tell most about a pixel of the picture: its noise, its samples, and the maps of a file that has no picture.
   const Layer* picture = color_layer(file);
   viewed.listed =
       !picture || layer.role == Role::SampleCount || (is_variance(layer.companion) && layer.of == picture->name);

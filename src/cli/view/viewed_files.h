@@ -16,13 +16,13 @@ struct ViewedFile {
   std::vector<std::size_t> frames;  ///< Indices.
 };
 
-/// What of the files goes into the page.
+/// The part of the files that goes into the page.
 struct ViewSelection {
   std::vector<std::string> layers;  ///< Names; empty: the picture or the main map of a file, then all others.
-  bool first_only = false;          ///< Of each file only the layer that is shown first.
+  bool first_only = false;          ///< Only the layer of each file that is shown first.
   std::optional<Rect> region;       ///< In the files' coordinates.
   int scale = 1;                    ///< So many by so many pixels become one.
-  std::size_t max_bytes = 0;        ///< Of the page.
+  std::size_t max_bytes = 0;        ///< The page's most.
 };
 
 /// Adds the layers of the files to the page: first what is shown first, then maps and variances, then all others, as

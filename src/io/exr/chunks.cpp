@@ -11,18 +11,12 @@
 #include <algorithm>
 #include <array>
 
-#include "polyrecon/error.h"
+#include "io/bad_file.h"
 
 namespace polyrecon {
 namespace {
 
-[[noreturn]] void fail(const std::string& path, const std::string& what) {
-  throw Error(ExitCode::BadInput, fmt::format("{}: {}", path, what));
-}
-
 std::uint64_t ceil_divide(std::uint64_t a, std::uint64_t b) { return (a + b - 1) / b; }
-
-std::uint64_t side(int low, int high) { return static_cast<std::uint64_t>(std::int64_t{high} - low + 1); }
 
 std::uint64_t lines_per_chunk(Imf::Compression compression) {
   switch (compression) {
@@ -91,7 +85,7 @@ std::string chunk_title(const Imf::Header& header, std::size_t part, std::uint64
   }
   const Imf::TileDescription& tiles = header.tileDescription();
   if (tiles.mode != Imf::ONE_LEVEL) return fmt::format("{}, tile {} of all levels", title, index);
-  const std::uint64_t across = ceil_divide(side(window.min.x, window.max.x), tiles.xSize);
+  const std::uint64_t across = ceil_divide(window_side(window.min.x, window.max.x), tiles.xSize);
   return fmt::format("{}, tile ({}, {})", title, index % across, index / across);
 }
 
@@ -149,7 +143,8 @@ std::string fault_of(const FileBytes& file, std::uint64_t offset, const ChunkLay
 std::vector<std::uint64_t> read_table(const FileBytes& file, const std::string& path, std::uint64_t begin,
                                       std::uint64_t chunks) {
   std::vector<unsigned char> raw(chunks * 8);
-  if (!file.read(begin, raw.data(), raw.size())) fail(path, "incomplete: the file ends inside its table of chunks");
+  if (!file.read(begin, raw.data(), raw.size()))
+    refuse_file(path, "incomplete: the file ends inside its table of chunks");
   std::vector<std::uint64_t> offsets(chunks);
   for (std::size_t i = 0; i < offsets.size(); ++i) offsets[i] = number(raw.data() + 8 * i, 8);
   return offsets;
@@ -163,7 +158,7 @@ bool is_tiled_part(const Imf::Header& header) {
 
 std::uint64_t chunk_count(const Imf::Header& header) {
   const auto& window = header.dataWindow();
-  const std::uint64_t width = side(window.min.x, window.max.x), height = side(window.min.y, window.max.y);
+  const std::uint64_t width = window_side(window.min.x, window.max.x), height = window_side(window.min.y, window.max.y);
   if (is_tiled_part(header)) return tile_count(header.tileDescription(), width, height);
   return ceil_divide(height, lines_per_chunk(header));
 }
@@ -189,11 +184,11 @@ void check_chunks(const std::string& path, std::uint64_t file_bytes, std::uint64
       if (!fault.empty()) first_fault = fmt::format("{} cannot be read ({})", chunk_title(headers[p], p, i), fault);
     }
   }
-  if (written == 0) fail(path, "not yet rendered: no pixel is written");
+  if (written == 0) refuse_file(path, "not yet rendered: no pixel is written");
   if (absent > 0)
-    fail(path, fmt::format("incomplete: {} of {} chunks are not written, the first is {}", absent, absent + written,
-                           first_absent));
-  if (!first_fault.empty()) fail(path, fmt::format("incomplete: {}", first_fault));
+    refuse_file(path, fmt::format("incomplete: {} of {} chunks are not written, the first is {}", absent,
+                                  absent + written, first_absent));
+  if (!first_fault.empty()) refuse_file(path, fmt::format("incomplete: {}", first_fault));
 }
 
 }  // namespace polyrecon

@@ -17,6 +17,11 @@ std::uint64_t chunk_count(const Imf::Header& header);
 void check_chunks(const std::string& path, std::uint64_t file_bytes, std::uint64_t table_begin,
                   const std::vector<Imf::Header>& headers);
 
+/// Pixels from the first to the last of a window, which may lie anywhere in the range of int.
+inline std::uint64_t window_side(int first, int last) {
+  return static_cast<std::uint64_t>(std::int64_t{last} - first + 1);
+}
+
 /// Whether a part is stored in tiles.
 bool is_tiled_part(const Imf::Header& header);
 

@@ -12,19 +12,15 @@
 #include <map>
 #include <string_view>
 
+#include "io/bad_file.h"
 #include "io/exr/chunks.h"
 #include "io/exr/compression.h"
-#include "polyrecon/error.h"
 
 namespace polyrecon {
 namespace {
 
 constexpr std::uint64_t small_claim = std::uint64_t{16} << 20;  ///< Bytes that may be claimed without question.
 constexpr std::uint64_t minimum_chunk_bytes = 16;               ///< Its offset in the table, its place and its size.
-
-[[noreturn]] void fail(const std::string& path, const std::string& what) {
-  throw Error(ExitCode::BadInput, fmt::format("{}: {}", path, what));
-}
 
 std::uint32_t little_endian(const std::array<char, 4>& bytes) {
   std::uint32_t value = 0;
@@ -60,26 +56,26 @@ class HeaderWalk {
       ++position_;
       if (c == '\0') return text;
     }
-    fail(path_, "incomplete or damaged header (a name longer than 255 bytes)");
+    refuse_file(path_, "incomplete or damaged header (a name longer than 255 bytes)");
   }
 
   void skip(std::uint32_t size, const std::string& attribute) {
     if (size > bytes_ - position_)
-      fail(path_, fmt::format("incomplete or damaged header (attribute {} claims {} bytes)", attribute, size));
+      refuse_file(path_, fmt::format("incomplete or damaged header (attribute {} claims {} bytes)", attribute, size));
     position_ += size;
     stream_.seekg(static_cast<std::streamoff>(position_));
   }
 
   std::uint64_t position() const { return position_; }
 
-  [[noreturn]] void unsupported(const std::string& what) { fail(path_, what); }
+  [[noreturn]] void unsupported(const std::string& what) { refuse_file(path_, what); }
 
   [[noreturn]] void damaged(const std::string& attribute) {
-    fail(path_, fmt::format("incomplete or damaged header (attribute {})", attribute));
+    refuse_file(path_, fmt::format("incomplete or damaged header (attribute {})", attribute));
   }
 
  private:
-  [[noreturn]] void cut() { fail(path_, "incomplete: the file ends inside its header"); }
+  [[noreturn]] void cut() { refuse_file(path_, "incomplete: the file ends inside its header"); }
 
   const std::string& path_;
   std::ifstream stream_;
@@ -140,8 +136,6 @@ void walk_value(HeaderWalk& walk, const std::string& attribute, const std::strin
   }
   if (walk.position() != end) walk.damaged(attribute);
 }
-
-std::uint64_t side(int low, int high) { return static_cast<std::uint64_t>(std::int64_t{high} - low + 1); }
 
 /// No encoder packs pixels more than this to one: deflate reaches 1032, and PXR24 takes a quarter off before; RLE makes
 /// 2 bytes of 128; PIZ's Huffman code 10 bits of 261 words; B44A 3 bytes of 32; DWA 1 zero-run symbol of a block of 64,
@@ -204,23 +198,24 @@ std::uint64_t check_attribute_sizes(const std::string& path, std::uint64_t file_
 void check_claims(const std::string& path, std::uint64_t file_bytes, const std::vector<Imf::Header>& headers,
                   const ReadLimits& limits) {
   if (headers.size() > limits.max_parts)
-    fail(path, fmt::format("{} parts, more than {}", headers.size(), limits.max_parts));
+    refuse_file(path, fmt::format("{} parts, more than {}", headers.size(), limits.max_parts));
   std::uint64_t channels = 0, chunks = 0, claimed = 0, least = 0;
   for (std::size_t p = 0; p < headers.size(); ++p) {
     const Imf::Header& header = headers[p];
     const auto& window = header.dataWindow();
-    const std::uint64_t width = side(window.min.x, window.max.x), height = side(window.min.y, window.max.y);
+    const std::uint64_t width = window_side(window.min.x, window.max.x),
+                        height = window_side(window.min.y, window.max.y);
     if (width > limits.max_pixels || height > limits.max_pixels || width * height > limits.max_pixels)
-      fail(path, fmt::format("{}: {} x {} pixels, more than --max-pixels {}", part_title(header, p), width, height,
-                             limits.max_pixels));
+      refuse_file(path, fmt::format("{}: {} x {} pixels, more than --max-pixels {}", part_title(header, p), width,
+                                    height, limits.max_pixels));
     if (is_tiled_part(header)) {
       const auto& tiles = header.tileDescription();
       if (tiles.xSize == 0 || tiles.ySize == 0 || std::uint64_t{tiles.xSize} * tiles.ySize > limits.max_pixels)
-        fail(path, fmt::format("{}: tiles of {} x {} pixels", part_title(header, p), tiles.xSize, tiles.ySize));
+        refuse_file(path, fmt::format("{}: tiles of {} x {} pixels", part_title(header, p), tiles.xSize, tiles.ySize));
       if (std::uint64_t{tiles.xSize} * tiles.ySize * bytes_per_pixel(header) > small_claim &&
           (tiles.xSize > width || tiles.ySize > height))
-        fail(path, fmt::format("{}: tiles of {} x {} pixels in an image of {} x {}", part_title(header, p), tiles.xSize,
-                               tiles.ySize, width, height));
+        refuse_file(path, fmt::format("{}: tiles of {} x {} pixels in an image of {} x {}", part_title(header, p),
+                                      tiles.xSize, tiles.ySize, width, height));
     }
     for (auto c = header.channels().begin(); c != header.channels().end(); ++c) ++channels;
     chunks += chunk_count(header);
@@ -229,10 +224,10 @@ void check_claims(const std::string& path, std::uint64_t file_bytes, const std::
     least += width * height * bytes_per_pixel(header) / packing_limit(header.compression());
   }
   if (channels > limits.max_channels)
-    fail(path, fmt::format("{} channels, more than --max-channels {}", channels, limits.max_channels));
+    refuse_file(path, fmt::format("{} channels, more than --max-channels {}", channels, limits.max_channels));
   if (chunks > file_bytes / minimum_chunk_bytes || (claimed > small_claim && least > file_bytes))
-    fail(path, fmt::format("incomplete: the header claims {} chunks and {} MB of pixels, the file has {} bytes", chunks,
-                           claimed >> 20, file_bytes));
+    refuse_file(path, fmt::format("incomplete: the header claims {} chunks and {} MB of pixels, the file has {} bytes",
+                                  chunks, claimed >> 20, file_bytes));
 }
 
 }  // namespace polyrecon

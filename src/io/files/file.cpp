@@ -12,6 +12,7 @@
 #include <string_view>
 
 #include "core/parallel.h"
+#include "io/bad_file.h"
 #include "io/exr/description.h"
 #include "io/files/channel_reader.h"
 #include "io/files/file_identity.h"
@@ -20,10 +21,6 @@
 
 namespace polyrecon {
 namespace {
-
-[[noreturn]] void fail(const std::string& path, const std::string& what) {
-  throw Error(ExitCode::BadInput, fmt::format("{}: {}", path, what));
-}
 
 /// Zeros where the file is shorter.
 std::array<char, 8> first_bytes(const std::string& path) {
@@ -41,10 +38,10 @@ bool begins_with_zeros(const std::string& path) {
 std::uint64_t size_of_existing(const std::string& path) {
   std::error_code failure;
   if (!std::filesystem::exists(path, failure)) throw Error(ExitCode::Missing, fmt::format("{}: no such file", path));
-  if (!std::filesystem::is_regular_file(path, failure)) fail(path, "not a file");
+  if (!std::filesystem::is_regular_file(path, failure)) refuse_file(path, "not a file");
   const std::uint64_t bytes = std::filesystem::file_size(path, failure);
-  if (failure || !std::ifstream(path, std::ios::binary)) fail(path, "cannot be opened for reading");
-  if (bytes == 0 || begins_with_zeros(path)) fail(path, "not yet rendered: the file has no contents");
+  if (failure || !std::ifstream(path, std::ios::binary)) refuse_file(path, "cannot be opened for reading");
+  if (bytes == 0 || begins_with_zeros(path)) refuse_file(path, "not yet rendered: the file has no contents");
   return bytes;
 }
 
@@ -68,12 +65,12 @@ std::string plain_format_of(const std::string& path) {
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   const auto found = std::find_if(plain_formats.begin(), plain_formats.end(),
                                   [&](const PlainFormat& f) { return f.extension == extension; });
-  if (found == plain_formats.end()) fail(path, "not an OpenEXR file");
+  if (found == plain_formats.end()) refuse_file(path, "not an OpenEXR file");
   const auto head = first_bytes(path);
   if (std::none_of(found->beginnings.begin(), found->beginnings.end(), [&](std::string_view beginning) {
         return !beginning.empty() && std::string_view(head.data(), beginning.size()) == beginning;
       }))
-    fail(path, fmt::format("does not begin as a {} file does; give it the extension of its format", extension));
+    refuse_file(path, fmt::format("does not begin as a {} file does; give it the extension of its format", extension));
   return std::string(found->name);
 }
 

@@ -7,26 +7,22 @@
 #include <memory>
 
 #include "core/first_line.h"
-#include "polyrecon/error.h"
+#include "io/bad_file.h"
 
 namespace polyrecon {
 namespace {
 
-[[noreturn]] void fail(const std::string& path, const std::string& what) {
-  throw Error(ExitCode::BadInput, fmt::format("{}: {}", path, what));
-}
-
 /// Opens a file with the decoder of its format; OpenImageIO would choose one by the file's contents.
 std::unique_ptr<OIIO::ImageInput> open_image(const FileInfo& file) {
   auto input = OIIO::ImageInput::create(file.format);
-  if (!input) fail(file.path, fmt::format("cannot be read ({})", first_line(OIIO::geterror())));
+  if (!input) refuse_file(file.path, fmt::format("cannot be read ({})", first_line(OIIO::geterror())));
   input->threads(1);  // the TIFF reader of some versions has a race
   // The rows of a PFM are stored from the bottom up. Some versions of OpenImageIO reverse them only on request.
   OIIO::ImageSpec hints, spec;
   hints.attribute("pnm:pfmflip", 1);
   hints.attribute("oiio:RawColor", 1);  // CMYK and palettes are refused below rather than converted
   if (!input->open(file.path, spec, hints))
-    fail(file.path, fmt::format("cannot be read ({})", first_line(input->geterror())));
+    refuse_file(file.path, fmt::format("cannot be read ({})", first_line(input->geterror())));
   return input;
 }
 
@@ -35,10 +31,10 @@ void require_plain_tiff(const FileInfo& file, const OIIO::ImageSpec& spec) {
   constexpr int black_is_zero = 1, rgb = 2;
   const int photometric = spec.get_int_attribute("tiff:PhotometricInterpretation", rgb);
   if (photometric != black_is_zero && photometric != rgb)
-    fail(file.path, fmt::format("a TIFF of photometric interpretation {}; save it as RGB", photometric));
+    refuse_file(file.path, fmt::format("a TIFF of photometric interpretation {}; save it as RGB", photometric));
   const int bits = spec.get_int_attribute("oiio:BitsPerSample", static_cast<int>(8 * spec.format.size()));
   if (bits % 8 != 0 || bits != static_cast<int>(8 * spec.format.size()))
-    fail(file.path, fmt::format("a TIFF of {} bits per sample; save 32-bit floats", bits));
+    refuse_file(file.path, fmt::format("a TIFF of {} bits per sample; save 32-bit floats", bits));
 }
 
 SampleType to_sample_type(const OIIO::TypeDesc& type) {
@@ -53,13 +49,13 @@ void describe_plain_image(FileInfo& file, const ReadLimits& limits) {
   const OIIO::ImageSpec& spec = input->spec();
   if (spec.width <= 0 || spec.height <= 0 || spec.nchannels <= 0 || spec.image_pixels() > limits.max_pixels ||
       static_cast<std::size_t>(spec.nchannels) > limits.max_channels)
-    fail(file.path,
-         fmt::format("{} x {} pixels of {} channels are beyond the limits", spec.width, spec.height, spec.nchannels));
+    refuse_file(file.path, fmt::format("{} x {} pixels of {} channels are beyond the limits", spec.width, spec.height,
+                                       spec.nchannels));
   if (file.format == "tiff") require_plain_tiff(file, spec);
   const std::uint64_t raw = spec.image_bytes(true);
   const bool packed = file.format != "pnm";
   if (packed ? raw / 1024 > file.bytes : raw > file.bytes)
-    fail(file.path, fmt::format("incomplete: {} bytes of pixels in a file of {} bytes", raw, file.bytes));
+    refuse_file(file.path, fmt::format("incomplete: {} bytes of pixels in a file of {} bytes", raw, file.bytes));
   PartInfo part;
   part.data_window = {spec.x, spec.y, spec.x + spec.width, spec.y + spec.height};
   part.display_window = {spec.full_x, spec.full_y, spec.full_x + spec.full_width, spec.full_y + spec.full_height};
@@ -78,10 +74,10 @@ Image read_plain_image(const FileInfo& file, const std::vector<std::string>& cha
   const OIIO::ImageSpec& spec = input->spec();
   if (spec.nchannels != static_cast<int>(stride) || spec.width != part.data_window.width() ||
       spec.height != part.data_window.height())
-    fail(file.path, "was changed while it was read; run again");
+    refuse_file(file.path, "was changed while it was read; run again");
   if (file.format == "tiff") require_plain_tiff(file, spec);
   if (!input->read_image(0, 0, 0, static_cast<int>(stride), OIIO::TypeDesc::FLOAT, pixels.data()))
-    fail(file.path, fmt::format("incomplete or damaged ({})", first_line(input->geterror())));
+    refuse_file(file.path, fmt::format("incomplete or damaged ({})", first_line(input->geterror())));
   Image image(part.data_window.width(), part.data_window.height(), static_cast<int>(channels.size()));
   for (std::size_t c = 0; c < channels.size(); ++c) {
     const auto found = std::find_if(part.channels.begin(), part.channels.end(),

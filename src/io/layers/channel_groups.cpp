@@ -24,9 +24,9 @@ constexpr std::array<Letters, 2> vector_letters{{{"X", "Y", "Z", "A"}, {"x", "y"
 using Eyes = std::array<std::string_view, 2>;
 constexpr Eyes eyes{"left", "right"};  // OpenEXR's names of the views of a stereo render
 constexpr std::array<Eyes, 3> eyes_of_parts{{eyes, {"L", "R"}, {"l", "r"}}};
-constexpr std::string_view separators = "._ -:/";
+constexpr std::string_view layer_separators = "._ -:/";
 
-bool is_separator(char c) { return separators.find(c) != std::string_view::npos; }
+bool is_layer_separator(char c) { return layer_separators.find(c) != std::string_view::npos; }
 
 /// R G B come first, then X Y Z and U V W, then everything else. `word` is a letter or the name of a colour.
 int place_of(std::string_view word) {
@@ -57,8 +57,9 @@ std::string without_view(const std::string& text, const std::string& view) {
   if (view.empty() || text.size() < view.size()) return text;
   if (text == view) return {};
   const std::size_t rest = text.size() - view.size();
-  if (text.compare(rest, view.size(), view) == 0 && is_separator(text[rest - 1])) return text.substr(0, rest - 1);
-  if (text.compare(0, view.size(), view) == 0 && is_separator(text[view.size()])) return text.substr(view.size() + 1);
+  if (text.compare(rest, view.size(), view) == 0 && is_layer_separator(text[rest - 1])) return text.substr(0, rest - 1);
+  if (text.compare(0, view.size(), view) == 0 && is_layer_separator(text[view.size()]))
+    return text.substr(view.size() + 1);
   return text;
 }
 
@@ -191,7 +192,7 @@ class PartChannels {
         if (!ends_with(channel, letter)) continue;
         const std::string stem = channel.substr(0, channel.size() - letter.size());
         std::string name = stem;
-        while (!name.empty() && is_separator(name.back())) name.pop_back();
+        while (!name.empty() && is_layer_separator(name.back())) name.pop_back();
         const auto dotted = names_.lower_bound(name + ".");
         const bool taken = dotted != names_.end() && dotted->compare(0, name.size() + 1, name + ".") == 0;
         if (!name.empty() && !taken && has_all(stem, letters)) return {name, std::string(letter)};
@@ -371,7 +372,7 @@ std::string word_of(const Layer& layer, const std::string& channel) {
   std::string word(after_last_dot(channel));
   if (word.size() < channel.size() || word.compare(0, layer.pass.size(), layer.pass) != 0) return word;
   std::size_t begin = layer.pass.size();
-  while (begin < word.size() && is_separator(word[begin])) ++begin;
+  while (begin < word.size() && is_layer_separator(word[begin])) ++begin;
   return begin < word.size() ? word.substr(begin) : word;
 }
 

@@ -13,13 +13,14 @@
 namespace polyrecon {
 namespace {
 
-/// What the lack of a feature costs, the dearest first (docs/guide/README.md has the figures).
-struct Lack {
+/// Costs of missing features, the dearest first (docs/guide/README.md has the figures).
+struct MissingFeature {
   Role role;
   const char* without;
 };
-constexpr std::array lacks{Lack{Role::Albedo, "textures get blurred"}, Lack{Role::Normal, "shapes get soft edges"},
-                           Lack{Role::Depth, "things at different distances run into each other"}};
+constexpr std::array missing_features{MissingFeature{Role::Albedo, "textures get blurred"},
+                                      MissingFeature{Role::Normal, "shapes get soft edges"},
+                                      MissingFeature{Role::Depth, "things at different distances run into each other"}};
 
 std::string letters_of(const std::string& text) {
   std::string out;
@@ -103,8 +104,9 @@ std::vector<PassAdvice> pass_advice(const FrameSource& source) {
   std::vector<PassAdvice> advice;
   if (source.chosen.empty()) return advice;
   const Renderer* renderer = renderer_of(source);
-  for (const Lack& lack : lacks)
-    if (!has(source, lack.role)) advice.push_back({name_of(lack.role), lack.without, how_to(renderer, lack.role)});
+  for (const MissingFeature& missing : missing_features)
+    if (!has(source, missing.role))
+      advice.push_back({name_of(missing.role), missing.without, how_to(renderer, missing.role)});
   if (!noise_is_known(source))
     advice.push_back({"variance", "the noise is estimated from the picture",
                       renderer && !renderer->noise_switch.empty()

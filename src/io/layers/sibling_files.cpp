@@ -16,17 +16,17 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t short_word = 2;  // names of so few letters are too often something else
-constexpr std::string_view separators = "._- ";
+constexpr std::string_view name_separators = "._- ";
 
-bool is_separator(char c) { return separators.find(c) != std::string_view::npos; }
+bool is_name_separator(char c) { return name_separators.find(c) != std::string_view::npos; }
 
 /// Whether the word names a pass that has a role. Short ones are features or beauties that stand apart from the rest of
 /// the name, in the spelling of a renderer: "shot_N". before: what stands in front of the word.
 bool is_pass(const std::string& before, const std::string& word) {
   const auto known = classify_pass(word);
-  if (word.empty() || is_separator(word.front()) || !known || known->role == Role::Other) return false;
+  if (word.empty() || is_name_separator(word.front()) || !known || known->role == Role::Other) return false;
   if (word.size() > short_word) return true;
-  const bool apart = before.empty() || is_separator(before.back());
+  const bool apart = before.empty() || is_name_separator(before.back());
   return apart && is_written_so(word) && (info_of(known->role).feature || known->role == Role::Beauty);
 }
 
@@ -75,7 +75,7 @@ std::size_t numbers_at_end(const std::string& name) {
 
 /// The word before the first separator if it names a beauty: "beauty_shot.0001".
 std::string beauty_at_begin(const std::string& name) {
-  const std::string word = name.substr(0, name.find_first_of(separators));
+  const std::string word = name.substr(0, name.find_first_of(name_separators));
   return word.size() < name.size() && is_pass({}, word) && classify_pass(word)->role == Role::Beauty ? word
                                                                                                      : std::string();
 }
@@ -106,7 +106,7 @@ std::string between(const std::string& before, const std::string& text, const st
 
 /// The feature, or the companion of the beauty, that the word adds to a name: "_albedo", ".Z", "_variance"; else empty.
 std::string added_pass(const std::string& word) {
-  if (word.empty() || !is_separator(word.front())) return {};
+  if (word.empty() || !is_name_separator(word.front())) return {};
   const std::string before = word.substr(0, 1), pass = word.substr(1);
   const bool feature = is_pass(before, pass) && info_of(classify_pass(pass)->role).feature;
   return feature || is_beauty_companion(pass) ? pass : std::string();

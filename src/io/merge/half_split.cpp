@@ -8,7 +8,7 @@
 namespace polyrecon {
 namespace {
 
-constexpr double uneven = 1.25;
+constexpr double tolerated_unevenness = 1.25;
 
 /// Samples of the larger half over those of the smaller one.
 double unevenness(const std::vector<double>& samples, const std::vector<bool>& half_b) {
@@ -23,7 +23,7 @@ std::vector<bool> split_renders(const std::vector<double>& samples) {
   std::vector<bool> alternating(samples.size()), half_b(samples.size());
   for (std::size_t k = 0; k < samples.size(); ++k) alternating[k] = k % 2 == 1;
   const double before = unevenness(samples, alternating);
-  if (!(before > uneven)) return alternating;
+  if (!(before > tolerated_unevenness)) return alternating;
   std::vector<std::size_t> longest_first(samples.size());
   std::iota(longest_first.begin(), longest_first.end(), std::size_t{0});
   std::stable_sort(longest_first.begin(), longest_first.end(),

@@ -13,8 +13,9 @@ namespace polyrecon {
 namespace {
 
 void note_uneven_halves(const MergeTask& task, const std::array<double, 2>& samples, MergeResult& report) {
-  constexpr double uneven = 2;
-  if (task.counted.empty() || std::max(samples[0], samples[1]) <= uneven * std::min(samples[0], samples[1])) return;
+  constexpr double noted_ratio = 2;
+  if (task.counted.empty() || std::max(samples[0], samples[1]) <= noted_ratio * std::min(samples[0], samples[1]))
+    return;
   report.notes.push_back(
       fmt::format("the halves have {:.3g} and {:.3g} samples per pixel, so the estimated error will be too high; merge "
                   "renders of similar length",

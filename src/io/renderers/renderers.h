@@ -64,7 +64,7 @@ struct SampleMapFormat {
   std::string usage;  ///< How to use the file; "{max}" stands for the largest number of samples.
 };
 
-/// Where a user of a renderer switches a pass on.
+/// The place where a user of a renderer switches a pass on.
 struct PassSwitch {
   Role role;
   std::string place;  ///< "View Layer > Passes > Data > Denoising Data"
@@ -102,7 +102,7 @@ struct Renderer {
   /// Factors that turn the channels of the motion pass into Frame::motion.
   std::array<Real, 4> motion_factors{1, 1, 1, 1};
   SampleMapFormat sample_map;
-  std::vector<PassSwitch> switches;           ///< Of features that improve the result.
+  std::vector<PassSwitch> switches;           ///< For features that improve the result.
   std::string noise_switch;                   ///< How its renders come to tell their noise; may be empty.
   std::vector<std::string> other_pass_files;  ///< Passes without a role that it writes to files of their own.
 };
