@@ -28,12 +28,8 @@ STEP = re.compile(
     r"```\w+\n(?P<code>.*?)```",
     re.S,
 )
-# The command that compiles the first is used for new files of the second.
-LIKE = (
-    ("src/core/roles.cpp", "src/"),
-    ("tests/cli/denoise_test.cpp", "tests/cli/"),
-    ("tests/core/roles_test.cpp", "tests/"),
-)
+# Files of a folder are compiled with the options of a target. In a unity build they have no commands of their own.
+TARGETS = (("src/", "polyrecon_numeric"), ("tests/cli/", "program_tests"), ("tests/", "unit_tests"))
 
 
 def renamed(text, names):
@@ -74,14 +70,15 @@ def edited(before, step, name):
 
 
 def commands(build):
+    """A command of each target."""
     found = json.loads((build / "compile_commands.json").read_text(encoding="utf-8"))
-    return {str(pathlib.Path(entry["file"]).relative_to(tree.ROOT)): entry["command"] for entry in found}
+    targets = ((re.search(r" -o \S*CMakeFiles/(\w+)\.dir/\S+\.o ", entry["command"]), entry) for entry in found)
+    return {target[1]: entry["command"] for target, entry in targets if target}
 
 
 def errors_of(path, root, known):
     """The compiler's messages about a file below root, with the options of the build."""
-    like = path if path in known else next(file for file, folder in LIKE if path.startswith(folder))
-    words, kept = shlex.split(known[like]), []
+    words, kept = shlex.split(known[next(target for folder, target in TARGETS if path.startswith(folder))]), []
     while words:
         word = words.pop(0)
         if word in ("-o", "-c", "-include"):  # The precompiled header would be made of the tree's own headers.

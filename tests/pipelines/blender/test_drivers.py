@@ -15,6 +15,7 @@ import numpy as np
 import OpenImageIO as oiio
 
 from pipelines.common import exr
+from tests.long_test import long_test
 from tests.pipelines.blender.support import BLENDER_3, NO_BLENDER_5_2, PYTHON_OF_BLENDER_5_2, ROOT, SceneTest
 
 
@@ -73,6 +74,7 @@ class Adaptive(SceneTest):
         self.assertEqual([image["name"] for image in shown["images"][:3]], ["input", "result", "estimated error"])
         self.assertNotRegex(page, "https?:")
 
+    @long_test
     @unittest.skipUnless(PYTHON_OF_BLENDER_5_2, NO_BLENDER_5_2)
     def test_blender_5_2_with_masks(self):
         blender = self.blender_5_2()
@@ -318,6 +320,7 @@ class Hostile(SceneTest):
             self.assertIn("Python drivers of the file are not run", done.stdout)
             self.assertEqual(list(self.folder.glob("ran_*")), [], blender)
 
+    @long_test
     def test_the_file_would_run_it_if_it_were_let(self):
         """The test above can fail: a Blender that trusts the file runs all of it."""
         trust = (
@@ -394,6 +397,7 @@ for line in sys.stdin:
         with self.assertRaises(ProcessLookupError):
             os.kill(int(pathlib.Path(mark).read_text()), 0)
 
+    @long_test
     def test_case30_it_writes_no_file(self):
         body = """        print('\\n@polyrecon {"seconds": 1}', flush=True); continue"""
         self.assertIn("wrote no file", self.failing(body))
