@@ -96,6 +96,7 @@ void lower_error(const Image& reconstruction, const Image& prior, const Image& s
       }
   });
   gain = gaussian_blur(gain, smoothing_sigma, sampled);
+  error.prior_share = Image(prior.width(), prior.height(), 1);
   for_rows(gain.height(), [&](int y) {
     for (int x = 0; x < gain.width(); ++x) {
       double relative = 0;
@@ -107,6 +108,7 @@ void lower_error(const Image& reconstruction, const Image& prior, const Image& s
         relative += after / relmse_denominator(p + w * (f - p)) / 3;
       }
       error.relative_mse.at(x, y, 0) = storable(relative);
+      error.prior_share.at(x, y, 0) = 1 - share.at(x, y, 0);
       error.relative_variance.at(x, y, 0) =
           std::min(error.relative_variance.at(x, y, 0), error.relative_mse.at(x, y, 0));
     }

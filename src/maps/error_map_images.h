@@ -11,7 +11,7 @@ namespace polyrecon {
 struct ErrorMapImage {
   Image ErrorMap::*image;
   std::array<const char*, 3> names;  ///< Names of the channels; nullptr beyond the last.
-  bool may_be_missing = false;       ///< In the file: earlier versions did not write it.
+  bool may_be_missing = false;       ///< In the file: earlier versions did not write it, or there is no such thing.
 
   constexpr std::size_t channels() const {
     std::size_t count = 0;
@@ -20,18 +20,20 @@ struct ErrorMapImage {
   }
 };
 
-inline constexpr std::array<ErrorMapImage, 4> error_map_images{{{&ErrorMap::mse, {"mse.R", "mse.G", "mse.B"}},
+inline constexpr std::array<ErrorMapImage, 5> error_map_images{{{&ErrorMap::mse, {"mse.R", "mse.G", "mse.B"}},
                                                                 {&ErrorMap::relative_mse, {"relmse.Y"}},
                                                                 {&ErrorMap::relative_variance, {"relvariance.Y"}},
-                                                                {&ErrorMap::relative_noise, {"relnoise.Y"}, true}}};
+                                                                {&ErrorMap::relative_noise, {"relnoise.Y"}, true},
+                                                                {&ErrorMap::prior_share, {"priorshare.Y"}, true}}};
 
 static_assert(sizeof(ErrorMap) == error_map_images.size() * sizeof(Image) + sizeof(double),
               "an image of ErrorMap has no row in error_map_images");
 
-/// Channels of an ErrorMap with all its images.
-constexpr std::size_t error_map_channels() {
+/// Channels of an ErrorMap with all its images, or all but the share of a prior.
+constexpr std::size_t error_map_channels(bool with_prior) {
   std::size_t count = 0;
-  for (const ErrorMapImage& image : error_map_images) count += image.channels();
+  for (const ErrorMapImage& image : error_map_images)
+    if (with_prior || image.image != &ErrorMap::prior_share) count += image.channels();
   return count;
 }
 

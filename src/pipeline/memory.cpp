@@ -64,7 +64,7 @@ std::size_t finishing_channels(const FrameShape& shape) {
   const std::size_t layers_without_prior = colors > primaries ? colors : 0;
   const std::size_t using_prior = std::max(prior_candidate_channels, share_channels);
   const std::size_t prior = shape.prior_channels > 0 ? using_prior + layers_without_prior : 0;
-  return pair_channels(shape) + candidate_channels(colors) + error_map_channels() + order_map +
+  return pair_channels(shape) + candidate_channels(colors) + error_map_channels(shape.prior_channels > 0) + order_map +
          std::max(prior, restore_channels(colors));
 }
 

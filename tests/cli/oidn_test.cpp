@@ -22,8 +22,19 @@ TEST_F(OidnPrior, IsMadeAndReported) {
   SKIP_WITHOUT_OIDN();
   write_render(path("in.exr"));
   const Outcome done = run({"denoise", "-i", "in.exr", "-o", "out.exr", "--prior", "oidn", "--quality", "draft",
-                            "--report", "report.json", "--quiet"});
+                            "--report", "report.json", "--error-map", "error.exr", "--quiet"});
   ASSERT_EQ(done.code, 0) << done.err;
+  const OIIO::ImageBuf map = load(path("error.exr"));
+  const int channel = map.spec().channelindex("priorshare.Y");
+  ASSERT_GE(channel, 0);
+  double sum = 0;
+  for (int y = 0; y < map.spec().height; ++y)
+    for (int x = 0; x < map.spec().width; ++x) {
+      const float share = map.getchannel(x, y, 0, channel);
+      ASSERT_TRUE(share >= 0 && share <= 1) << share;
+      sum += static_cast<double>(share);
+    }
+  EXPECT_GT(sum / (map.spec().width * map.spec().height), 0.05);
   const auto report = nlohmann::json::parse(read_text(path("report.json")));
   EXPECT_THAT(report["settings"].get<std::string>(), HasSubstr("prior=oidn"));
   const auto& decisions = report["decisions"];

@@ -127,6 +127,7 @@ TEST(LowerError, TakesHalfOfWhatTheMixGains) {
   error.relative_variance = Image(8, 8, 1, Real(0.08));
   const Image ours(8, 8, 3, Real(1)), prior(8, 8, 3, Real(1.2)), share(8, 8, 1, Real(0.5));
   lower_error(ours, prior, share, {}, error);
+  EXPECT_NEAR(error.prior_share.at(4, 4, 0), 1 - 0.5, 1e-6);
   const double after = 0.09 - 0.5 * 0.1 * 0.1, denominator = 1.1 * 1.1 + 0.01;
   EXPECT_NEAR(error.mse.at(4, 4, 1), after, 1e-6);
   EXPECT_NEAR(error.relative_mse.at(4, 4, 0), after / denominator, 1e-6);
@@ -139,6 +140,7 @@ TEST(LowerError, AQuarterStays) {
   error.mse = Image(8, 8, 3, Real(0.01));
   error.relative_mse = error.relative_variance = Image(8, 8, 1, Real(0.01));
   lower_error(Image(8, 8, 3, Real(1)), Image(8, 8, 3, Real(3)), Image(8, 8, 1), {}, error);
+  EXPECT_EQ(error.prior_share.at(2, 2, 0), Real(1)) << "share was that of the reconstruction: none";
   EXPECT_NEAR(error.mse.at(2, 2, 0), 0.0025, 1e-7);
 }
 

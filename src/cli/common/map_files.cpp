@@ -58,9 +58,11 @@ std::vector<MapChannel> channels_for(const SampleMapFormat* format, const Sample
 void write_error_map(const std::string& target, const ErrorMap& map, const Image& sample_count,
                      const MapWindows& windows) {
   std::vector<MapChannel> channels;
-  for (const ErrorMapImage& entry : error_map_images)
+  for (const ErrorMapImage& entry : error_map_images) {
+    if ((map.*entry.image).empty()) continue;
     for (std::size_t c = 0; c < entry.channels(); ++c)
       channels.push_back({entry.names[c], plane_of(map.*entry.image, static_cast<int>(c))});
+  }
   if (!sample_count.empty()) channels.push_back({"samples.Y", sample_count});
   write_maps(target, channels, windows.data, windows.display);
 }

@@ -21,7 +21,7 @@ struct ErrorMapFile {
   MapWindows windows;
 };
 
-/// Writes the channels of error_map_images and, if known, samples.Y.
+/// Writes the images of error_map_images that are there and, if known, samples.Y.
 void write_error_map(const std::string& target, const ErrorMap& map, const Image& sample_count,
                      const MapWindows& windows);
 
