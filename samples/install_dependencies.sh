@@ -6,7 +6,7 @@ packages=(g++ cmake ninja-build pkg-config libopenimageio-dev openimageio-tools 
   libcli11-dev libtbb-dev libeigen3-dev nlohmann-json3-dev libfmt-dev zlib1g-dev fonts-dejavu-core)
 [ "${1-}" != --tests ] || packages+=(libgtest-dev libgmock-dev libbenchmark-dev clang-format clang-tidy
   python3 python3-numpy python3-openimageio python3-jinja2 python3-rich python3-venv blender povray
-  python3-yaml slurm-wlm munge dpkg-dev mandoc zsh fish chromium chromium-driver)
+  python3-yaml slurm-wlm munge dpkg-dev mandoc zsh fish chromium chromium-driver firefox-esr xvfb)
 missing=()
 for package in "${packages[@]}"; do
   dpkg-query -W -f='${Status}' "$package" 2>/dev/null | grep -q 'ok installed' || missing+=("$package")

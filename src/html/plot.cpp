@@ -196,6 +196,10 @@ std::string svg_of(const LogPlot& plot) {
         xs.add(p.x);
         ys.add(p.y);
       }
+  for (const auto& [x, y] : plot.front) {
+    xs.add(x);
+    ys.add(y);
+  }
   if (xs.high == 0) return "<p>No point has an error above zero: nothing to draw.</p>\n";
   for (const auto& [name, value] : plot.levels)
     if (std::isfinite(value) && value > 0) ys.add(value);
@@ -275,7 +279,8 @@ std::string svg_of(const StackedBars& bars) {
                        escaped(row.name));
     for (std::size_t k = 0; k < row.values.size(); ++k) {
       svg += fmt::format(
-          "<rect x='{:.2f}' y='{:.1f}' width='{:.2f}' height='{}' fill='{}'><title>{}: {:.3g} {}</title></rect>",
+          "<rect x='{:.2f}' y='{:.1f}' width='{:.2f}' height='{}' fill='{}' class='part'><title>{}: {:.3g} "
+          "{}</title></rect>",
           names + sum * scale, y, row.values[k] * scale, bar, plot_color(k), escaped(bars.parts[k]), row.values[k],
           escaped(bars.unit));
       sum += row.values[k];

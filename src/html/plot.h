@@ -27,7 +27,7 @@ struct PlotSeries {
 struct LogPlot {
   std::string x_label, y_label;
   std::vector<PlotSeries> series;
-  std::vector<std::pair<double, double>> front;        ///< Drawn as a separate line.
+  std::vector<std::pair<double, double>> front;        ///< Drawn as a separate line, all of it.
   std::vector<std::pair<std::string, double>> levels;  ///< Named horizontal lines.
 };
 

@@ -47,7 +47,6 @@ def main():
         page.until("document.querySelectorAll('#maps [data-value]').length")
         save(page, "judge_view.jpg", folder)
         page.open(look, "#a=1&b=0&mode=difference&kind=relative")
-        page.run("location.reload()")
         save(page, "judge_difference.jpg", folder)
         page.open(judged)
         page.until("document.documentElement.dataset.drawn")

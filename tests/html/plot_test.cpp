@@ -45,6 +45,14 @@ TEST(Plot, EveryPointThatCanBeDrawnIsDrawnAndNamed) {
   EXPECT_EQ(svg.find("nan"), std::string::npos);
 }
 
+TEST(Plot, AxesHoldTheSeparateLine) {
+  LogPlot plot{"x", "y", {{"ours", "#000", Marker::Disc, false, {{1, 1, "", ""}, {2, 1.5, "", ""}}}}, {}, {}};
+  const auto before = disc_centres(svg_of(plot));
+  plot.front = {{0.01, 0.01}, {100, 100}};
+  const auto after = disc_centres(svg_of(plot));
+  EXPECT_LT(after[1] - after[0], 0.2 * (before[1] - before[0]));
+}
+
 TEST(Plot, NamesCannotBreakOut) {
   const std::string evil = "<script>'\"&";
   const LogPlot plot{evil, evil, {{evil, "#000", Marker::Diamond, false, {{1, 1, evil, evil}}}}, {}, {{evil, 1}}};

@@ -52,6 +52,10 @@ const std::vector<Column>& columns() {
   return all;
 }
 
+std::string figure_text(const Column& column, const SequenceFigures& figures) {
+  return fmt::format(fmt::runtime(column.format), column.value(figures));
+}
+
 }  // namespace
 
 ComparisonPage::ComparisonPage(const std::vector<std::string>& images, const std::vector<int>& frames,
@@ -124,7 +128,7 @@ std::string ComparisonPage::link(std::size_t image, std::size_t frame, const std
                      more);
 }
 
-/// A row of figures for each image. Where there are several, the best figure of each column stands out.
+/// A row of figures for each image. The best ones of each column stand out, unless all look alike.
 std::string ComparisonPage::figures(const std::vector<std::vector<Comparison>>& comparisons,
                                     const std::string& layer) const {
   std::vector<std::pair<std::size_t, SequenceFigures>> rows;
@@ -158,10 +162,13 @@ std::string ComparisonPage::figures(const std::vector<std::vector<Comparison>>& 
     for (const Column& column : columns()) {
       if (!flickers && column.name == std::string("flicker")) continue;
       const double value = column.value(figures);
-      const bool best = rows.size() > 1 && std::none_of(rows.begin(), rows.end(), [&](const auto& other) {
-                          return std::abs(column.value(other.second)) < std::abs(value);
-                        });
-      const std::string text = fmt::format(fmt::runtime(column.format), value), address = to(column.name);
+      const std::string text = figure_text(column, figures), address = to(column.name);
+      const auto looks_alike = [&](const auto& other) { return figure_text(column, other.second) == text; };
+      const auto is_better = [&](const auto& other) {
+        return !looks_alike(other) && std::abs(column.value(other.second)) < std::abs(value);
+      };
+      const bool best = std::isfinite(value) && !std::all_of(rows.begin(), rows.end(), looks_alike) &&
+                        std::none_of(rows.begin(), rows.end(), is_better);
       html += fmt::format("<td{}>{}</td>", best ? " class=\"best\"" : "",
                           address.empty() ? text : fmt::format("<a href=\"{}\">{}</a>", address, text));
     }

@@ -91,6 +91,7 @@ Placed selected(const Image& image, int x, int y, const ViewSelection& selection
 /// A scale for a layer in false colours that holds for what the layer is, not for the values of one file.
 std::optional<MapScale> scale_of(const Layer& layer, const Image& values) {
   if (layer.name == "order") return MapScale{-1, 2, false};
+  if (layer.name == "priorshare") return MapScale{0, 1, false};
   Image magnitudes(values.width(), values.height(), 1);
   for (std::size_t i = 0; i < values.pixels(); ++i) {
     double sum = 0;
@@ -112,11 +113,23 @@ bool are_halves(const PartInfo& part, const std::vector<std::string>& channels) 
   });
 }
 
+/// The name of a layer for people. The layers of our maps have short names, which are explained.
+std::string label_of(const LayeredFile& file, const Layer& layer) {
+  static const std::map<std::string, const char*> explained{{"mse", "estimated squared error"},
+                                                            {"relmse", "estimated relative error"},
+                                                            {"relvariance", "its part that is variance"},
+                                                            {"relnoise", "relative noise of the input"},
+                                                            {"priorshare", "share of the prior"}};
+  if (layer.name.empty()) return "RGB";
+  const auto at = is_error_map(file) ? explained.find(layer.name) : explained.end();
+  return at == explained.end() ? layer.name : fmt::format("{}: {}", layer.name, at->second);
+}
+
 /// How a layer of a file is shown.
 ViewedLayer viewed_layer(const LayeredFile& file, const Wanted& wanted, const Placed& placed) {
   const Layer& layer = *wanted.layer;
   ViewedLayer viewed{wanted.is_picture ? "" : layer.name,
-                     layer.name.empty() ? "RGB" : layer.name,
+                     label_of(file, layer),
                      layer.channels,
                      placed.x,
                      placed.y,

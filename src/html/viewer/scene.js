@@ -36,26 +36,6 @@ const nearHalf = (() => {
   };
 })();
 
-/** The text of a block. The page's script runs before the blocks are parsed, so that the first picture does not wait for
- * the others. A block is whole once something follows it. */
-async function blockText(id) {
-  for (;;) {
-    const element = document.getElementById(id);
-    if (document.readyState !== 'loading' || element?.nextElementSibling) return element.textContent;
-    await new Promise((resolve) => setTimeout(resolve, 20));
-  }
-}
-
-/** The bytes of a block of the page. */
-async function inflated(id) {
-  const text = await blockText(id);
-  const packed = Uint8Array.fromBase64
-    ? Uint8Array.fromBase64(text)
-    : Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
-  const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream('deflate'));
-  return new Uint8Array(await new Response(stream).arrayBuffer());
-}
-
 /** What Layer.marks says of a pixel. */
 const Mark = { NaN: 1, Infinite: 2 };
 
@@ -64,46 +44,15 @@ const Mark = { NaN: 1, Infinite: 2 };
  * (y - this.y) * width + (x - this.x).
  */
 class Layer {
-  constructor(info, bytes) {
+  /** planes: of each channel. marks: where a pixel is not finite; null: nowhere. */
+  constructor(info, { planes, marks }) {
     [this.x, this.y, this.width, this.height] = info.window;
     this.info = info;
     this.half = info.type === 'half';
     this.pixels = this.width * this.height;
-    this.marks = null; // Where it is not finite; null: nowhere.
-    this.planes = info.channels.map((_, c) => (this.half ? this.#halves(bytes, c) : this.#floats(bytes, c)));
+    this.planes = planes;
+    this.marks = marks;
     this.bytes = this.planes.length * this.pixels * (this.half ? 2 : 4);
-  }
-
-  // A plane is stored as differences of successive bit patterns, first all their high bytes, then all the lower ones:
-  // so zlib packs it better.
-  #halves(bytes, channel) {
-    const out = new Uint16Array(this.pixels);
-    const high = 2 * channel * this.pixels;
-    const low = high + this.pixels;
-    for (let i = 0, value = 0; i < this.pixels; ++i) {
-      value = (value + (bytes[high + i] << 8) + bytes[low + i]) & 65535;
-      out[i] = value;
-      if ((value & 31744) === 31744) this.#mark(i, value & 1023);
-    }
-    return out;
-  }
-
-  #floats(bytes, channel) {
-    const out = new Float32Array(this.pixels);
-    const bits = new Uint32Array(out.buffer);
-    const n = this.pixels;
-    const at = 4 * channel * n;
-    for (let i = 0, value = 0; i < n; ++i) {
-      value = (value + (bytes[at + i] << 24) + (bytes[at + n + i] << 16) + (bytes[at + 2 * n + i] << 8) + bytes[at + 3 * n + i]) | 0;
-      bits[i] = value;
-      if ((value & 0x7f800000) === 0x7f800000) this.#mark(i, value & 0x7fffff);
-    }
-    return out;
-  }
-
-  #mark(at, fraction) {
-    this.marks ??= new Uint8Array(this.pixels);
-    this.marks[at] = fraction || this.marks[at] === Mark.NaN ? Mark.NaN : Mark.Infinite;
   }
 
   contains(x, y) {
@@ -149,8 +98,14 @@ class LayerCache {
     return this.#promises.get(index);
   }
 
+  /** How many layers are being unpacked. */
+  get busy() {
+    return this.#promises.size;
+  }
+
   async #unpack(index) {
-    const layer = new Layer(scene.layers[index], await inflated(scene.layers[index].block));
+    const info = scene.layers[index];
+    const layer = new Layer(info, await unpacked(info));
     this.#promises.delete(index);
     this.#ready.set(index, layer);
     let bytes = 0;
@@ -197,6 +152,11 @@ function extentOf(frame) {
   const y1 = Math.max(...windows.map((w) => w[1] + w[3]));
   return [x0, y0, x1 - x0, y1 - y0];
 }
+
+const nameOf = (image) => scene.images[image]?.name ?? '';
+
+/** The name of a channel without that of its layer. */
+const channelLabel = (name) => name.slice(name.lastIndexOf('.') + 1);
 
 const referenceImage = scene.images.findIndex((image) => image.reference);
 
