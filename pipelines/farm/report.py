@@ -27,6 +27,7 @@ from ..common.polyrecon_cli import Polyrecon, find_polyrecon
 from ..common.terminal import print_lines, printable, quiet_or_print
 from ..common.work_folder import WorkFolder
 from .job import FRAME_ERROR, RECORDS, REPORT_FILE, Job, chunks, write_json
+from .submission import counted
 
 EXAMPLES = """\
 examples:
@@ -157,9 +158,10 @@ def lines_of(found):
         lines.append(f"not finished: {found['unfinished']}")
     lines += [f"frame {frame}: {why}" for frame, why in found["reasons"].items()]
     for name, node in sorted(found["nodes"].items()):
+        done = f"{counted(node['frames'], 'frame')} by {counted(node['tasks'], 'task')}"
         lines.append(
-            f"node {name}: {node['frames']} frames by {node['tasks']} tasks, {node['seconds']:.0f} s "
-            f"({node['cpu_seconds']:.0f} s of processors), {node['frames_per_hour']:.0f} frames an hour and task"
+            f"node {name}: {done}, {node['seconds']:.0f} s ({node['cpu_seconds']:.0f} s of processors), "
+            f"{node['frames_per_hour']:.0f} frames an hour and task"
         )
     lines += [f"no end, the node died or still works on it: {attempt}" for attempt in found["attempts_without_end"]]
     lines += [f"failed (node, frames, exit code): {attempt}" for attempt in found["failed_attempts"]]

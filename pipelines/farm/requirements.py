@@ -97,8 +97,8 @@ def threads_for(memory, nodes):
         most = max(node.memory for node in known)
         raise DriverError(
             ExitCode.MEMORY,
-            f"a frame needs {memory / 1e9:.1f} GB, the largest node has {most / 1e9:.1f} GB: "
-            "give --memory to denoise the frame in tiles",
+            f"a task of {memory / 1e9:.1f} GB fits on no node, the largest has {most / 1e9:.1f} GB: "
+            f"--memory {most // MIB}M denoises frames in tiles",
         )
     return max((math.ceil(node.cpus / (node.memory // memory)) for node in fitting), default=1)
 

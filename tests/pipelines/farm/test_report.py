@@ -79,7 +79,7 @@ class Reports(unittest.TestCase):
         wrong = [None, [], {}, {"begun": 1}, {**BEGUN, "begun": "x"}, {**ENDED, "written": "x"}, {**ENDED, "more": 1}]
         wrong += [{**ENDED, "frame_errors": {"x": "y"}}, {**ENDED, "node": 7}, {**ENDED, "seconds": float("nan")}]
         lines = self.lines(ENDED, *wrong, BEGUN)
-        self.assertIn("node node1: 1 frames by 1 tasks, 2 s (3 s of processors), 1800 frames an hour and task", lines)
+        self.assertIn("node node1: 1 frame by 1 task, 2 s (3 s of processors), 1800 frames an hour and task", lines)
         self.assertIn("no end, the node died or still works on it: node1: 1-2", lines)
         (self.folder / RECORDS / "x.json").write_bytes(b"[" * 100000)
         os.mkfifo(self.folder / RECORDS / "y.json")
