@@ -8,7 +8,7 @@ from pipelines.common import exr
 from tests.attacks import exr_bytes, seeds
 
 NAME = "swaps"
-WIDTH, HEIGHT = 240, 160
+WIDTH, HEIGHT = 120, 80
 
 
 def replace(path, content, how, rng):
@@ -61,10 +61,22 @@ def attack(program, tally, count, more):
             (program.folder / name).write_bytes(first)
 
     works = {
-        "input": (["denoise", "-i", "in.exr", "-o", "o.exr"], "in.exr", "o.exr"),
-        "neighbour": (["denoise", "-i", "s.####.exr", "-o", "o.####.exr", "--frame-radius", "1"], "s.0002.exr", None),
-        "prior": (["denoise", "-i", "in.exr", "-o", "o.exr", "--prior", "prior.exr"], "prior.exr", "o.exr"),
-        "map": (["denoise", "-i", "in.exr", "-o", "o.exr", "--map", "albedo=prior.exr"], "prior.exr", "o.exr"),
+        "input": (["denoise", "-i", "in.exr", "--quality", "draft", "-o", "o.exr"], "in.exr", "o.exr"),
+        "neighbour": (
+            ["denoise", "-i", "s.####.exr", "--quality", "draft", "-o", "o.####.exr", "--frame-radius", "1"],
+            "s.0002.exr",
+            None,
+        ),
+        "prior": (
+            ["denoise", "-i", "in.exr", "--quality", "draft", "-o", "o.exr", "--prior", "prior.exr"],
+            "prior.exr",
+            "o.exr",
+        ),
+        "map": (
+            ["denoise", "-i", "in.exr", "--quality", "draft", "-o", "o.exr", "--map", "albedo=prior.exr"],
+            "prior.exr",
+            "o.exr",
+        ),
         "merged": (["merge", "in.exr", "prior.exr", "-o", "o.exr", "--samples", "8"], "prior.exr", "o.exr"),
         "compared": (["compare", "in.exr", "prior.exr", "--html", "o.html"], "prior.exr", None),
     }

@@ -410,6 +410,15 @@ TEST_F(Attacks, ControlCharactersOfFilesAreEscaped) {
       EXPECT_THAT("\n" + text, Not(HasSubstr("\nopenjd_progress: 99"))) << arguments[0];
     }
   }
+  for (const auto& arguments : {std::vector<std::string>{"inspect", "x.exr", "--json"},
+                                std::vector<std::string>{"compare", "x.exr", "y.exr", "--json"}}) {
+    const std::string text = run(arguments).out;
+    for (const char* control : {"\x1b", "\x7f", "\xc2\x9b", "\xe2\x80\xae"}) EXPECT_THAT(text, Not(HasSubstr(control)));
+    const nlohmann::json parsed = nlohmann::json::parse(text);
+    const nlohmann::json& name =
+        arguments[0] == "inspect" ? parsed["files"][0]["parts"][0]["name"] : parsed["reference"];
+    EXPECT_EQ(name, arguments[0] == "inspect" ? evil : "y.exr");
+  }
   const std::string page = read_text(path("o.html"));
   EXPECT_THAT(page, Not(HasSubstr("\x1b")));
   EXPECT_THAT(page, Not(HasSubstr("<b>\xe2")));

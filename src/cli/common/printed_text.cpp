@@ -20,8 +20,20 @@ std::string escape(char32_t code) {
   return code < 0x100 ? fmt::format("\\x{:02x}", number) : fmt::format("\\u{:04x}", number);
 }
 
+/// JSON escapes the controls of ASCII by itself. The others may stand in a string, but a terminal acts on them.
 std::string dump(const nlohmann::ordered_json& value, int indent) {
-  return value.dump(indent, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+  const std::string text = value.dump(indent, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+  std::string out;
+  out.reserve(text.size());
+  for (std::size_t at = 0; at < text.size();) {
+    const CodePoint point = code_point_at(text, at);
+    if (point.code > 0x7e && is_control(point.code))
+      out += fmt::format("\\u{:04x}", static_cast<unsigned>(point.code));
+    else
+      out.append(text, at, point.bytes);
+    at += point.bytes;
+  }
+  return out;
 }
 
 }  // namespace
