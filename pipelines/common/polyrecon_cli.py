@@ -12,16 +12,17 @@ WRITING = ("denoise", "merge", "preview", "samplemap", "view")  # Commands with 
 
 
 def find_polyrecon(given=None):
-    """The path of the program. `given` is the value of --polyrecon. Without it, $POLYRECON, the PATH and the builds of
-    this checkout are tried. The Blender extension has the same rule (pipelines/blender/extension/programs.py)."""
+    """The path of the program. `given` is the value of --polyrecon. Without it, $POLYRECON, the program that was
+    installed with these drivers, the PATH and the builds of this checkout are tried."""
     named = given or os.environ.get("POLYRECON")
     if named:
         if not (found := shutil.which(named)):  # a path, or a name on the PATH
             raise DriverError(ExitCode.MISSING, f"{named}: no such program (--polyrecon, $POLYRECON)")
         return pathlib.Path(found).absolute()
-    if found := shutil.which("polyrecon"):
-        return pathlib.Path(found)
-    root = pathlib.Path(__file__).resolve().parents[2]
+    root = pathlib.Path(__file__).resolve().parents[2]  # a folder of Python's packages, or a checkout
+    for found in (shutil.which(root / "polyrecon" / "bin" / "polyrecon"), shutil.which("polyrecon")):
+        if found:
+            return pathlib.Path(found)
     for build in BUILDS:
         if os.access(program := root / "build" / build / "src" / "polyrecon", os.X_OK):
             return program

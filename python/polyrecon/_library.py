@@ -51,8 +51,9 @@ _FORMATS = {np.dtype(np.float32): 1, np.dtype(np.float16): 2}
 
 
 def library_path() -> str:
-    """The file that is loaded: $POLYRECON_LIBRARY, else the system's."""
-    return os.environ.get("POLYRECON_LIBRARY") or FILE
+    """The file that is loaded: $POLYRECON_LIBRARY, else that of this package, else the system's."""
+    packaged = os.path.join(os.path.dirname(os.path.abspath(__file__)), "lib", FILE)
+    return os.environ.get("POLYRECON_LIBRARY") or (packaged if os.path.exists(packaged) else FILE)
 
 
 def _load() -> ctypes.CDLL:

@@ -103,7 +103,17 @@ std::vector<fs::path> python_modules(const fs::path& prefix) {
   return found;
 }
 
-/// Folders of Python modules: of the active environment, of each Python on the PATH, and of the user.
+/// The folder of Python modules that this program or library is installed in (polyrecon/bin/, polyrecon/lib/); empty if
+/// its own path is not known.
+fs::path own_modules() {
+  Dl_info binary{};
+  std::error_code ignored;
+  if (::dladdr(reinterpret_cast<const void*>(&own_modules), &binary) == 0 || !binary.dli_fname) return {};
+  const fs::path path = binary.dli_fname;  // of a program the first word of its command line
+  return path.is_absolute() ? fs::canonical(path, ignored).parent_path().parent_path().parent_path() : fs::path();
+}
+
+/// Folders of Python modules: that of this binary, of the active environment, of each Python on the PATH, and of the user.
 std::vector<fs::path> python_modules() {
   std::vector<fs::path> prefixes;
   std::error_code ignored;
@@ -113,6 +123,7 @@ std::vector<fs::path> python_modules() {
   if (const std::string home = text_of(std::getenv("HOME")); !home.empty())
     prefixes.push_back(fs::path(home) / ".local");
   std::vector<fs::path> modules;
+  if (fs::path folder = own_modules(); !folder.empty()) modules.push_back(std::move(folder));
   for (const fs::path& prefix : prefixes)
     for (const fs::path& folder : python_modules(prefix))
       if (std::find(modules.begin(), modules.end(), folder) == modules.end()) modules.push_back(folder);

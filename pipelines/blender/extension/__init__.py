@@ -2,7 +2,7 @@
 
 import bpy
 
-from . import command_line, jobs, operators, panel, preferences, settings
+from . import command_line, jobs, operators, panel, preferences, programs, settings
 
 _classes = (*settings.CLASSES, *preferences.CLASSES, *operators.CLASSES, *panel.CLASSES)
 _command = None
@@ -10,6 +10,7 @@ _command = None
 
 def register():
     global _command
+    programs.make_executable()
     for cls in _classes:
         bpy.utils.register_class(cls)
     bpy.types.Scene.polyrecon = bpy.props.PointerProperty(type=settings.PolyreconSettings)

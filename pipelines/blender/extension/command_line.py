@@ -5,7 +5,7 @@ import subprocess
 
 from . import preferences, programs
 
-_DRIVERS = {"adaptive": "adaptive.py", "render-passes": "render_passes.py"}
+_DRIVERS = {"adaptive": "adaptive", "render-passes": "render_passes"}
 _HELP = """usage: blender -c polyrecon COMMAND ...
 
   adaptive       render a .blend file with the adaptive loop and this Blender
@@ -30,6 +30,6 @@ def run(words):
         print(f"polyrecon: {error}")
         return 4
     try:
-        return subprocess.run(command, env=programs.environment(), check=False).returncode
+        return subprocess.run(command, env=preferences.environment(), check=False).returncode
     except KeyboardInterrupt:
         return 130

@@ -23,10 +23,11 @@ current = None  # the running job, or else the last one
 
 class Job:
     """Commands that run one after another. `title` and `results` ({name: path}) are shown in the panel, and so is what
-    the program's report (a JSON file) advises."""
+    the program's report (a JSON file) advises. `environment`: of the commands."""
 
-    def __init__(self, title, commands, results, report=None):
+    def __init__(self, title, commands, results, report=None, environment=None):
         self.title, self.results, self._report = title, results, report
+        self._environment = environment
         self.advice = []  # [(what is missing, what to do)]
         self.state = "running"  # later "done", "failed" or "cancelled"
         self.phase, self.fraction = "starting", 0.0
@@ -93,7 +94,7 @@ class Job:
                 stderr=subprocess.STDOUT,
                 text=True,
                 errors="replace",
-                env=programs.environment(),
+                env=self._environment,
                 **group,
             )
         except OSError as error:
@@ -164,14 +165,14 @@ def _figures(progress):
     return [text.format(progress[name]) for name, text in known if name in progress]
 
 
-def start(title, commands, results, report=None):
+def start(title, commands, results, report=None, environment=None):
     """Starts a job and the timer that polls it; returns the job."""
     global current
     import bpy
 
     if current and current.running:
         raise programs.SetupError(f"{current.title} is still running")
-    current = Job(title, commands, results, report)
+    current = Job(title, commands, results, report, environment)
     if not bpy.app.timers.is_registered(_tick):
         bpy.app.timers.register(_tick, first_interval=0.1, persistent=True)
     return current
@@ -189,7 +190,11 @@ def end():
 def _tick():
     import bpy
 
+    from . import operators
+
     running = current.poll()
+    if not running:
+        operators.show_result(current)
     for window in bpy.context.window_manager.windows:
         for area in window.screen.areas:
             if area.type == "PROPERTIES":

@@ -6,7 +6,7 @@ import shutil
 
 import bpy
 
-from . import jobs, preferences
+from . import jobs, preferences, settings
 from .programs import SetupError
 
 
@@ -26,7 +26,7 @@ class _Start(_Operator):
     @classmethod
     def poll(cls, _context):
         if jobs.current and jobs.current.running:
-            cls.poll_message_set("polyrecon is running")
+            cls.poll_message_set("a job is running: wait for it or stop it")
             return False
         return True
 
@@ -59,23 +59,154 @@ def set_up_passes(scene, view_layer):
 
 
 class POLYRECON_OT_denoise(_Start, bpy.types.Operator):
-    """Denoise the frame that was rendered last"""
+    """Denoise the frame that was rendered last (F12)"""
 
     bl_idname = "polyrecon.denoise"
-    bl_label = "Denoise This Frame"
+    bl_label = "Denoise Last Render"
 
     def work(self, context):
         scene = context.scene
-        clean = scene.polyrecon.output_of(scene.frame_current)
-        program = preferences.program()
-        clean.parent.mkdir(parents=True, exist_ok=True)
-        results = _results(clean)
+        chosen = scene.polyrecon
+        results = _results(chosen.output_of(scene.frame_current))
+        words = _denoise_words(chosen)
+        results["CLEAN"].parent.mkdir(parents=True, exist_ok=True)
         _save_render(scene, results["NOISY"])
-        error_map = results["ERROR"].with_suffix(".exr")
-        report = pathlib.Path(bpy.app.tempdir) / "polyrecon_report.json"
-        denoise = [program, "denoise", "-i", results["NOISY"], "-o", clean, "--error-map", error_map]
-        denoise += ["--report", report, "--overwrite", "--progress", "json"]
-        jobs.start("Denoise", [denoise, _error_picture(program, error_map, results)], results, report)
+        _start("Denoising", [], words, results)
+
+
+class POLYRECON_OT_render(_Start, bpy.types.Operator):
+    """Render the scene's samples in parts that show how noisy each pixel is, and denoise with that. The same samples
+    give a better picture than one render, and a true error map"""
+
+    bl_idname = "polyrecon.render"
+    bl_label = "Render with Error Estimate"
+
+    def work(self, context):
+        scene = context.scene
+        chosen = scene.polyrecon
+        _require_cycles(scene)
+        outputs = chosen.outputs(scene)
+        words = _denoise_words(chosen)
+        parts, samples = _parts(scene.cycles.samples)
+        copy = _save_copy(outputs)
+        pattern = chosen.output_pattern() if len(outputs) > 1 else next(iter(outputs.values()))
+        render = [*preferences.driver_words("render_passes"), copy, "-o", _results(pattern)["NOISY"]]
+        render += ["--spp", str(samples), "--parts", str(parts), *_device_words(context), *chosen.frames_words(scene)]
+        render += ["--polyrecon", preferences.program(), "--progress", "json", "--overwrite"]
+        if len(outputs) > 1:
+            words += [f"--frames={scene.frame_start}-{scene.frame_end}x{scene.frame_step}"]
+        last = _results(list(outputs.values())[-1])
+        _start("Render", [render], words, last, pattern if len(outputs) > 1 else None)
+
+
+def _parts(samples):
+    """(parts, samples) of a render with an error estimate: samples are rounded up to whole parts."""
+    parts = min(settings.PARTS, max(samples, 2))
+    return parts, -(-max(samples, 2) // parts) * parts
+
+
+class POLYRECON_OT_adaptive(_Start, bpy.types.Operator):
+    """Render with samples where noise is left, until the time, the samples or the noise below are reached"""
+
+    bl_idname = "polyrecon.adaptive"
+    bl_label = "Render Adaptively"
+
+    def work(self, context):
+        scene = context.scene
+        chosen = scene.polyrecon
+        _require_cycles(scene)
+        outputs = chosen.outputs(scene)
+        words, program = preferences.driver_words("adaptive"), preferences.program()
+        last = list(outputs.values())[-1]
+        copy = last.parent / COPY
+        if not (chosen.resume and copy.exists()):
+            _forget(outputs.values())
+            copy = _save_copy(outputs)
+        words += [copy, "-o", chosen.output_pattern(), *chosen.limit_words(), *chosen.frames_words(scene)]
+        words += [*_device_words(context), "--quality", chosen.quality]
+        words += ["--with-prior"] if _second_opinion(chosen) else []
+        words += ["--polyrecon", program, "--progress", "json", "--keep-passes", "--overwrite"]
+        words += ["--resume"] if chosen.resume else []
+        passes = _passes(last)
+        results = {
+            "CLEAN": last,
+            "NOISY": passes / "merged.exr",
+            "ERROR": passes / "error.png",
+            "REPORT": passes / "report.html",
+        }
+        commands = [words, _error_picture(program, passes / "error.exr", results)]
+        jobs.start("Render", commands, results, environment=preferences.environment())
+
+
+class POLYRECON_OT_frames(_Start, bpy.types.Operator):
+    """Denoise all renders in a folder. Frames that are done already are skipped"""
+
+    bl_idname = "polyrecon.frames"
+    bl_label = "Denoise Frames on Disk"
+
+    def work(self, context):
+        chosen = context.scene.polyrecon
+        if not chosen.folder:
+            raise SetupError("choose the folder with the renders first")
+        folder = settings.absolute(chosen.folder, "folder")
+        if not folder.is_dir():
+            raise SetupError(f"{folder}: no such folder")
+        words = [*_denoise_words(chosen), "-i", folder, "-o", folder / "denoised", "--skip-existing"]
+        (folder / "denoised").mkdir(exist_ok=True)
+        jobs.start("Denoising", [words], {"FOLDER": folder / "denoised"}, environment=preferences.environment())
+
+
+COPY = "polyrecon_scene.blend"
+
+
+def _require_cycles(scene):
+    if scene.render.engine != "CYCLES":
+        raise SetupError("this needs Cycles: choose it as the render engine")
+
+
+def _save_copy(outputs):
+    """Saves a copy of the scene next to the outputs, which Blender renders in the background."""
+    folder = list(outputs.values())[-1].parent
+    folder.mkdir(parents=True, exist_ok=True)
+    bpy.ops.wm.save_as_mainfile(filepath=str(folder / COPY), copy=True, check_existing=False)
+    return folder / COPY
+
+
+def _device_words(context):
+    """The drivers' option for the device: as the scene and the user's preferences say."""
+    cycles = context.preferences.addons.get("cycles")
+    no_card = cycles is None or cycles.preferences.compute_device_type == "NONE"
+    return ["--device", "cpu" if no_card else "auto"]
+
+
+def _second_opinion(chosen):
+    """Whether Open Image Denoise is asked: if it is chosen, and found."""
+    if not chosen.second_opinion:
+        return False
+    try:
+        preferences.oidn()
+    except SetupError:
+        return False
+    return True
+
+
+def _denoise_words(chosen):
+    """`polyrecon denoise` with what is chosen in the panel."""
+    words = [preferences.program(), "denoise", "--quality", chosen.quality, "--overwrite", "--progress", "json"]
+    words += ["--prior", "oidn"] if _second_opinion(chosen) else []
+    words += ["--aov", "all"] if chosen.light_passes else []
+    return words
+
+
+def _start(title, commands, denoise, results, pattern=None):
+    """Starts the commands, and after them `denoise` and what makes the error map visible. results: of the last frame.
+    pattern: the name of the results of several frames."""
+    every = _results(pattern or results["CLEAN"])
+    report = None if pattern else pathlib.Path(bpy.app.tempdir) / "polyrecon_report.json"  # of one frame
+    denoise = [*denoise, "-i", every["NOISY"], "-o", every["CLEAN"], "--error-map", every["ERROR"].with_suffix(".exr")]
+    denoise += ["--report", report] if report else []
+    picture = _error_picture(preferences.program(), results["ERROR"].with_suffix(".exr"), results)
+    jobs.start(title, [*commands, denoise, picture], results, report, preferences.environment())
 
 
 def _results(clean):
@@ -112,41 +243,6 @@ def _save_render(scene, path):
             setattr(settings, name, value)
 
 
-class POLYRECON_OT_adaptive(_Start, bpy.types.Operator):
-    """Render a copy of the scene in the background, with samples where the reconstruction needs them"""
-
-    bl_idname = "polyrecon.adaptive"
-    bl_label = "Render Adaptively"
-
-    def work(self, context):
-        scene = context.scene
-        chosen = scene.polyrecon
-        if scene.render.engine != "CYCLES":
-            raise SetupError("adaptive rendering needs Cycles: choose it as the render engine")
-        words, program = preferences.driver_words("adaptive.py"), preferences.program()
-        frames = chosen.frames_of(scene)
-        outputs = {frame: chosen.output_of(frame) for frame in frames}
-        if len(set(outputs.values())) < len(frames):
-            raise SetupError(f"{chosen.output}: several frames need #### in the file's name")
-        last = outputs[frames[-1]]
-        last.parent.mkdir(parents=True, exist_ok=True)
-        copy = last.parent / "polyrecon_scene.blend"
-        if not (chosen.resume and copy.exists()):
-            _forget(outputs.values())
-            bpy.ops.wm.save_as_mainfile(filepath=str(copy), copy=True, check_existing=False)
-        words += [copy, "-o", chosen.output_pattern(), *chosen.limit_words(), *chosen.frames_words(scene)]
-        words += ["--polyrecon", program, "--progress", "json", "--keep-passes", "--overwrite"]
-        words += ["--resume"] if chosen.resume else []
-        passes = _passes(last)
-        results = {
-            "CLEAN": last,
-            "NOISY": passes / "merged.exr",
-            "ERROR": passes / "error.png",
-            "REPORT": passes / "report.html",
-        }
-        jobs.start("Adaptive", [words, _error_picture(program, passes / "error.exr", results)], results)
-
-
 def _passes(clean):
     """The folder of a frame's passes."""
     return clean.with_suffix(".passes")
@@ -174,38 +270,65 @@ class POLYRECON_OT_cancel(bpy.types.Operator):
         return {"FINISHED"}
 
 
+class POLYRECON_OT_preferences(bpy.types.Operator):
+    """Open the preferences of the add-on, which say what is missing"""
+
+    bl_idname = "polyrecon.preferences"
+    bl_label = "Open Preferences"
+
+    def execute(self, _context):
+        bpy.ops.preferences.addon_show(module=__package__)
+        return {"FINISHED"}
+
+
 class POLYRECON_OT_show(_Operator, bpy.types.Operator):
-    """Show a picture of the last job in an image editor"""
+    """Show this picture in an image editor"""
 
     bl_idname = "polyrecon.show"
     bl_label = "Show"
 
     which: bpy.props.EnumProperty(
-        items=(("CLEAN", "Result", ""), ("NOISY", "Noisy", ""), ("ERROR", "Error Map", ""), ("REPORT", "Report", ""))
+        items=(
+            ("CLEAN", "Result", ""),
+            ("NOISY", "Noisy", ""),
+            ("ERROR", "Error Map", ""),
+            ("REPORT", "Report", ""),
+            ("FOLDER", "Folder", ""),
+        )
     )
 
     def work(self, context):
         path = jobs.current.results.get(self.which) if jobs.current else None
         if path is None or not os.path.exists(path):
             raise SetupError("there is no such picture yet: run the job first")
-        if self.which == "REPORT":
+        if self.which in ("REPORT", "FOLDER"):
             if not bpy.app.background:
                 bpy.ops.wm.url_open(url=path.as_uri())
             return
-        image = bpy.data.images.load(str(path), check_existing=True)
-        image.reload()
-        space = _image_editor(context)
-        if space:
-            space.image = image
+        space = image_editor(context) or _new_image_editor(context)
+        show(path, space)
 
 
-def _image_editor(context):
-    """The first image editor of any window, or else one in a new window; None without windows."""
-    manager = context.window_manager
-    for window in manager.windows:
+def show(path, space):
+    """Loads a picture, and shows it in an image editor's space if there is one."""
+    image = bpy.data.images.load(str(path), check_existing=True)
+    image.reload()
+    if space:
+        space.image = image
+
+
+def image_editor(context):
+    """The first image editor of any window, such as the one with the render; None if there is none."""
+    for window in context.window_manager.windows:
         for area in window.screen.areas:
             if area.type == "IMAGE_EDITOR":
                 return area.spaces.active
+    return None
+
+
+def _new_image_editor(context):
+    """An image editor in a new window; None without windows."""
+    manager = context.window_manager
     if bpy.app.background or not manager.windows:
         return None
     bpy.ops.wm.window_new()
@@ -214,10 +337,20 @@ def _image_editor(context):
     return area.spaces.active
 
 
+def show_result(job):
+    """Shows the result of a job that is done, where an image editor is open."""
+    clean = job.results.get("CLEAN")
+    if job.state == "done" and clean and clean.exists():
+        show(clean, image_editor(bpy.context))
+
+
 CLASSES = (
     POLYRECON_OT_set_up_passes,
     POLYRECON_OT_denoise,
+    POLYRECON_OT_render,
     POLYRECON_OT_adaptive,
+    POLYRECON_OT_frames,
     POLYRECON_OT_cancel,
+    POLYRECON_OT_preferences,
     POLYRECON_OT_show,
 )

@@ -5,7 +5,7 @@ import textwrap
 
 import bpy
 
-from . import jobs
+from . import jobs, preferences
 
 DEFAULT_LETTERS = 60  # of a line, where there is no window
 
@@ -24,19 +24,38 @@ class POLYRECON_PT_render(bpy.types.Panel):
         return context.engine in cls.COMPAT_ENGINES
 
     def draw(self, context):
-        chosen, layout = context.scene.polyrecon, self.layout
+        chosen, layout, letters = context.scene.polyrecon, self.layout, _letters(context)
         layout.use_property_split, layout.use_property_decorate = True, False
+        problems = preferences.problems()
+        if problems:
+            box = layout.box()
+            for problem in problems:
+                _draw_text(box, problem, "ERROR", letters)
+            box.operator("polyrecon.preferences", icon="PREFERENCES")
+        if jobs.current:
+            _draw_job(layout.box(), jobs.current, letters)
+        layout.prop(chosen, "quality")
+        layout.column(heading="Second Opinion").prop(chosen, "second_opinion")
+        layout.column(heading="Denoise Too").prop(chosen, "light_passes")
         layout.prop(chosen, "output")
-        layout.operator("polyrecon.set_up_passes", icon="RENDERLAYERS")
-        layout.operator("polyrecon.denoise", icon="SHADERFX")
+
+        column = layout.column()
+        column.operator("polyrecon.set_up_passes", icon="RENDERLAYERS")
+        column.operator("polyrecon.denoise", icon="SHADERFX")
+
         layout.separator()
-        layout.row().prop(chosen, "limit", expand=True)
+        layout.prop(chosen, "frames")
+        layout.operator("polyrecon.render", icon="RENDER_STILL")
+
+        layout.separator()
+        layout.prop(chosen, "limit")
         layout.prop(chosen, {"SECONDS": "seconds", "SPP": "spp", "TARGET": "target"}[chosen.limit])
-        layout.row().prop(chosen, "frames", expand=True)
         layout.prop(chosen, "resume")
         layout.operator("polyrecon.adaptive", icon="RENDER_STILL")
-        if jobs.current:
-            _draw_job(layout.box(), jobs.current, _letters(context))
+
+        layout.separator()
+        layout.prop(chosen, "folder")
+        layout.operator("polyrecon.frames", icon="FILE_FOLDER")
 
 
 def _letters(context):

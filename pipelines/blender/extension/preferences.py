@@ -1,4 +1,4 @@
-"""The preferences: paths of the programs. Programs of empty fields are searched."""
+"""The preferences. Nothing has to be set: empty fields are filled by what comes with the extension and with Blender."""
 
 import bpy
 
@@ -9,19 +9,14 @@ class PolyreconPreferences(bpy.types.AddonPreferences):
     bl_idname = __package__
 
     program: bpy.props.StringProperty(
-        name="polyrecon",
+        name="Program",
         subtype="FILE_PATH",
-        description="The program polyrecon. If empty: $POLYRECON, or the one on the PATH",
+        description="Another program polyrecon. If empty: the one that comes with the extension",
     )
-    drivers: bpy.props.StringProperty(
-        name="Drivers",
-        subtype="DIR_PATH",
-        description="The folder with adaptive.py. If empty: that of the checkout or installation of the program",
-    )
-    python: bpy.props.StringProperty(
-        name="Python",
+    oidn: bpy.props.StringProperty(
+        name="Open Image Denoise",
         subtype="FILE_PATH",
-        description="Runs the adaptive loop; has numpy, OpenImageIO, jinja2 and rich. If empty: python3 on the PATH",
+        description="Another libOpenImageDenoise.so.2, or its folder. If empty: the one that Blender has",
     )
 
     def draw(self, _context):
@@ -29,12 +24,12 @@ class PolyreconPreferences(bpy.types.AddonPreferences):
 
 
 def draw(layout, chosen):
-    """Draws the fields and the commands that follow from them."""
-    for name in ("program", "drivers", "python"):
+    """Draws the fields, and what was found."""
+    for name in ("program", "oidn"):
         layout.prop(chosen, name)
-    for find in (lambda: [program()], lambda: driver_words("adaptive.py")):
+    for find in (program, oidn):
         try:
-            layout.label(text="found: " + " ".join(map(str, find())), icon="CHECKMARK")
+            layout.label(text=f"found: {find()}", icon="CHECKMARK")
         except programs.SetupError as error:
             layout.label(text=str(error), icon="ERROR")
 
@@ -45,11 +40,35 @@ def _chosen(name):
 
 
 def program():
+    """The path of the program."""
     return programs.find_program(_chosen("program"))
 
 
+def oidn():
+    """The library of Open Image Denoise."""
+    found = programs.find_oidn(_chosen("oidn"))
+    if not found:
+        raise programs.SetupError("Open Image Denoise was not found: install it, or name its library")
+    return found
+
+
+def problems():
+    """What is missing, as texts of one line."""
+    found = []
+    for find in (program, oidn):
+        try:
+            find()
+        except programs.SetupError as error:
+            found.append(str(error))
+    return found
+
+
+def environment():
+    return programs.environment(programs.find_oidn(_chosen("oidn")))
+
+
 def driver_words(name):
-    return programs.driver_words(name, program(), bpy.app.binary_path, _chosen("drivers"), _chosen("python"))
+    return programs.driver_words(name, bpy.app.binary_path)
 
 
 CLASSES = (PolyreconPreferences,)

@@ -1,69 +1,82 @@
-"""Finds the program polyrecon and its drivers. Uses nothing of Blender."""
+"""The program polyrecon, its drivers and Open Image Denoise.
 
+Program and drivers are in a wheel that comes with the extension and that Blender installs among its modules."""
+
+import importlib.util
 import os
 import pathlib
-import shutil
 import sys
 
-COMMANDS = {"adaptive.py": "polyrecon-blender"}  # names of the installed drivers
-HERE = pathlib.Path(__file__).resolve().parent
+OIDN = "libOpenImageDenoise.so.2"
 
 
 class SetupError(Exception):
     """A problem that the user can solve. The text is one line."""
 
 
+def _packages():
+    """The folder that the wheel was installed into."""
+    found = importlib.util.find_spec("polyrecon_pipelines")
+    if not found:
+        raise SetupError("the extension is incomplete: install polyrecon.zip anew")
+    return pathlib.Path(found.submodule_search_locations[0]).parent
+
+
+def make_executable():
+    """Gives the program the permission to execute, without which Blender unpacks wheels."""
+    if not importlib.util.find_spec("polyrecon_pipelines"):
+        return  # The panel says so.
+    program = _packages() / "polyrecon" / "bin" / "polyrecon"
+    if program.exists() and not os.access(program, os.X_OK):
+        program.chmod(0o755)
+
+
 def find_program(given=""):
-    """The path of the program: `given`, else $POLYRECON, each a path or a name on the PATH; else polyrecon on the PATH,
-    else the build of this checkout. The drivers' rule is the same (pipelines/common/polyrecon_cli.py), of which an
-    installed extension has no copy; tests/pipelines/common/test_program.py compares them."""
-    for named, source in ((given, "the add-on's preferences"), (os.environ.get("POLYRECON"), "$POLYRECON")):
-        if named:
-            if not (found := shutil.which(named)):
-                raise SetupError(f"{named}: no such program ({source})")
-            return pathlib.Path(found).absolute()
-    if found := shutil.which("polyrecon"):
-        return pathlib.Path(found)
-    for root in HERE.parents[2:3]:
-        for build in ("release", "dev"):
-            if os.access(program := root / "build" / build / "src" / "polyrecon", os.X_OK):
-                return program
-    raise SetupError("polyrecon is not on the PATH: choose the program in the add-on's preferences")
+    """The path of the program: `given`, else by the rule of the drivers: $POLYRECON, the wheel, the PATH."""
+    _packages()
+    from polyrecon_pipelines.common import errors, polyrecon_cli
+
+    try:
+        return polyrecon_cli.find_polyrecon(given)
+    except errors.DriverError as error:
+        raise SetupError(str(error)) from error
 
 
-def driver_words(name, program, blender, folder="", python=""):
-    """The command that starts a driver such as adaptive.py.
-
-    blender: the path of the Blender that renders; empty if Blender is a module of this Python. The driver is searched
-    in the folder of the preferences, or else in the checkout of this add-on, in that of the program, next to the
-    program as an installed command, and on the PATH."""
-    places = (
-        [folder]
-        if folder
-        else [HERE.parent, *(root / "pipelines" / "blender" for root in program.resolve().parents[3:4])]
-    )
-    found = next((script for place in places if (script := pathlib.Path(place) / name).is_file()), None)
-    if found:
-        return [python or _python(blender), os.fspath(found), *_blender_words(blender)]
-    command = COMMANDS.get(name, name)
-    installed = None if folder else shutil.which(command, path=program.parent) or shutil.which(command)
-    if not installed:
-        raise SetupError(f"{name} was not found: choose the folder pipelines/blender in the add-on's preferences")
-    return [installed, *_blender_words(blender)]
+def driver_words(name, blender):
+    """The command that starts a driver such as adaptive. blender: the path of the Blender that renders; empty if
+    Blender is a module of this Python."""
+    _packages()
+    renderer = ["--blender", blender] if blender else ["--bpy"]
+    return [sys.executable, "-B", "-m", f"polyrecon_pipelines.blender.{name}", *renderer]
 
 
-def _blender_words(blender):
-    return ["--blender", blender] if blender else ["--bpy"]
+def find_oidn(given=""):
+    """The library of Open Image Denoise: `given`, else $POLYRECON_OIDN, else Blender's, else that of the package
+    pyoidn. None where there is none."""
+    named = given or os.environ.get("POLYRECON_OIDN")
+    if named:
+        path = pathlib.Path(named)
+        if path.is_dir():
+            path /= OIDN
+        return path if path.exists() else None
+    import bpy
+
+    blender = pathlib.Path(bpy.app.binary_path or bpy.__file__).resolve().parent
+    places = [blender / "lib" / OIDN]
+    if found := importlib.util.find_spec("pyoidn"):
+        places.append(pathlib.Path(found.submodule_search_locations[0]) / "oidn" / "lib" / OIDN)
+    return next((place for place in places if place.exists()), None)
 
 
-def _python(blender):
-    """The Python of the drivers. Blender's Python has their packages only if Blender is a module of it."""
-    python = (shutil.which("python3") or shutil.which("python")) if blender else sys.executable
-    if not python:
-        raise SetupError("no python3 on the PATH: choose one in the add-on's preferences")
-    return python
+def environment(oidn=None):
+    """The environment of the programs: drivers find the wheels' modules and Blender's, and the program finds Open Image
+    Denoise."""
+    import bpy
 
-
-def environment():
-    """The environment of this process without the variables that lead another Python to Blender's packages."""
-    return {name: value for name, value in os.environ.items() if name not in ("PYTHONHOME", "PYTHONPATH")}
+    version = f"python{sys.version_info.major}.{sys.version_info.minor}"
+    blender = pathlib.Path(bpy.utils.resource_path("LOCAL")) / "python" / "lib" / version / "site-packages"
+    found = {name: value for name, value in os.environ.items() if name != "PYTHONHOME"}
+    found["PYTHONPATH"] = os.pathsep.join(os.fspath(folder) for folder in (_packages(), blender) if folder.is_dir())
+    if oidn:
+        found["POLYRECON_OIDN"] = os.fspath(oidn)
+    return found

@@ -1,7 +1,6 @@
 """The settings of the panel, which are stored in the scene."""
 
 import pathlib
-import re
 
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
@@ -10,18 +9,7 @@ from .programs import SetupError
 
 # Blender 4.5 and later: the path may begin with "//".
 _RELATIVE = {"options": {"PATH_SUPPORTS_BLEND_RELATIVE"}} if bpy.app.version >= (4, 5) else {}
-_PLACE = re.compile(r"#+|%(?:0[1-9])?d")
-
-
-def frame_path(pattern, frame):
-    """The pattern with the frame's number in its place. The drivers have the same rules in common/frame_names.py, which
-    Blender cannot import where the add-on is installed alone."""
-    places = _PLACE.findall(pattern.rpartition("/")[2])
-    if not places:
-        return pattern
-    place = places[-1]
-    number = place % frame if place.startswith("%") else f"{'-' if frame < 0 else ''}{abs(frame):0{len(place)}d}"
-    return _PLACE.sub(lambda match: number if match.group() == place else match.group(), pattern)
+PARTS = 8  # of a render with an error estimate
 
 
 class PolyreconSettings(bpy.types.PropertyGroup):
@@ -32,13 +20,33 @@ class PolyreconSettings(bpy.types.PropertyGroup):
         description="Clean EXR to write; #### becomes the frame number. Noisy picture and error map are put next to it",
         **_RELATIVE,
     )
+    quality: EnumProperty(
+        name="Quality",
+        default="standard",
+        items=(
+            ("draft", "Draft", "For previews: the fastest"),
+            ("standard", "Standard", "For final pictures"),
+            ("best", "Best", "The most accurate, and the slowest"),
+        ),
+    )
+    second_opinion: BoolProperty(
+        name="Open Image Denoise",
+        default=True,
+        description="Ask Open Image Denoise too, and use its picture where it is better. It makes the largest "
+        "difference with few samples",
+    )
+    light_passes: BoolProperty(
+        name="Light Passes",
+        description="Denoise the light passes and light groups too, so that they still add up to the picture. "
+        "Off: they stay noisy",
+    )
     limit: EnumProperty(
-        name="Limit",
+        name="Stop",
         default="SECONDS",
         items=(
             ("SECONDS", "Time", "Stop after this much time, everything included"),
             ("SPP", "Samples", "Stop after this many samples per pixel, on average"),
-            ("TARGET", "Error", "Stop when the estimated error is this small"),
+            ("TARGET", "Noise", "Stop when so little noise is left"),
         ),
     )
     seconds: FloatProperty(
@@ -48,24 +56,31 @@ class PolyreconSettings(bpy.types.PropertyGroup):
         name="Samples", default=64, min=1, soft_max=4096, description="Average samples per pixel of all frames"
     )
     target: FloatProperty(
-        name="Error",
+        name="Noise",
         default=0.002,
         min=1e-6,
         soft_max=0.1,
         precision=4,
-        description="Relative squared error to reach, the mean of all frames",
+        description="Noise that may be left: the mean of its square, relative to the brightness, over all frames. "
+        "0.01 is a preview, 0.002 is clean, 0.0005 is very clean",
     )
     frames: EnumProperty(
-        name="Frames",
+        name="Render",
         default="CURRENT",
         items=(
-            ("CURRENT", "Current", "The current frame"),
-            ("RANGE", "Range", "The scene's frame range with its step"),
+            ("CURRENT", "This Frame", "The current frame"),
+            ("RANGE", "All Frames", "The scene's frame range with its step"),
         ),
     )
     resume: BoolProperty(
-        name="Continue",
+        name="Add to the Last Run",
         description="Add samples to the last adaptive render, with the scene as it was then",
+    )
+    folder: StringProperty(
+        name="Folder",
+        subtype="DIR_PATH",
+        description="Folder with renders: all EXR files in it are denoised into the folder 'denoised' in there",
+        **_RELATIVE,
     )
 
     def frames_of(self, scene):
@@ -74,7 +89,7 @@ class PolyreconSettings(bpy.types.PropertyGroup):
         return list(range(scene.frame_start, scene.frame_end + 1, scene.frame_step))
 
     def frames_words(self, scene):
-        """The driver's option for the frames."""
+        """The drivers' option for the frames."""
         if self.frames == "CURRENT":
             return [f"--frame={scene.frame_current}"]
         return [f"--frames={scene.frame_start}-{scene.frame_end}x{scene.frame_step}"]
@@ -89,16 +104,31 @@ class PolyreconSettings(bpy.types.PropertyGroup):
 
     def output_pattern(self):
         """The output as an absolute path, with the place of the frame's number."""
-        if self.output.startswith("//") and not bpy.data.filepath:
-            raise SetupError("the output is relative to the .blend file: save that first, or give an absolute path")
-        path = pathlib.Path(bpy.path.abspath(self.output))
+        path = absolute(self.output, "output")
         if path.suffix.lower() != ".exr":
             raise SetupError(f"{path.name}: the output must be an .exr file")
         return path
 
     def output_of(self, frame):
         """The output of one frame."""
-        return pathlib.Path(frame_path(str(self.output_pattern()), frame))
+        from polyrecon_pipelines.common import frame_names
+
+        pattern = self.output_pattern()
+        return pathlib.Path(frame_names.frame_path(pattern, frame)) if frame_names.is_pattern(pattern) else pattern
+
+    def outputs(self, scene):
+        """{frame: output} of the frames to render."""
+        found = {frame: self.output_of(frame) for frame in self.frames_of(scene)}
+        if len(set(found.values())) < len(found):
+            raise SetupError(f"{self.output}: several frames need #### in the file's name")
+        return found
+
+
+def absolute(path, what):
+    """A path of the settings as an absolute path. what: its name in messages."""
+    if path.startswith("//") and not bpy.data.filepath:
+        raise SetupError(f"the {what} is relative to the .blend file: save that first, or give an absolute path")
+    return pathlib.Path(bpy.path.abspath(path))
 
 
 CLASSES = (PolyreconSettings,)

@@ -1,6 +1,8 @@
-"""Blender 5 builds, checks, installs and uses the extension, without a window."""
+"""Blender 5 checks, installs and uses the extension, without a window.
 
-import json
+$POLYRECON_BLENDER_ZIP names the zip to test, with the program in its wheel. Without it a zip is made whose wheel has
+the drivers alone; the program is then the drivers' ($POLYRECON)."""
+
 import os
 import pathlib
 import re
@@ -18,12 +20,24 @@ import bpy  # noqa: E402
 import numpy as np  # noqa: E402
 
 from pipelines.common import exr  # noqa: E402
-from pipelines.common.polyrecon_cli import find_polyrecon  # noqa: E402
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 SOURCE = ROOT / "pipelines" / "blender" / "extension"
 MODULE = "bl_ext.user_default.polyrecon"
 JOB_SECONDS = 240  # limit of a job, on a busy machine
+
+
+def make_zip(folder):
+    """A zip with the wheel of the drivers, made by the command that makes the real one."""
+    pip = [sys.executable, "-m", "pip", "wheel", "--quiet", "--disable-pip-version-check", "--no-deps"]
+    subprocess.run([*pip, "--config-settings=wheel.cmake=false", "--wheel-dir", folder, ROOT], check=True)
+    target = folder / "polyrecon.zip"
+    subprocess.run(
+        [sys.executable, ROOT / "src" / "package" / "blender_zip.py", *folder.glob("*.whl"), target],
+        check=True,
+        stdout=subprocess.DEVNULL,
+    )
+    return target
 
 
 def extension_tool(*words):
@@ -37,17 +51,13 @@ def extension_tool(*words):
 class Extension(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        package = pathlib.Path(_resources.name) / "polyrecon.zip"
-        built = extension_tool("build", "--source-dir", SOURCE, "--output-filepath", package)
-        if built.returncode != 0:
-            raise AssertionError(built.stdout + built.stderr)
-        bpy.ops.extensions.package_install_files(repo="user_default", filepath=str(package), enable_on_install=True)
+        named = os.environ.get("POLYRECON_BLENDER_ZIP")
+        cls.package = pathlib.Path(named) if named else make_zip(pathlib.Path(_resources.name))
+        bpy.ops.extensions.package_install_files(repo="user_default", filepath=str(cls.package), enable_on_install=True)
         cls.addon = sys.modules[MODULE]
         cls.jobs = sys.modules[MODULE + ".jobs"]
         cls.preferences = bpy.context.preferences.addons[MODULE].preferences
-        cls.preferences.program = str(find_polyrecon())
-        cls.preferences.drivers = str(SOURCE.parent)
-        cls.preferences.python = sys.executable
+        cls.program = sys.modules[MODULE + ".preferences"].program()
 
     @classmethod
     def tearDownClass(cls):
@@ -67,6 +77,7 @@ class Extension(unittest.TestCase):
         self.scene.cycles.samples = 4
         self.scene.render.resolution_x, self.scene.render.resolution_y = 64, 36
         self.scene.polyrecon.output = str(self.folder / "clean_####.exr")
+        self.scene.polyrecon.quality = "draft"
 
     def finish(self, job):
         """Polls like the timer, which needs a window; returns the longest time of a poll."""
@@ -97,26 +108,42 @@ class Extension(unittest.TestCase):
     def panel(self):
         return self.drawn(lambda popup: bpy.types.POLYRECON_PT_render.draw(popup, bpy.context))
 
+    def assert_done(self):
+        self.finish(self.jobs.current)
+        job = self.jobs.current
+        self.assertEqual((job.state, job.error), ("done", ""), list(job.lines))
+
+    def assert_result_is_loaded(self):
+        """What the timer does at the end of a job: the image editor, where one is open, shows the result."""
+        sys.modules[MODULE + ".operators"].show_result(self.jobs.current)
+        image = bpy.data.images[self.jobs.current.results["CLEAN"].name]
+        len(image.pixels)  # This makes Blender read the file.
+        self.assertEqual(image.type, "MULTILAYER")
+
+    def test_nothing_has_to_be_set(self):
+        """Program and drivers are those of the wheel, where it has the program."""
+        self.assertEqual((self.preferences.program, self.preferences.oidn), ("", ""))
+        local = pathlib.Path(_resources.name) / "extensions" / ".local"
+        if os.environ.get("POLYRECON_BLENDER_ZIP"):
+            self.assertTrue(self.program.is_relative_to(local), self.program)
+        words = sys.modules[MODULE + ".preferences"].driver_words("adaptive")
+        environment = sys.modules[MODULE + ".preferences"].environment()
+        done = subprocess.run([*words, "--version"], env=environment, capture_output=True, text=True)
+        self.assertIn(str(self.program), done.stdout, done.stderr)
+
     def test_manifest_passes_blenders_checks(self):
-        checked = extension_tool("validate", SOURCE)
+        checked = extension_tool("validate", self.package)
         self.assertEqual(checked.returncode, 0, checked.stdout + checked.stderr)
         self.assertNotIn("warning", (checked.stdout + checked.stderr).lower())
-
-    def test_frame_names_are_those_of_the_drivers(self):
-        """The names are in the table that the tests of the drivers read."""
-        frame_path = sys.modules[MODULE + ".settings"].frame_path
-        table = json.loads((ROOT / "tests" / "inputs" / "frame_names.json").read_text(encoding="utf-8"))
-        for row in table["names"]:
-            self.assertEqual(frame_path(row["pattern"], row["frame"]), row["name"])
-        for name in table["no_patterns"]:
-            self.assertEqual(frame_path(name, 7), name)
 
     def test_panel_is_in_render_properties(self):
         panel = bpy.types.POLYRECON_PT_render
         self.assertEqual((panel.bl_space_type, panel.bl_context), ("PROPERTIES", "render"))
         self.assertTrue(panel.poll(bpy.context))
-        for button in ("set_up_passes", "denoise", "adaptive"):
+        for button in ("set_up_passes", "denoise", "render", "adaptive", "frames"):
             self.assertIn(f"bpy.ops.polyrecon.{button}()", self.panel())
+        for choice in ("quality", "second_opinion", "light_passes", "limit", "seconds"):
+            self.assertIn(f"PolyreconSettings.{choice}", self.panel())
         self.scene.render.engine = "BLENDER_WORKBENCH"
         self.assertFalse(panel.poll(bpy.context))
 
@@ -142,8 +169,9 @@ class Extension(unittest.TestCase):
         self.assertEqual((job.state, job.error), ("done", ""))
         self.assertEqual(self.scene.render.image_settings.file_format, before)
         self.assertNotIn("bpy.ops.polyrecon.cancel()", shown := self.panel())
-        self.assertIn("Denoise: done", shown)
+        self.assertIn("Denoising: done", shown)
         self.assertIn("bpy.ops.polyrecon.show(which='ERROR')", shown)
+        self.assert_result_is_loaded()
         noisy, clean = self.combined("clean_0001_noisy.exr"), self.combined("clean_0001.exr")
         self.assertGreater(np.abs(clean - noisy).max(), 1e-3)
         self.assertAlmostEqual(clean.mean() / noisy.mean(), 1, delta=1e-3)
@@ -168,6 +196,64 @@ class Extension(unittest.TestCase):
         bpy.ops.polyrecon.denoise()
         self.finish(self.jobs.current)
         self.assertNotIn("albedo", self.shown_text())
+
+    def test_renders_with_an_error_estimate(self):
+        """The scene's samples in parts; a frame range is a sequence."""
+        self.scene.cycles.samples = 9  # rounded up to whole parts
+        self.scene.frame_end, self.scene.polyrecon.frames = 2, "RANGE"
+        self.assertEqual(bpy.ops.polyrecon.render(), {"FINISHED"})
+        self.assert_done()
+        for frame in (1, 2):
+            names = exr.names(self.folder / f"clean_{frame:04d}_noisy.exr")
+            self.assertTrue([name for name in names if "ariance" in name], names)
+            self.assertEqual(self.combined(f"clean_{frame:04d}.exr").shape, (36, 64, 3))
+        words = [self.program, "inspect", self.folder / "clean_0002_noisy.exr"]
+        self.assertIn("samples per pixel: 16", subprocess.run(words, capture_output=True, text=True).stdout)
+        self.assert_result_is_loaded()
+
+    def test_the_second_opinion_and_light_passes_are_asked_for(self):
+        words = sys.modules[MODULE + ".operators"]._denoise_words
+        chosen = self.scene.polyrecon
+        found = sys.modules[MODULE + ".programs"].find_oidn()
+        self.assertTrue(chosen.second_opinion)  # on by default
+        self.assertEqual("oidn" in words(chosen), bool(found))
+        self.assertNotIn("--aov", words(chosen))
+        chosen.second_opinion, chosen.light_passes = False, True
+        self.assertNotIn("oidn", words(chosen))
+        self.assertIn("--aov", words(chosen))
+        self.preferences.oidn = "/nowhere"
+        self.addCleanup(setattr, self.preferences, "oidn", "")
+        self.assertIn("Open Image Denoise was not found", self.shown_text())
+        self.assertIn("bpy.ops.polyrecon.preferences()", self.panel())
+        chosen.second_opinion = True
+        self.assertNotIn("oidn", words(chosen))  # It would fail.
+
+    def test_light_passes_are_denoised(self):
+        bpy.ops.polyrecon.set_up_passes()
+        bpy.context.view_layer.use_pass_diffuse_direct = True
+        bpy.ops.render.render()
+        results = {}
+        for chosen in (False, True):
+            self.scene.polyrecon.light_passes = chosen
+            bpy.ops.polyrecon.denoise()
+            self.assert_done()
+            found = exr.read(self.folder / "clean_0001.exr", lambda name: "DiffDir" in name or "Diffuse Direct" in name)
+            results[chosen] = np.stack(list(found.values()))
+        self.assertGreater(np.abs(results[True] - results[False]).max(), 0)
+
+    def test_denoises_frames_on_disk(self):
+        with self.assertRaisesRegex(RuntimeError, "choose the folder"):
+            bpy.ops.polyrecon.frames()
+        bpy.ops.polyrecon.set_up_passes()
+        save = sys.modules[MODULE + ".operators"]._save_render
+        for name in ("a.exr", "b.exr"):
+            bpy.ops.render.render()
+            save(self.scene, self.folder / name)
+        self.scene.polyrecon.folder = str(self.folder)
+        self.assertEqual(bpy.ops.polyrecon.frames(), {"FINISHED"})
+        self.assert_done()
+        for name in ("a.exr", "b.exr"):
+            self.assertGreater(np.abs(self.combined(f"denoised/{name}") - self.combined(name)).max(), 1e-3)
 
     def test_renders_adaptively_and_goes_on(self):
         self.scene.polyrecon.limit, self.scene.polyrecon.spp = "SPP", 12
@@ -233,7 +319,7 @@ class Extension(unittest.TestCase):
                 self.preferences.program = program
 
     def test_a_failing_program_is_told(self):
-        job = self.jobs.start("Denoise", [[str(find_polyrecon()), "denoise", "-i", "no.exr", "-o", "o.exr"]], {})
+        job = self.jobs.start("Denoise", [[str(self.program), "denoise", "-i", "no.exr", "-o", "o.exr"]], {})
         self.finish(job)
         self.assertEqual(job.state, "failed")
         self.assertIn("no.exr", job.error)
@@ -242,8 +328,8 @@ class Extension(unittest.TestCase):
     def test_preferences_tell_what_they_find(self):
         draw = sys.modules[MODULE + ".preferences"].draw
         shown = self.drawn(lambda popup: draw(popup.layout, self.preferences))
-        self.assertIn(str(find_polyrecon()), shown)
-        self.assertIn("PolyreconPreferences.python", shown)
+        self.assertIn(str(self.program), shown)
+        self.assertIn("PolyreconPreferences.oidn", shown)
 
     def test_command_line(self):
         """`blender -c polyrecon` calls this function. Blender as a module has no such option."""

@@ -1,24 +1,14 @@
-"""The drivers and the Blender extension, which is installed without them, look for the program in the same places."""
+"""Where the drivers, and with them the Blender extension, look for the program."""
 
-import importlib.util
 import os
 import pathlib
 import tempfile
 import unittest
 from unittest import mock
 
+from pipelines.common import polyrecon_cli
 from pipelines.common.errors import DriverError
 from pipelines.common.polyrecon_cli import find_polyrecon
-
-ROOT = pathlib.Path(__file__).resolve().parents[3]
-
-
-def extension_programs():
-    path = ROOT / "pipelines" / "blender" / "extension" / "programs.py"
-    spec = importlib.util.spec_from_file_location("programs", path)
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
 
 
 class Rule(unittest.TestCase):
@@ -34,22 +24,14 @@ class Rule(unittest.TestCase):
             program.write_text("#!/bin/sh\n")
             program.chmod(0o755)
         (self.folder / "text").write_text("no program")
-        self.programs = extension_programs()
 
     def found(self, given, variable, path="path"):
         environment = {"PATH": str(self.folder / path), "POLYRECON": variable}
         with mock.patch.dict(os.environ, environment):
-            places = []
-            for find, error in (
-                (find_polyrecon, DriverError),
-                (self.programs.find_program, self.programs.SetupError),
-            ):
-                try:
-                    places.append(find(given))
-                except error as problem:
-                    places.append(str(problem).split(": ")[0])
-        self.assertEqual(places[0], places[1], (given, variable))
-        return places[0]
+            try:
+                return find_polyrecon(given)
+            except DriverError as problem:
+                return str(problem).split(": ")[0]
 
     def test_is_one(self):
         given, variable, on_path = (self.folder / name for name in ("given", "variable", "path/polyrecon"))
@@ -67,3 +49,18 @@ class Rule(unittest.TestCase):
         self.addCleanup(os.chdir, before)
         os.chdir(self.folder)
         self.assertEqual(self.found("./given", ""), self.folder / "given")
+
+    def test_the_program_that_was_installed_with_the_drivers_comes_before_the_path(self):
+        module = self.folder / "site" / "polyrecon_pipelines" / "common" / "polyrecon_cli.py"
+        program = self.folder / "site" / "polyrecon" / "bin" / "polyrecon"
+        program.parent.mkdir(parents=True)
+        program.write_text("#!/bin/sh\n")
+        with mock.patch.object(polyrecon_cli, "__file__", str(module)):
+            self.assertEqual(self.found("", ""), self.folder / "path" / "polyrecon")  # It may not be executed yet.
+            program.chmod(0o755)
+            self.assertEqual(self.found("", ""), program)
+            self.assertEqual(self.found("", str(self.folder / "variable")), self.folder / "variable")
+
+
+if __name__ == "__main__":
+    unittest.main()
