@@ -3,7 +3,7 @@
 
 examples:
   %(prog)s shot.blend -o shot.exr --budget-spp 64
-  %(prog)s shot.blend -o 'out/shot_####.exr' --frames 1-10 --budget-seconds 120 --quality best
+  %(prog)s shot.blend -o 'out/shot_####.exr' --frames 1-10 --budget-seconds 1200 --quality best
   %(prog)s shot.blend -o shot.exr --target 0.002 --with-prior --error-map error.exr --report shot.html
   %(prog)s shot.blend -o shot.exr --budget-spp 64 --keep-passes
   %(prog)s shot.blend -o shot.exr --budget-spp 128 --keep-passes --resume    # more samples; also after an interruption

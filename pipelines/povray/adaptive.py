@@ -3,7 +3,7 @@
 
 examples:
   %(prog)s scene.pov -o scene.exr --budget-spp 64 -- +W640 +H360
-  %(prog)s scene.pov -o 'out/scene_####.exr' --frames 1-10 --budget-seconds 120 -- scene.ini +KFF10
+  %(prog)s scene.pov -o 'out/scene_####.exr' --frames 1-10 --budget-seconds 1200 -- scene.ini +KFF10
   %(prog)s scene.pov -o scene.exr --target 0.001 --error-map error.exr --report scene.html -- scene.ini
   %(prog)s scene.pov -o scene.exr --budget-spp 64 --keep-passes -- +W640 +H360
   %(prog)s scene.pov -o scene.exr --budget-spp 128 --keep-passes --resume -- +W640 +H360   # more samples
