@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "polyrecon/encoding.h"
 #include "polyrecon/file_info.h"
 
 namespace polyrecon {
@@ -16,7 +17,8 @@ struct MergeOptions {
   /// Renders of half B; all others are half A. Empty: renders are half A and B in turn, or,
   /// where that gives one half more than 1.25 times the samples of the other, divided as evenly as they allow.
   std::vector<std::string> half_b;
-  bool compress = true;  ///< ZIP. Without compression the file is larger, and faster to write and to read.
+  Encoding encoding = {};  ///< Without a compression: ZIP. With Compression::None the file is larger, and faster to
+                           ///< write and to read. A lossy one is for joined regions alone, as noise keeps its bits.
   ReadLimits limits;
 };
 
@@ -52,10 +54,12 @@ struct MergeResult {
 /// window. If some region, or more than 5 % of the picture, has one render only, no variance or halves are made; those
 /// of the files are kept where all have them.
 ///
-/// The result has one part of scanlines, merged layers as float. It is read back before it takes its name. Memory is
-/// bounded by one band of lines. Throws Error{Usage} for fewer than two files or a file given twice, Error{Missing} for
-/// a missing file, Error{BadInput} naming the first file that does not fit the first one, Error{OutOfMemory} if a band
-/// needs more than options.limits.max_bytes, and Error{CannotWrite}; an older target then stays as it was.
+/// The result has one part of scanlines. Means are half floats where the first file has half floats; variances and
+/// halves are floats, as small variances are below the range of half floats. It is read back before it takes its name.
+/// Memory is bounded by one band of lines. Throws Error{Usage} for fewer than two files or a file given twice,
+/// Error{Missing} for a missing file, Error{BadInput} naming the first file that does not fit the first one,
+/// Error{OutOfMemory} if a band needs more than options.limits.max_bytes, and Error{CannotWrite}; an older target then
+/// stays as it was.
 MergeResult merge(const std::vector<std::string>& paths, const std::string& target, const MergeOptions& options = {});
 
 }  // namespace polyrecon

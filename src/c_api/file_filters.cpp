@@ -7,6 +7,7 @@
 #include "c_api/memory_frame.h"
 #include "c_api/output_file.h"
 #include "c_api/reading_filter.h"
+#include "io/exr/compression.h"
 #include "polyrecon/merge.h"
 #include "polyrecon/write_result.h"
 
@@ -126,7 +127,8 @@ class MergeFilter : public Filter {
     add("half B", Parameter::of(half_b_));
     add("output", Parameter::of(output_));
     add("samples", Parameter::of(samples_, 0, Parameter::no_limit, true));
-    add("compress", Parameter::of(compress_));
+    add("compression", Parameter::of(compression_));
+    add("dwa level", Parameter::of(dwa_level_, 0, Parameter::no_limit));
   }
 
  protected:
@@ -138,7 +140,9 @@ class MergeFilter : public Filter {
     MergeOptions options;
     options.samples = samples_;
     options.half_b = half_b_;
-    options.compress = compress_;
+    options.encoding = {compression_from(compression_), dwa_level_};
+    if (!options.encoding.compression)
+      throw Error(ExitCode::Usage, fmt::format("compression '{}' is none of OpenEXR's", compression_));
     const MergeResult result = merge(inputs_, output_, options);
     Made made;
     made.report = {{"output", output_},         {"files", result.files},   {"samples", result.samples},
@@ -151,7 +155,8 @@ class MergeFilter : public Filter {
   std::vector<std::string> inputs_, half_b_;
   std::string output_;
   double samples_ = 0;
-  bool compress_ = true;
+  std::string compression_ = "zip";
+  double dwa_level_ = default_dwa_level;
 };
 
 }  // namespace

@@ -9,6 +9,7 @@
 
 #include "cli/commands.h"
 #include "cli/common/checks.h"
+#include "cli/common/encoding_options.h"
 #include "cli/common/memory_limit.h"
 #include "cli/common/numbers.h"
 #include "cli/common/option_set.h"
@@ -33,6 +34,7 @@ struct MergeCommandOptions {
 
 void check(const MergeCommandOptions& o) {
   if (o.inputs.size() + o.merge.half_b.size() < 2) throw Error(ExitCode::Usage, "merge needs at least two renders");
+  check_encoding(o.merge.encoding);
   require_endings({{"-o", o.output}});
 }
 
@@ -81,9 +83,7 @@ void setup_merge(CLI::App& app, Command& chosen) {
       ->check(above_zero())
       ->type_name("N");
   OptionSet set(*sub);
-  const Choices<bool> compressions{{"zip", true}, {"none", false}};
-  set.add_choice(Changes::Result, "--compression", o->merge.compress, compressions,
-                 "Compression of the output: zip, or none for a file that is deleted soon");
+  add_encoding_options(set, o->merge.encoding, "zip");
   add_overwrite(*sub, o->overwrite);
   add_verbosity(*sub, o->verbosity);
   add_memory_limit(*sub, o->max_memory);

@@ -32,7 +32,12 @@ bool is_path(const std::string& word) {
 
 /// The words with what they are short for.
 std::vector<std::string> expanded(const CLI::App& app, std::vector<std::string> words) {
-  if (!words.empty() && words.front() == "help") {
+  if (words.empty())
+    throw Error(ExitCode::Usage,
+                "name a render, as in polyrecon render.exr, or a command (polyrecon --help lists them)");
+  if (words.size() > 1 && words.front() == "denoise" && !words[1].empty() && words[1].front() != '-')
+    words.insert(words.begin() + 1, "-i");
+  if (words.front() == "help") {
     words.erase(words.begin());
     if (words.size() > 1) words.resize(1);
     if (!words.empty() && !is_command(app, words.front()))

@@ -52,8 +52,9 @@ std::vector<std::string> layers_outside_beauty(const Frame& frame) {
 
 std::string note_of_layer_outside_beauty(const std::string& name) {
   return name +
-         " gets windows of its own: it is noisy where the beauty has no noise, so it is no part of it; without " +
-         "--aov it stays as it is, --map beauty=LAYER denoises another layer in a run of its own";
+         " gets windows of its own: it is noisy where the beauty has no noise, so it is no part of it and does " +
+         "not add up with the other layers; without --aov it stays as it is, --map beauty=LAYER denoises another layer "
+         "in a run of its own";
 }
 
 }  // namespace polyrecon

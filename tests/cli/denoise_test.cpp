@@ -221,7 +221,7 @@ TEST_F(Denoise, SaysWhenAlphaCannotBeDenoised) {
 
 TEST_F(Denoise, KeepsTheNoisyLayerOnRequest) {
   write_render(path("in.exr"));
-  ASSERT_EQ(denoise({"--keep-noisy", "--quality", "draft"}).code, 0);
+  ASSERT_EQ(denoise({"--outputs", "input,noisy", "--quality", "draft"}).code, 0);
   EXPECT_EQ(samples_of(path("out.exr"), "ViewLayer.Combined Noisy.R"),
             samples_of(path("in.exr"), "ViewLayer.Combined.R"));
 }

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cli/program.h"
@@ -164,6 +165,80 @@ TEST_F(Everyday, AdviceIsWordedForTheRenderer) {
   write_exr(path("plain.exr"), 24, 16, {"R", "G", "B"}, grey);
   EXPECT_THAT(run({"inspect", "plain.exr"}).out,
               HasSubstr("no albedo: textures get blurred (render a pass of albedo)"));
+}
+
+TEST_F(Everyday, LayersThatDoNotAddUpAreSaid) {
+  std::vector<std::string> channels;
+  for (const char* layer : {"Combined", "Diffuse Direct", "Glossy Color", "Combined_lamp"})
+    for (const char* letter : {"R", "G", "B"}) channels.push_back(std::string("ViewLayer.") + layer + "." + letter);
+  write_exr(path("light.exr"), 24, 16, channels, [](int x, int y, int c) { return 0.1 * ((x * 7 + y * 3 + c) % 5); });
+  EXPECT_THAT(run({"inspect", "light.exr"}).out, HasSubstr("2 light AOVs stay noisy (--aov all)"));
+  const Outcome all = run({"denoise", "light.exr", "-o", "all.exr", "--aov", "all", "--report", "r.json"});
+  ASSERT_EQ(all.code, 0) << all.err;
+  const std::string note = "ViewLayer.Diffuse Direct is light without the colour of the surfaces";
+  EXPECT_THAT(all.out, HasSubstr(note));
+  const auto report = nlohmann::json::parse(read_text(path("r.json")));
+  EXPECT_THAT(report["notes"].dump(), HasSubstr(note));
+  EXPECT_THAT(report["roles"].dump(), Not(HasSubstr("Glossy Color")));
+  const Outcome lamp = run({"denoise", "light.exr", "-o", "lamp.exr", "--aov", "Combined_lamp"});
+  EXPECT_THAT(lamp.out, Not(HasSubstr("without the colour")));
+}
+
+TEST_F(Everyday, FewSamplesAreAdvisedToTakeAPrior) {
+  const Words call{"denoise", "in.exr", "--overwrite", "--quality", "draft", "--samples"};  // -i may be left out
+  for (const auto& [samples, few] : {std::pair("16", true), std::pair("64", true), std::pair("65", false)}) {
+    Words words = call;
+    words.emplace_back(samples);
+    const Outcome o = run(words);
+    ASSERT_EQ(o.code, 0) << o.err;
+    EXPECT_EQ(o.out.find(std::string(samples) + " samples per pixel are few (--prior oidn)") != std::string::npos, few);
+  }
+}
+
+TEST_F(Everyday, ANoteStandsOnceInASequence) {
+  const auto pixels = [](int x, int y, int) { return 0.1 * ((x * 7 + y * 3) % 5); };
+  for (int k = 1; k <= 3; ++k)
+    write_exr(path("shot." + std::to_string(k) + ".exr"), 24 + k, 16, {"R", "G", "B"}, pixels);
+  const Outcome o = run({"denoise", "-i", "shot.#.exr", "-o", "out.#.exr", "--quality", "draft"});
+  ASSERT_EQ(o.code, 0) << o.err;
+  EXPECT_THAT(o.out, HasSubstr("26 x 16 pixels, frame 1 has 25 x 16"));
+  EXPECT_THAT(o.out, Not(HasSubstr("27 x 16 pixels, frame 1")));
+  const Outcome all = run({"denoise", "-i", "shot.#.exr", "-o", "all.#.exr", "--quality", "draft", "-v"});
+  EXPECT_THAT(all.out, HasSubstr("27 x 16 pixels, frame 1 has 25 x 16"));
+  const Outcome again = run({"denoise", "-i", "shot.#.exr", "-o", "out.#.exr"});
+  EXPECT_EQ(again.code, 2);
+  EXPECT_THAT(again.err, HasSubstr("--overwrite to replace them, or --skip-existing to do what is still missing"));
+}
+
+TEST_F(Everyday, ContentsAndCompressionOfTheResult) {
+  const auto layers = [&](const Words& more) {
+    Words words{"denoise", "-i", "in.exr", "-o", "out.exr", "--overwrite", "--quality", "draft"};
+    words.insert(words.end(), more.begin(), more.end());
+    const Outcome o = run(words);
+    EXPECT_EQ(o.code, 0) << o.err;
+    return run({"inspect", "out.exr"}).out;
+  };
+  const std::string whole = layers({}), lean = layers({"--outputs", "layers"});
+  EXPECT_THAT(whole, HasSubstr("Combined Variance"));
+  EXPECT_THAT(lean, Not(HasSubstr("Combined Variance")));
+  EXPECT_THAT(lean, HasSubstr("Denoising Albedo"));
+  const std::string least = layers({"--outputs", "beauty,error,order", "--compression", "dwaa", "--dwa-level", "60"});
+  EXPECT_THAT(least, Not(HasSubstr("Denoising Albedo")));
+  EXPECT_THAT(least, HasSubstr("Combined Error"));
+  EXPECT_THAT(least, HasSubstr("Combined Order"));
+  EXPECT_THAT(least, HasSubstr("scanline dwaa"));
+  for (const auto& [words, said] : std::vector<std::pair<Words, std::string>>{
+           {{"--outputs", "beuty"}, "did you mean beauty?"},
+           {{"--outputs", "error"}, "--outputs input,error"},
+           {{"--compression", "dwab,"}, "did you mean dwab?"},
+           {{"--dwa-level", "60"}, "--dwa-level needs --compression dwaa or dwab"}}) {
+    Words call{"denoise", "-i", "in.exr", "-o", "new.exr"};
+    call.insert(call.end(), words.begin(), words.end());
+    const Outcome o = run(call);
+    EXPECT_EQ(o.code, 2);
+    EXPECT_THAT(o.err, HasSubstr(said));
+  }
+  EXPECT_FALSE(exists("new.exr"));
 }
 
 TEST_F(Everyday, AMissedTargetIsSaidAndHasACodeOnRequest) {

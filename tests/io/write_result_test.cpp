@@ -9,6 +9,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -102,6 +103,205 @@ INSTANTIATE_TEST_SUITE_P(Compressions, Case07EveryCompression,
                                                               Imf::B44_COMPRESSION, Imf::B44A_COMPRESSION,
                                                               Imf::DWAA_COMPRESSION, Imf::DWAB_COMPRESSION),
                                             ::testing::Values(0, 16)));
+
+/// What a requested compression makes of a picture next to data; the first channel that it would change, if any.
+struct RequestCase {
+  Compression compression;
+  std::string written, changed;
+};
+
+/// Half colours, and next to them ids and vectors as floats, as Cryptomatte and Blender name them.
+TestPart picture_and_data(const std::string& ids, const std::string& vector) {
+  TestPart part;
+  part.channels = join({layer("V.Combined", "RGBA", 0, Imf::HALF), layer("V.Diff", "RGB", 10, Imf::HALF),
+                        layer("V.CryptoObject00", ids, 30), layer("V.Denoising Normal", vector, 40)});
+  part.window = {-3, -7, 40, 61};
+  return part;
+}
+
+std::vector<std::string> write_encoded(const std::string& in, const std::string& out, Compression compression) {
+  WriteOptions options;
+  options.encoding.compression = compression;
+  const ReadResult read = read_frame(in);
+  return write_result(read.source, {{"V.Combined", filled(read.frame.data_window, 3, Real(0.3))}}, out, options);
+}
+
+TEST(RequestedCompression, KeepsTheBitsOfWhatIsNoColour) {
+  const std::vector<RequestCase> cases{{Compression::None, "none", ""},
+                                       {Compression::Rle, "rle", ""},
+                                       {Compression::Zips, "zips", ""},
+                                       {Compression::Zip, "zip", ""},
+                                       {Compression::Piz, "piz", ""},
+                                       {Compression::Pxr24, "zip", "V.CryptoObject00.a"},
+                                       {Compression::B44, "b44", ""},
+                                       {Compression::B44a, "b44a", ""},
+                                       {Compression::Dwaa, "zip", "V.Denoising Normal.Y"},
+                                       {Compression::Dwab, "zip", "V.Denoising Normal.Y"}};
+  const TemporaryFolder folder;
+  const std::string out = folder / "out.exr";
+  for (const int tile : {0, 16}) {
+    TestPart part = picture_and_data("rgba", "XYZ");
+    part.tile = tile;
+    const std::string in = write_exr(folder / "in.exr", {part});
+    for (const RequestCase& c : cases) {
+      const std::vector<std::string> notes = write_encoded(in, out, c.compression);
+      EXPECT_EQ(describe_file(out).parts[0].compression, c.written);
+      EXPECT_EQ(notes.empty(), c.changed.empty()) << c.written;
+      if (!c.changed.empty()) {
+        EXPECT_THAT(notes.front(), HasSubstr("would change " + c.changed + ", which is no colour"));
+      }
+      for (const TestChannel& channel : part.channels)
+        if (channel.type == Imf::FLOAT) {
+          EXPECT_EQ(stored_bytes(out, 0, channel.name), stored_bytes(in, 0, channel.name)) << channel.name;
+        }
+      EXPECT_NEAR(static_cast<double>(read_channels(describe_file(out), 0, {"V.Combined.G"}).at(7, 5, 0)), 0.3, 0.003);
+    }
+  }
+}
+
+TEST(RequestedCompression, DwaTakesIdsForColoursByTheirLetters) {
+  const TemporaryFolder folder;
+  const std::string out = folder / "out.exr";
+  const std::string small = write_exr(folder / "small.exr", {picture_and_data("rgba", "xyz")});
+  EXPECT_THAT(write_encoded(small, out, Compression::Dwaa), IsEmpty());
+  EXPECT_EQ(describe_file(out).parts[0].compression, "dwaa");
+  EXPECT_EQ(stored_bytes(out, 0, "V.CryptoObject00.r"), stored_bytes(small, 0, "V.CryptoObject00.r"));
+  EXPECT_NE(stored_bytes(out, 0, "V.Diff.R"), stored_bytes(small, 0, "V.Diff.R"));  // it is lossy
+
+  const std::string capital = write_exr(folder / "capital.exr", {picture_and_data("RGBA", "xyz")});
+  EXPECT_THAT(write_encoded(capital, out, Compression::Dwaa), Contains(HasSubstr("V.CryptoObject00.B")));
+  EXPECT_EQ(describe_file(out).parts[0].compression, "zip");
+  for (const char* letter : {"R", "G", "B", "A"})
+    EXPECT_EQ(stored_bytes(out, 0, std::string("V.CryptoObject00.") + letter),
+              stored_bytes(capital, 0, std::string("V.CryptoObject00.") + letter));
+}
+
+TEST(RequestedCompression, IsChosenForEachPart) {
+  const TemporaryFolder folder;
+  const std::string out = folder / "out.exr";
+  std::vector<TestPart> parts(3);
+  parts[0].name = "V.Combined";
+  parts[0].channels = layer("V.Combined", "RGB", 0, Imf::HALF);
+  parts[1].name = "V.CryptoObject00";
+  parts[1].channels = layer("V.CryptoObject00", "RGBA", 5);
+  parts[2].name = "V.Diff";
+  parts[2].channels = layer("V.Diff", "RGB", 20, Imf::HALF);
+  const std::string in = write_exr(folder / "in.exr", parts);
+  EXPECT_THAT(write_encoded(in, out, Compression::Dwab), ::testing::ElementsAre(HasSubstr("V.CryptoObject00")));
+  const FileInfo after = describe_file(out);
+  EXPECT_EQ(after.parts[0].compression, "dwab");
+  EXPECT_EQ(after.parts[1].compression, "zip");
+  EXPECT_EQ(after.parts[2].compression, "dwab");
+  EXPECT_EQ(stored_bytes(out, 1, "V.CryptoObject00.R"), stored_bytes(in, 1, "V.CryptoObject00.R"));
+}
+
+TEST(RequestedCompression, NoSampleBecomesInfinite) {
+  const TemporaryFolder folder;
+  const std::string out = folder / "out.exr";
+  TestPart part;
+  part.channels = join({layer("V.Combined", "RGB", 0, Imf::HALF), layer("V.Diff", "RGB", 0, Imf::HALF)});
+  for (TestChannel& channel : part.channels)
+    channel.samples = [](int x, int y) { return (x + y) % 2 == 0 ? 65504.0 : 0.0; };
+  const std::string in = write_exr(folder / "in.exr", {part});
+  EXPECT_THAT(write_encoded(in, out, Compression::Dwaa), Contains(HasSubstr("samples beyond 32752")));
+  const Image diffuse = read_channels(describe_file(out), 0, {"V.Diff.R"});
+  for (std::size_t i = 0; i < diffuse.pixels(); ++i) EXPECT_TRUE(std::isfinite(diffuse.plane(0)[i]));
+}
+
+/// A level of 0 loses least.
+TEST(RequestedCompression, TheLevelChoosesTheLoss) {
+  const TemporaryFolder folder;
+  TestPart part;
+  part.window = part.display = {0, 0, 96, 54};
+  part.channels = layer("V.Combined", "RGB", 0, Imf::HALF);
+  const ReadResult read = read_frame(write_exr(folder / "in.exr", {part}));
+  Image image(96, 54, 3);
+  for (int c = 0; c < 3; ++c)
+    for (int y = 0; y < 54; ++y)
+      for (int x = 0; x < 96; ++x) image.at(x, y, c) = static_cast<Real>(testing::grain(x, y, c));
+  std::vector<std::uintmax_t> sizes;
+  for (const double level : {0.0, 45.0, 400.0}) {
+    WriteOptions options;
+    options.encoding = {Compression::Dwaa, level};
+    write_result(read.source, {{"V.Combined", image}}, folder / "out.exr", options);
+    sizes.push_back(fs::file_size(folder / "out.exr"));
+  }
+  EXPECT_GT(sizes[0], sizes[1]);
+  EXPECT_GT(sizes[1], sizes[2]);
+}
+
+/// A merged render with data, in one part or in a part for each layer.
+std::vector<TestPart> merged_render(bool in_parts) {
+  TestPart one;
+  one.channels = join({layer("V.Combined", "RGBA", 0, Imf::HALF), layer("V.Combined Variance", "RGB", 5),
+                       layer("V.Combined A", "RGB", 6), layer("V.Combined B", "RGB", 7),
+                       layer("V.Denoising Albedo", "RGB", 8), layer("V.Denoising Albedo Variance", "RGB", 9),
+                       layer("V.CryptoObject00", "rgba", 30), layer("V.Sample Count", "X", 1)});
+  if (!in_parts) return {one};
+  std::vector<TestPart> parts;
+  for (const TestChannel& channel : one.channels) {
+    const std::string name = channel.name.substr(0, channel.name.rfind('.'));
+    if (parts.empty() || parts.back().name != name) {
+      parts.emplace_back();
+      parts.back().name = name;
+    }
+    parts.back().channels.push_back(channel);
+  }
+  return parts;
+}
+
+std::vector<std::string> layers_in(const std::string& path) {
+  std::vector<std::string> names;
+  for (const PartInfo& part : describe_file(path).parts)
+    for (const ChannelInfo& channel : part.channels) {
+      const std::string name = channel.name.substr(2, channel.name.rfind('.') - 2);
+      if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+    }
+  return names;
+}
+
+TEST(Contents, AreWhatTheOptionsKeep) {
+  using ::testing::UnorderedElementsAre;
+  const TemporaryFolder folder;
+  const std::string out = folder / "out.exr";
+  for (const bool in_parts : {false, true}) {
+    const std::string in = write_exr(folder / "in.exr", merged_render(in_parts));
+    const ReadResult read = read_frame(in);
+    const std::vector<Replacement> picture{{"V.Combined", filled(read.frame.data_window, 3, 7)}};
+    WriteOptions options;
+    options.keep_working = false;
+    EXPECT_THAT(write_result(read.source, picture, out, options), IsEmpty());
+    EXPECT_THAT(layers_in(out), UnorderedElementsAre("Combined", "Denoising Albedo", "CryptoObject00"));
+    const int part = in_parts ? 2 : 0, before = in_parts ? 6 : 0;
+    EXPECT_EQ(stored_bytes(out, part, "V.CryptoObject00.g"), stored_bytes(in, before, "V.CryptoObject00.g"));
+    EXPECT_EQ(stored_bytes(out, 0, "V.Combined.A"), stored_bytes(in, 0, "V.Combined.A"));
+
+    options.keep_layers = false;
+    options.keep_noisy = true;
+    Image error = filled(read.frame.data_window, 1, Real(0.25));
+    options.additions = {{"V.Combined", " Error", error}};
+    write_result(read.source, picture, out, options);
+    EXPECT_THAT(layers_in(out), UnorderedElementsAre("Combined", "Combined Noisy", "Combined Error"));
+    EXPECT_THAT(stored_floats(out, 0, "V.Combined Error.X"), Each(0.25F));
+    EXPECT_EQ(stored_bytes(out, 0, "V.Combined Noisy.R"), stored_bytes(in, 0, "V.Combined.R"));
+    EXPECT_NE(find_attribute(describe_file(out).parts[0], "polyrecon/version"), nullptr);
+    EXPECT_EQ(read_frame(out).frame.beauty.name, "V.Combined Noisy");
+  }
+}
+
+TEST(Contents, AnAdditionIsZeroOutsideOfItsWindow) {
+  const TemporaryFolder folder;
+  const std::string out = folder / "out.exr";
+  TestPart part;
+  part.channels = layer("", "RGB");
+  const ReadResult read = read_frame(write_exr(folder / "in.exr", {part}));
+  WriteOptions options;
+  options.additions = {{"RGBA", " Error", filled({0, 0, 2, 6}, 1, 3), {0, 0, 2, 6}}};
+  write_result(read.source, {{"RGBA", filled(part.window, 3, 7)}}, out, options);
+  const std::vector<float> error = stored_floats(out, 0, "RGBA Error.X");
+  EXPECT_EQ(error[1], 3);
+  EXPECT_EQ(error[2], 0);
+}
 
 TEST(WriteResult, PartsWithoutAReplacementAreCopiedInTheirOwnLossyCompression) {
   const TemporaryFolder folder;

@@ -97,7 +97,7 @@ void require_endings(const std::vector<NamedPath>& outputs) {
   }
 }
 
-void require_new(const std::vector<std::string>& outputs) {
+void require_new(const std::vector<std::string>& outputs, const std::string& other_way) {
   const std::string* first = nullptr;
   std::size_t others = 0;
   for (const std::string& output : outputs) {
@@ -111,9 +111,9 @@ void require_new(const std::vector<std::string>& outputs) {
   if (!first) return;
   throw Error(ExitCode::Usage,
               others == 0
-                  ? fmt::format("{}: exists already; add --overwrite to replace it", *first)
-                  : fmt::format("{}: exists already, and so do {} other outputs; add --overwrite to replace them",
-                                *first, others));
+                  ? fmt::format("{}: exists already; add --overwrite to replace it{}", *first, other_way)
+                  : fmt::format("{}: exists already, and so do {} other outputs; add --overwrite to replace them{}",
+                                *first, others, other_way));
 }
 
 void require_writable(const std::vector<std::string>& outputs) {

@@ -38,7 +38,8 @@ bool names_another_format(const std::string& path);
 void require_endings(const std::vector<NamedPath>& outputs);
 
 /// Throws Error{Usage} where one of the files exists. The message names the first one and the number of the others.
-void require_new(const std::vector<std::string>& outputs);
+/// other_way: what can be done instead of overwriting them, to be added to it.
+void require_new(const std::vector<std::string>& outputs, const std::string& other_way = {});
 
 /// Throws Error{CannotWrite} where an output cannot be written into its folder, or where the folder cannot be made.
 /// Each folder is tried once.

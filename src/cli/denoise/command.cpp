@@ -96,7 +96,7 @@ bool run_folder(const DenoiseOptions& options, const OptionSet& set, RunProgress
         if (has_ending_of(file_kind_of(option.kind), path))
           throw Error(ExitCode::Usage,
                       fmt::format("{} {}: the input is a folder, so name a folder", option.name, path));
-        path += '/';
+        if (path.back() != '/') path += '/';
       }
     jobs.push_back(make_job(one, set));
     check_files(jobs.back());

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -22,6 +23,16 @@ namespace {
 
 constexpr double least_shared_noise = 0.1;          // share of the noisy pixels; below it chance may be the cause
 constexpr double most_silent_energy_change = 0.01;  // the least step in brightness that is visible (Weber)
+
+/// Notes of other frames differ in their numbers at most. The report has all of them.
+void remove_notes_said_before(std::vector<std::string>& notes, RunProgress& progress) {
+  const auto said_before = [&](std::string note) {
+    note.erase(std::remove_if(note.begin(), note.end(), [](unsigned char c) { return std::isdigit(c) != 0; }),
+               note.end());
+    return !progress.is_new(note);
+  };
+  notes.erase(std::remove_if(notes.begin(), notes.end(), said_before), notes.end());
+}
 
 /// The note on neighbours that repeat the noise of a frame.
 void note_shared_noise(const Report& report, std::vector<std::string>& notes) {
@@ -134,10 +145,11 @@ void FileRun::denoise(LoadedFrame loaded, std::size_t max_memory, RunProgress& p
   for (const DonePicture& before : done_) params.max_memory -= std::min(params.max_memory, bytes_of(before));
   done.result = reconstruct(done.in.frame, neighbours_of(loaded), params, progress, job_.denoiser.get());
   report.noise_before = mean_of(done.result.error.relative_noise);
+  // With a denoiser no other one is advised.
+  report.advice = pass_advice(done.in.source, job_.denoiser ? 0 : mean_samples(done.in.frame.sample_count));
   release_images(done);
   report.picture = loaded.picture;
   report.notes = done.in.notes;
-  report.advice = pass_advice(done.in.source);
   note_shared_noise(done.result.report, report.notes);
   note_energy(done.result.report, report.notes);
   report.read_seconds = loaded.read_seconds;
@@ -161,9 +173,10 @@ void FileRun::release_images(DonePicture& done) const {
   frame.features.clear();
   frame.alpha = frame.motion = {};
   if (!job_.params.reconstruct_alpha) done.result.alpha = {};
-  if (files_.outputs.order_map.empty()) done.result.order = {};
+  if (files_.outputs.order_map.empty() && !job_.contents.order) done.result.order = {};
   if (files_.outputs.error_map.empty() && files_.outputs.sample_map.empty()) {
-    for (const ErrorMapImage& entry : error_map_images) done.result.error.*entry.image = {};
+    for (const ErrorMapImage& entry : error_map_images)
+      if (!job_.contents.error || entry.image != &ErrorMap::relative_mse) done.result.error.*entry.image = {};
     frame.sample_count = {};
   }
 }
@@ -202,6 +215,7 @@ bool FileRun::write(RunProgress& progress) {
     one.peak_memory = peak_memory();
     if (done_.size() > 1) one.title = one.picture.name();
     reports.push_back(report_json(one, done.in.source));
+    if (job_.run.verbosity == Verbosity::Short) remove_notes_said_before(one.notes, progress);
     text += report_text(one, progress.is_new(advice_text(one.advice)), job_.run.verbosity);
   }
   if (!files_.outputs.report.empty()) {

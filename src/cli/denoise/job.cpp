@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "cli/common/checks.h"
+#include "cli/common/encoding_options.h"
 #include "cli/common/frame_names.h"
 #include "cli/common/steps_option.h"
 #include "pipeline/memory.h"
@@ -132,7 +133,9 @@ Job make_job(const DenoiseOptions& o, const OptionSet& set) {
   job.read = read_options_of(o, list, job.params);
   job.make_denoiser = denoiser_of(o);
   job.denoiser_options = o.denoiser;
-  job.keep_noisy = o.keep_noisy;
+  job.contents = parse_contents(o.contents);
+  check_encoding(o.encoding);
+  job.encoding = o.encoding;
   job.run = o.run;
   job.is_sequence = list.is_sequence;
   job.frames = std::move(list.frames);
@@ -148,6 +151,8 @@ void check_options(const DenoiseOptions& o) {
                         o.frame_radius.value_or(0)));
   read_options_of(o, {}, {});
   denoiser_of(o);
+  parse_contents(o.contents);
+  check_encoding(o.encoding);
 }
 
 void check_files(const Job& job) {
@@ -164,7 +169,8 @@ void check_files(const Job& job) {
   if (job.sample_map && !job.sample_map->cost.empty() && !FramePattern::parse(job.sample_map->cost))
     require_readable(job.sample_map->cost);
   if (!job.is_sequence && job.run.wait <= 0) require_readable(job.frames.front().input);
-  if (!job.run.may_replace()) require_new(all_outputs);
+  if (!job.run.may_replace())
+    require_new(all_outputs, job.is_sequence ? ", or --skip-existing to do what is still missing" : "");
   require_writable(all_outputs);
 }
 

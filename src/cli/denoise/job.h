@@ -38,7 +38,8 @@ struct Job {
   MakeDenoiser make_denoiser = nullptr;  ///< Null: the prior is a layer of the file, if it has one.
   DenoiserOptions denoiser_options;
   std::shared_ptr<const Denoiser> denoiser;  ///< Set by load_denoiser.
-  bool keep_noisy = false;
+  ResultContents contents;
+  Encoding encoding;
   RunOptions run;
   std::string settings;  ///< Identity of the settings, see settings_of.
 };

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "cli/common/encoding_options.h"
 #include "cli/common/numbers.h"
 #include "cli/common/read_limits.h"
 #include "cli/common/steps_option.h"
@@ -122,7 +123,18 @@ void add_method_options(OptionSet& set, DenoiseOptions& o) {
                  "with code 0, fail with 8");
   add_steps_option(set, o.steps);
   set.add_flag(Changes::Result, "--alpha", o.alpha, "Denoise the alpha channel too; default: keep it");
-  set.add_flag(Changes::Result, "--keep-noisy", o.keep_noisy, "Keep the noisy layers, as '<layer> Noisy'");
+}
+
+void add_content_options(OptionSet& set, DenoiseOptions& o) {
+  set.begin_group("Contents of the output");
+  set.add(
+         Changes::Result, "--outputs", o.contents,
+         "What the output holds: beauty (the denoised layers alone), layers (those of the input too, but no variances, "
+         "halves and sample counts), or input (all that the input holds); in addition noisy (the layers that were "
+         "replaced, as '<layer> Noisy'), error and order ('<layer> Error', '<layer> Order')")
+      ->type_name("LIST")
+      ->capture_default_str();
+  add_encoding_options(set, o.encoding, "that of the input, zip where it is lossy");
 }
 
 void add_run_options(OptionSet& set, DenoiseOptions& o) {
@@ -156,6 +168,7 @@ void add_denoise_options(OptionSet& set, DenoiseOptions& options) {
   add_input_options(set, options);
   add_sequence_options(set, options);
   add_method_options(set, options);
+  add_content_options(set, options);
   for (CLI::Option* option : add_sample_map_options(set, options.sample_map)) option->needs(sample_map);
   add_run_options(set, options);
   add_read_limits(set, options.read.limits);

@@ -11,7 +11,9 @@
 #include "cli/common/progress_output.h"
 #include "cli/common/sample_map_options.h"
 #include "cli/common/verbosity.h"
+#include "cli/denoise/contents_option.h"
 #include "cli/denoise/frame_files.h"
+#include "polyrecon/encoding.h"
 #include "polyrecon/params.h"
 #include "polyrecon/read_frame.h"
 
@@ -45,7 +47,9 @@ struct DenoiseOptions {
   std::optional<int> stages, order;
   std::string steps = "auto";
   double time_budget = 0;  ///< Seconds for a whole frame; 0: no limit.
-  bool alpha = false, keep_noisy = false;
+  bool alpha = false;
+  std::string contents = default_contents;
+  Encoding encoding;
   std::optional<int> frame_radius;
   std::size_t max_memory = default_memory();
   SampleMapOptions sample_map;

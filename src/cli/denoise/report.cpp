@@ -32,14 +32,6 @@ std::string windows_text(const Report& r) {
   return fmt::format("{}{}", r.windows, orders);
 }
 
-/// Mean number of samples per pixel; 0 if unknown.
-double mean_samples(const Image& counts) {
-  if (counts.empty()) return 0;
-  double sum = 0;
-  for (std::size_t i = 0; i < counts.pixels(); ++i) sum += counts.plane(0)[i];
-  return sum / static_cast<double>(counts.pixels());
-}
-
 /// "ViewLayer.Combined with normal, albedo, variance"
 std::string layers_text(const ReadResult& in) {
   std::string beauty, with;
@@ -107,6 +99,13 @@ std::string all_figures(const RunReport& run, bool with_advice) {
 }
 
 }  // namespace
+
+double mean_samples(const Image& counts) {
+  if (counts.empty()) return 0;
+  double sum = 0;
+  for (std::size_t i = 0; i < counts.pixels(); ++i) sum += counts.plane(0)[i];
+  return sum / static_cast<double>(counts.pixels());
+}
 
 std::size_t peak_memory() {
   rusage usage{};

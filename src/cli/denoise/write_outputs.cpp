@@ -6,6 +6,7 @@
 
 #include "cli/common/map_files.h"
 #include "io/layers/result_layers.h"
+#include "io/renderers/polyrecon.h"
 #include "polyrecon/error.h"
 #include "polyrecon/write_result.h"
 
@@ -53,6 +54,14 @@ void add_replacements(const DonePicture& done, bool with_alpha, std::vector<Repl
     list.push_back({alpha_layer(in.source, in.frame.beauty.name, picture), done.result.alpha, true, window});
 }
 
+/// Adds the maps that are layers of the result.
+void add_maps(const ResultContents& contents, const DonePicture& done, std::vector<Addition>& list) {
+  const Rect& window = done.in.frame.data_window;
+  const std::string picture = result_layer(done);
+  if (contents.error) list.push_back({picture, error_suffix, done.result.error.relative_mse, window});
+  if (contents.order) list.push_back({picture, order_suffix, done.result.order, window});
+}
+
 /// The source of the first picture with the layers that were added for the others.
 FrameSource joined_source(const std::vector<DonePicture>& pictures) {
   FrameSource source = pictures.front().in.source;
@@ -96,11 +105,15 @@ std::vector<std::string> write_outputs(const Job& job, const FrameFiles& files,
                                        const std::vector<DonePicture>& pictures, Progress& progress) {
   const DonePicture& first = pictures.front();
   WriteOptions options;
-  options.keep_noisy = job.keep_noisy;
+  options.keep_noisy = job.contents.noisy;
+  options.keep_layers = job.contents.layers;
+  options.keep_working = job.contents.working;
+  options.encoding = job.encoding;
   options.provenance = {settings_of(job, files), input_identity(pictures), first.result.report.estimated_relative_mse};
   std::vector<Replacement> replacements;
   for (const DonePicture& done : pictures)
     add_replacements(done, job.params.reconstruct_alpha && done.report.picture.layer.empty(), replacements);
+  for (const DonePicture& done : pictures) add_maps(job.contents, done, options.additions);
   std::vector<std::string> notes = write_result(joined_source(pictures), replacements, files.outputs.picture, options);
   if (job.params.reconstruct_alpha) {
     if (const std::string note = alpha_note(first.in, first.result); !note.empty())

@@ -27,6 +27,12 @@ std::string compression_name(int number) {
   return number >= 0 && index < names.size() ? names[index] : "";
 }
 
+std::optional<Compression> compression_from(const std::string& name) {
+  for (int number = 0; number <= static_cast<int>(Compression::Dwab); ++number)
+    if (compression_name(number) == name) return static_cast<Compression>(number);
+  return std::nullopt;
+}
+
 std::string compression_obstacle(int number) {
   const std::string name = compression_name(number);
   if (name.empty() || number < Imf::NUM_COMPRESSION_METHODS) return {};

@@ -76,8 +76,8 @@ class RawPart {
 
 }  // namespace
 
-bool same_chunks(const std::string& path_a, const std::string& path_b, int part) {
-  RawPart a(path_a, part), b(path_b, part);
+bool same_chunks(const std::string& path_a, int part_a, const std::string& path_b, int part_b) {
+  RawPart a(path_a, part_a), b(path_b, part_b);
   if (a.chunks() != b.chunks()) return false;
   for (std::size_t i = 0; i < a.chunks(); ++i)
     if (a.chunk(i) != b.chunk(i)) return false;

@@ -323,6 +323,11 @@ const Layer* picture_layer(const std::vector<Layer>& layers) {
 
 bool is_picture_in_xyz(const Layer& layer) { return is_bare_film(layer) && layer.pass == bare_tristimulus; }
 
+bool may_lose_precision(const Layer& layer) {
+  const RoleInfo& info = info_of(layer.role);
+  return layer.companion == Companion::Mean && (info.values == Values::Radiance || info.surface == Surface::Color);
+}
+
 bool is_result(const FileInfo& file) {
   return std::any_of(file.parts.begin(), file.parts.end(),
                      [](const PartInfo& part) { return find_attribute(part, settings_attribute) != nullptr; });

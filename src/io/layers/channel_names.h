@@ -33,6 +33,10 @@ const Layer* picture_layer(const std::vector<Layer>& layers);
 /// Whether the layer is a picture whose channels are CIE XYZ.
 bool is_picture_in_xyz(const Layer& layer);
 
+/// Whether a lossy compression may change a layer: colours only. Ids, vectors and distances lose their meaning, and
+/// noise would no longer be that of the picture.
+bool may_lose_precision(const Layer& layer);
+
 /// Whether denoise wrote the file.
 bool is_result(const FileInfo& file);
 

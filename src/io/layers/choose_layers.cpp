@@ -482,9 +482,26 @@ void choose_aovs(LayerChoice& choice, const ReadOptions& options) {
       continue;
     }
     choice.outside_beauty.push_back(layer.name);
-    choice.notes.push_back(fmt::format(
-        "{} gets windows of its own: its data window reaches beyond the beauty's, so it is no part of it", layer.name));
+    choice.notes.push_back(
+        fmt::format("{} gets windows of its own: its data window reaches beyond the beauty's, so it is no part of it "
+                    "and does not add "
+                    "up with the other layers",
+                    layer.name));
   }
+}
+
+/// Notes colour layers whose sums are no beauty, whatever is done to them.
+void note_divided_aovs(LayerChoice& choice) {
+  std::vector<std::string> names;
+  for (const PassChoice& pass : choice.passes) {
+    const Layer& layer = choice.source.layers[static_cast<std::size_t>(pass.mean)];
+    if (pass.role == Role::Color && is_divided(layer.pass)) names.push_back(layer.name);
+  }
+  if (names.empty()) return;
+  choice.notes.push_back(fmt::format(
+      "{} {} light without the colour of the surfaces: multiplied by the colour passes, {} up to about the "
+      "beauty and not exactly; light groups add up",
+      fmt::join(names, ", "), names.size() == 1 ? "is" : "are", names.size() == 1 ? "it adds" : "they add"));
 }
 
 void describe_choice(LayerChoice& choice) {
@@ -595,7 +612,7 @@ void note_own_result(LayerChoice& choice, const Layer& beauty, const ReadOptions
   if (!has_prior && is_result(source.files.front()))
     choice.notes.push_back(
         fmt::format("{} holds a result of this program: {} is denoised once more; give the render, or write results "
-                    "with --keep-noisy",
+                    "with --outputs input,noisy",
                     source.path, beauty.name));
 }
 
@@ -689,6 +706,7 @@ LayerChoice choose_layers(const std::string& path, const ReadOptions& options) {
     if (pass.mean >= 0) choice.passes.push_back(pass);
   }
   choose_aovs(choice, options);
+  note_divided_aovs(choice);
   note_other_beauties(choice, options);
   note_lone_eye(choice, options);
   note_shared_samples(choice, options);

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "io/renderers/known_names.h"
+
 namespace polyrecon {
 
 std::vector<std::string> layer_words(const std::string& text, const std::vector<Layer>& layers) {
@@ -27,7 +29,7 @@ bool fits_pattern(const Layer& layer, const std::string& pattern) {
 
 bool is_light_aov(const Layer& layer) {
   return layer.role == Role::Color && layer.companion == Companion::Mean && layer.file == 0 &&
-         info_of(Role::Color).layer_channels.allow(layer.channels.size());
+         info_of(Role::Color).layer_channels.allow(layer.channels.size()) && !is_surface_color(layer.pass);
 }
 
 }  // namespace polyrecon

@@ -83,6 +83,9 @@ bool noise_is_known(const FrameSource& source) {
 
 constexpr const char* aov = "aov";
 
+/// Up to so many samples per pixel a network lowers the error (docs/lab/2026-12-01-second-opinion.md).
+constexpr double few_samples = 64;
+
 /// The light AOVs of the picture, where none of them is denoised.
 std::size_t noisy_aovs(const FrameSource& source) {
   if (has(source, Role::Color)) return 0;
@@ -100,7 +103,7 @@ std::string how_to(const Renderer* renderer, Role role) {
 
 }  // namespace
 
-std::vector<PassAdvice> pass_advice(const FrameSource& source) {
+std::vector<PassAdvice> pass_advice(const FrameSource& source, double samples) {
   std::vector<PassAdvice> advice;
   if (source.chosen.empty()) return advice;
   const Renderer* renderer = renderer_of(source);
@@ -112,6 +115,8 @@ std::vector<PassAdvice> pass_advice(const FrameSource& source) {
                       renderer && !renderer->noise_switch.empty()
                           ? renderer->name + ": " + renderer->noise_switch
                           : "render parts with different seeds and join them by polyrecon merge"});
+  if (samples > 0 && samples <= few_samples && !has(source, Role::Prior))
+    advice.push_back({name_of(Role::Prior), fmt::format("{:.4g} samples per pixel are few", samples), "--prior oidn"});
   const std::size_t aovs = noisy_aovs(source);
   if (aovs > 0)
     advice.push_back({aov, fmt::format("{} light AOV{} noisy", aovs, aovs == 1 ? " stays" : "s stay"), "--aov all"});
@@ -124,7 +129,8 @@ std::string advice_text(const std::vector<PassAdvice>& advice) {
     std::string names, without;
     const std::string& how = advice[i].how;
     for (; i < advice.size() && advice[i].how == how; ++i) {
-      if (advice[i].pass != aov) names += (names.empty() ? "no " : ", no ") + advice[i].pass;
+      if (advice[i].pass != aov && advice[i].pass != name_of(Role::Prior))
+        names += (names.empty() ? "no " : ", no ") + advice[i].pass;
       without += (without.empty() ? "" : ", ") + advice[i].without;
     }
     text += fmt::format("{}{}{} ({})", text.empty() ? "" : "; ", names.empty() ? "" : names + ": ", without, how);

@@ -9,13 +9,15 @@ namespace polyrecon {
 
 /// A pass that a frame lacks, what it would bring, and where to switch it on.
 struct PassAdvice {
-  std::string pass;     ///< "albedo", "variance" for what tells the noise, or "aov" for AOVs that stay noisy.
+  std::string pass;     ///< "albedo", "variance" for what tells the noise, "prior" for few samples, "aov" for AOVs
+                        ///< that stay noisy.
   std::string without;  ///< "textures get blurred": what is worse without it.
   std::string how;      ///< In the words of the renderer, where it is known: "Blender: View Layer > Passes > ...".
 };
 
 /// Advice for a frame that was read, the most useful first; empty where all is there.
-std::vector<PassAdvice> pass_advice(const FrameSource& source);
+/// samples: per pixel; 0 if unknown.
+std::vector<PassAdvice> pass_advice(const FrameSource& source, double samples);
 
 /// The advice on one line; empty without any. Passes that are switched on at one place stand together.
 std::string advice_text(const std::vector<PassAdvice>& advice);

@@ -38,8 +38,11 @@ std::vector<float> read_area(const FileInfo& file, int part, const std::vector<s
 Rect area_of(const NativeBand& band) { return {band.x0, band.y0, band.x0 + band.width, band.y1}; }
 
 void put(NativeChannel& channel, std::size_t i, double value) {
+  const auto store = [&](auto sample) {
+    std::memcpy(channel.samples.data() + i * sizeof sample, &sample, sizeof sample);
+  };
   const auto narrow = static_cast<float>(value);
-  std::memcpy(channel.samples.data() + i * sizeof narrow, &narrow, sizeof narrow);
+  channel.type == Imf::HALF ? store(half(narrow)) : store(narrow);
 }
 
 }  // namespace polyrecon

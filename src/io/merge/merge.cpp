@@ -75,7 +75,7 @@ MergeResult merge(const std::vector<std::string>& paths, const std::string& targ
     for (const Render& render : task.renders)
       for (const FileInfo& file : render.files) require_unchanged(file);
   };
-  write_single_part(target, output_header(task, options.compress), make, lines_per_band(task));
+  write_single_part(target, output_header(task, options.encoding, report.notes), make, lines_per_band(task));
   merger.note(report);
   if (!task.counted.empty())
     report.samples = samples / static_cast<double>(task.window.area()) / static_cast<double>(task.counted.size());

@@ -17,6 +17,8 @@
 
 #include "io/exr/attributes.h"
 #include "io/exr/bands.h"
+#include "io/exr/compression.h"
+#include "io/exr/encode.h"
 #include "io/exr/writable.h"
 #include "io/layers/channel_groups.h"
 #include "io/layers/channel_names.h"
@@ -46,6 +48,18 @@ void replace_number(Imf::Header& header, const std::string& name, double value) 
   if (auto* real = header.findTypedAttribute<Imf::DoubleAttribute>(name)) real->value() = value;
 }
 
+Imf::PixelType type_in_file(const Render& first, const Layer& layer, const std::string& channel) {
+  for (const ChannelInfo& info : part_of(first, layer).channels)
+    if (info.name == channel)
+      return info.type == SampleType::Half ? Imf::HALF : info.type == SampleType::Uint ? Imf::UINT : Imf::FLOAT;
+  return Imf::FLOAT;
+}
+
+/// The type of a mean, which no integer holds.
+Imf::PixelType type_of_mean(const Render& first, const Layer& layer, const std::string& channel) {
+  return type_in_file(first, layer, channel) == Imf::HALF ? Imf::HALF : Imf::FLOAT;
+}
+
 Imf::ChannelList output_channels(const MergeTask& task) {
   Imf::ChannelList list;
   for (const std::size_t l : task.merged) {
@@ -53,22 +67,29 @@ Imf::ChannelList output_channels(const MergeTask& task) {
     for (const std::string& name : layer.channels)
       for (const char* companion : output_companions)
         if (!task.joins || *companion == 0)
-          list.insert(output_name(task.first(), layer, name, companion), Imf::Channel(Imf::FLOAT));
-    if (!layer.alpha.empty()) list.insert(output_name(task.first(), layer, layer.alpha), Imf::Channel(Imf::FLOAT));
+          list.insert(output_name(task.first(), layer, name, companion),
+                      Imf::Channel(*companion == 0 ? type_of_mean(task.first(), layer, name) : Imf::FLOAT));
+    if (!layer.alpha.empty())
+      list.insert(output_name(task.first(), layer, layer.alpha),
+                  Imf::Channel(type_of_mean(task.first(), layer, layer.alpha)));
   }
   for (const std::size_t l : task.kept) {
     const Layer& layer = task.first().layers[l];
-    for (const ChannelInfo& channel : part_of(task.first(), layer).channels) {
-      const auto mine = all_channels(layer);
-      if (std::find(mine.begin(), mine.end(), channel.name) == mine.end()) continue;
-      const auto type = channel.type == SampleType::Half   ? Imf::HALF
-                        : channel.type == SampleType::Uint ? Imf::UINT
-                                                           : Imf::FLOAT;
-      list.insert(output_name(task.first(), layer, channel.name), Imf::Channel(type));
-    }
+    for (const std::string& name : all_channels(layer))
+      list.insert(output_name(task.first(), layer, name), Imf::Channel(type_in_file(task.first(), layer, name)));
   }
   for (const std::string& view_layer : task.counted) list.insert(count_name(view_layer), Imf::Channel(Imf::FLOAT));
   return list;
+}
+
+/// The channels that no compression may change: all but joined colours, as halves and variances are the noise of means.
+std::set<std::string> exact_channels(const MergeTask& task, const Imf::Header& header) {
+  std::set<std::string> exact;
+  for (auto c = header.channels().begin(); c != header.channels().end(); ++c) exact.insert(c.name());
+  for (const Layer& layer : task.first().layers)
+    if (may_lose_precision(layer))
+      for (const std::string& name : all_channels(layer)) exact.erase(output_name(task.first(), layer, name));
+  return exact;
 }
 
 Imf::StringVector stereo_views(const MergeTask& task) {
@@ -96,15 +117,17 @@ std::string count_name(const std::string& view_layer) {
   return (view_layer.empty() ? "" : view_layer + ".") + sample_count_pass + ".X";
 }
 
-Imf::Header output_header(const MergeTask& task, bool compress) {
+Imf::Header output_header(const MergeTask& task, const Encoding& encoding, std::vector<std::string>& notes) {
   const Imf::MultiPartInputFile input(path_of(task.first()).c_str(), 0, false);
   Imf::Header header(input.header(0).displayWindow(),
                      {{task.window.x0, task.window.y0}, {task.window.x1 - 1, task.window.y1 - 1}});
   header.setType(Imf::SCANLINEIMAGE);
-  header.compression() = compress ? Imf::ZIP_COMPRESSION : Imf::NO_COMPRESSION;
-  header.zipCompressionLevel() = zip_level;
+  header.compression() = Imf::ZIP_COMPRESSION;
   copy_metadata(input, header);
   header.channels() = output_channels(task);
+  if (const std::string channel = encode(header, encoding, exact_channels(task, header)); !channel.empty())
+    notes.push_back(fmt::format("written with ZIP: {} would change {}, which is no colour",
+                                compression_name(static_cast<int>(*encoding.compression)), channel));
   if (const auto views = stereo_views(task); !views.empty()) Imf::addMultiView(header, views);
   for (const auto& [view_layer, samples] : task.metadata_samples) {
     for (const SamplesAttribute& copied : samples_attributes(view_layer)) replace_number(header, copied.name, samples);

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <string>
+#include <vector>
 
 #include "io/merge/task.h"
 #include "io/renderers/polyrecon.h"
@@ -21,6 +22,7 @@ std::string output_name(const Render& first, const Layer& layer, const std::stri
 std::string count_name(const std::string& view_layer);
 
 /// The header of the result: windows, channels, and the metadata of the first render with the samples of all.
-Imf::Header output_header(const MergeTask& task, bool compress);
+/// Appends a note where the compression is not the requested one.
+Imf::Header output_header(const MergeTask& task, const Encoding& encoding, std::vector<std::string>& notes);
 
 }  // namespace polyrecon

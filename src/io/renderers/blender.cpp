@@ -31,6 +31,19 @@ Renderer blender() {
   r.samples_attributes = {{"cycles.{}.samples", true}};
   r.sample_fraction = "Debug Sample Count";
   r.render_time = "Render Time";
+  r.divided_passes = {"DiffDir",
+                      "DiffInd",
+                      "Diffuse Direct",
+                      "Diffuse Indirect",
+                      "GlossDir",
+                      "GlossInd",
+                      "TransDir",
+                      "TransInd",
+                      "Glossy Direct",
+                      "Glossy Indirect",
+                      "Transmission Direct",
+                      "Transmission Indirect"};
+  r.surface_colors = {"GlossCol", "TransCol", "Glossy Color", "Transmission Color"};
   r.compositing_depth = "Depth";
   r.first_sample_is_central = true;
   r.sky_depth = 1e10;  // from 5.2 on the largest float

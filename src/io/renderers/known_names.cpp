@@ -111,6 +111,20 @@ bool is_render_time(const std::string& pass) {
   return any_renderer_with([&](const Renderer& r) { return !r.render_time.empty() && pass == r.render_time; });
 }
 
+bool is_divided(const std::string& pass) {
+  return any_renderer_with([&](const Renderer& r) {
+    return std::any_of(r.divided_passes.begin(), r.divided_passes.end(),
+                       [&](const std::string& divided) { return same_name(pass, divided); });
+  });
+}
+
+bool is_surface_color(const std::string& pass) {
+  return any_renderer_with([&](const Renderer& r) {
+    return std::any_of(r.surface_colors.begin(), r.surface_colors.end(),
+                       [&](const std::string& color) { return same_name(pass, color); });
+  });
+}
+
 std::string with_view_layer(std::string attribute, const std::string& view_layer) {
   const std::size_t at = attribute.find("{}");
   return at == std::string::npos ? attribute : attribute.replace(at, 2, view_layer);

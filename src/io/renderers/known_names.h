@@ -46,6 +46,12 @@ bool is_sample_fraction(const std::string& pass);
 /// Whether the pass holds what each pixel cost.
 bool is_render_time(const std::string& pass);
 
+/// Whether the pass is light divided by the colour of the surface.
+bool is_divided(const std::string& pass);
+
+/// Whether the pass is the colour of surfaces without being a feature.
+bool is_surface_color(const std::string& pass);
+
 /// An attribute's name with the view layer in place of "{}".
 std::string with_view_layer(std::string attribute, const std::string& view_layer);
 

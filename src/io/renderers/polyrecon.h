@@ -4,6 +4,8 @@ namespace polyrecon {
 
 // The names that this program itself gives to what it writes.
 constexpr const char* noisy_suffix = " Noisy";        ///< A layer that is kept as it was (WriteOptions::keep_noisy).
+constexpr const char* error_suffix = " Error";        ///< Estimated relative MSE of a layer of a result.
+constexpr const char* order_suffix = " Order";        ///< Its polynomial order.
 constexpr const char* variance_suffix = " Variance";  ///< The companions that `merge` writes.
 constexpr const char* half_a_suffix = " A";
 constexpr const char* half_b_suffix = " B";

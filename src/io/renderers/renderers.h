@@ -91,6 +91,11 @@ struct Renderer {
   std::string sample_fraction;  ///< Sample-count pass that holds a fraction of the metadata's number.
   std::string render_time;      ///< Pass with the cost of each pixel.
 
+  /// Light passes that are divided by the colour of the surface, which another pass holds: sums of them are no beauty.
+  std::vector<std::string> divided_passes;
+  /// The passes with these colours, as far as they have no role: they are averages like light, but no light.
+  std::vector<std::string> surface_colors;
+
   /// Pass with the depth of a pixel's first sample; averages of it are wrong at edges.
   std::string compositing_depth;
   /// The first sample of a pixel lies at its centre in every render, whatever the seed.

@@ -92,7 +92,9 @@ const std::vector<OptionCase> cases{
     {Changes::Result, {"--steps", "all"}},
     {Changes::Result, {"--effects", "all"}},
     {Changes::Result, {"--alpha"}},
-    {Changes::Result, {"--keep-noisy"}},
+    {Changes::Result, {"--outputs", "beauty"}},
+    {Changes::Result, {"--compression", "piz"}},
+    {Changes::Result, {"--dwa-level", "60"}, {}, {"-i", "in.exr", "-o", "out.exr", "--compression", "dwaa"}},
     {Changes::Result,
      {"--budget", "4"},
      {"--budget", "3"},
@@ -129,8 +131,8 @@ TEST(Identity, DependsOnEveryOptionThatChangesTheResultAndOnNoOther) {
 
 TEST(Identity, ADefaultThatIsGivenChangesNothing) {
   const std::string plain = job_of({}).settings;
-  for (const Words& words :
-       std::vector<Words>{{"--quality", "standard"}, {"--stages", "2"}, {"--order", "2"}, {"--steps", "auto"}})
+  for (const Words& words : std::vector<Words>{
+           {"--quality", "standard"}, {"--stages", "2"}, {"--order", "2"}, {"--steps", "auto"}, {"--outputs", "input"}})
     EXPECT_EQ(job_of(words).settings, plain) << words[0];
   EXPECT_EQ(job_of({"--max-samples", "1e3"}, with_map).settings,
             job_of({"--max-samples", "1000.0"}, with_map).settings);

@@ -79,6 +79,44 @@ TEST(MergeRenders, GivenHalvesAreAveragedAlikeWhateverTheirCounts) {
   EXPECT_THAT(stored_floats(out, 0, "V.Sample Count.X"), Each(33.0F));
 }
 
+TEST(MergeRenders, MeansOfHalvesAreHalvesAndTheirNoiseIsFloat) {
+  const TemporaryFolder folder;
+  const std::string out = folder / "out.exr";
+  std::vector<TestPart> renders;
+  for (const int seed : {1, 2, 3}) {
+    TestPart part;
+    part.channels = join({layer("V.Combined", "RGBA", seed, Imf::HALF), layer("V.Denoising Depth", "Z", seed)});
+    renders.push_back(part);
+  }
+  merge(write_all(folder, renders), out);
+  for (const ChannelInfo& channel : describe_file(out).parts[0].channels) {
+    const bool is_mean_of_halves = channel.name.rfind("V.Combined.", 0) == 0;
+    EXPECT_EQ(channel.type, is_mean_of_halves ? SampleType::Half : SampleType::Float) << channel.name;
+  }
+}
+
+TEST(MergeRenders, ALossyCompressionIsForJoinedColoursAlone) {
+  const TemporaryFolder folder;
+  const std::string out = folder / "out.exr";
+  MergeOptions options;
+  options.encoding.compression = Compression::Dwaa;
+  std::vector<TestPart> regions;
+  for (const int x : {0, 32}) {
+    TestPart part;
+    part.window = {x, 0, x + 32, 32};
+    part.display = {0, 0, 64, 32};
+    part.channels = join({layer("V.Combined", "RGB", 1, Imf::HALF), layer("V.CryptoObject00", "rgba", 9)});
+    regions.push_back(part);
+  }
+  EXPECT_TRUE(merge(write_all(folder, regions), out, options).joined);
+  EXPECT_EQ(describe_file(out).parts[0].compression, "dwaa");
+  EXPECT_EQ(describe_file(out).parts[0].channels.front().type, SampleType::Half);
+
+  const MergeResult result = merge(write_all(folder, {render(1), render(2)}), out, options);
+  EXPECT_THAT(result.notes, Contains(HasSubstr("written with ZIP: dwaa would change V.Combined A.B")));
+  EXPECT_EQ(describe_file(out).parts[0].compression, "zip");
+}
+
 TEST(MergeRenders, LayersOfTheFirstFileAloneAreKept) {
   const TemporaryFolder folder;
   const std::string out = folder / "out.exr";
