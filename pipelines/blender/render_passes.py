@@ -86,7 +86,7 @@ def render_parts(options, renderer, notes, frame, polyrecon, progress):
         f"{frame.output}: {number}{audit.width} x {audit.height}, {renderer.name}, {options.spp} samples per pixel in "
         f"{options.parts} parts",
         f"  {outputs.size_text(frame.output.stat().st_size)}, {time.monotonic() - begin:.1f} s",
-        f"  next: polyrecon denoise -i {shlex.quote(str(frame.output))}",
+        f"  next: polyrecon denoise -i {shlex.quote(str(frame.output))} --outputs layers",
     )
     if options.verbose:
         print_lines(*(f"  {line}" for line in [*audit.lines(), *process.lines_of(summary)]))

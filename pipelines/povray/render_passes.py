@@ -80,7 +80,7 @@ def _main(words):
                 f"{options.output}: {scene.width} x {scene.height}, {scene.version}, {samples.mean():.3g} samples per "
                 f"pixel; features: {found}",
                 f"  {outputs.size_text(pathlib.Path(options.output).stat().st_size)}, {time.monotonic() - begun:.1f} s",
-                f"  next: polyrecon denoise -i {shlex.quote(options.output)}",
+                f"  next: polyrecon denoise -i {shlex.quote(options.output)} --outputs layers",
             )
 
 
