@@ -4,8 +4,8 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-# Runs a GoogleTest program in 16 shares, with the options that follow. A process for each test, as ctest has it, takes a minute longer, because the
-# program loads 260 libraries.
+# Runs a GoogleTest program in 16 shares, with the options that follow. A process for each test, as ctest has it, takes a
+# minute longer, because the program loads 260 libraries.
 in_shares() {
   seq 0 15 | GTEST_TOTAL_SHARDS=16 xargs -P "$(nproc)" -I{} env GTEST_SHARD_INDEX={} "$@" --gtest_brief=1
 }
@@ -25,13 +25,7 @@ build/venv/bin/ruff check
 build/venv/bin/ruff format --check
 
 part "build, warnings are errors"
-# With a compiler cache, a run on a machine that has built the same sources takes half the time.
-launcher=
-if command -v ccache >/dev/null; then
-  launcher=-DCMAKE_CXX_COMPILER_LAUNCHER=ccache
-  export CCACHE_BASEDIR=$PWD CCACHE_NOHASHDIR=1 CCACHE_SLOPPINESS=pch_defines,time_macros  # as the precompiled headers need
-fi
-cmake --preset check $launcher
+cmake --preset check
 cmake --build --preset check
 
 part clang-tidy
@@ -44,7 +38,7 @@ run-clang-tidy -p build/tidy -quiet -j "$(nproc)" "$sources" >build/tidy/clang-t
 }
 
 part "unit tests under AddressSanitizer and UndefinedBehaviorSanitizer"
-cmake --preset asan $launcher
+cmake --preset asan
 cmake --build --preset asan --target unit_tests
 # These take half of the time of all unit tests: accuracy, memory, and many runs whose bits are compared. Other tests run
 # the same code, and the sanitizers would find the same in it.
