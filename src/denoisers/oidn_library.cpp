@@ -113,7 +113,8 @@ fs::path own_modules() {
   return path.is_absolute() ? fs::canonical(path, ignored).parent_path().parent_path().parent_path() : fs::path();
 }
 
-/// Folders of Python modules: that of this binary, of the active environment, of each Python on the PATH, and of the user.
+/// Folders of Python modules: that of this binary, of the active environment, of each Python on the PATH, and of the
+/// user.
 std::vector<fs::path> python_modules() {
   std::vector<fs::path> prefixes;
   std::error_code ignored;
