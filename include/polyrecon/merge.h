@@ -54,8 +54,8 @@ struct MergeResult {
 /// window. If some region, or more than 5 % of the picture, has one render only, no variance or halves are made; those
 /// of the files are kept where all have them.
 ///
-/// The result has one part of scanlines. Means are half floats where the first file has half floats; variances and
-/// halves are floats, as small variances are below the range of half floats. It is read back before it takes its name.
+/// The result has one part of scanlines. Its means, variances and halves are floats; regions that are joined keep the
+/// first file's types. It is read back before it takes its name.
 /// Memory is bounded by one band of lines. Throws Error{Usage} for fewer than two files or a file given twice,
 /// Error{Missing} for a missing file, Error{BadInput} naming the first file that does not fit the first one,
 /// Error{OutOfMemory} if a band needs more than options.limits.max_bytes, and Error{CannotWrite}; an older target then

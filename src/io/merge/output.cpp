@@ -55,9 +55,10 @@ Imf::PixelType type_in_file(const Render& first, const Layer& layer, const std::
   return Imf::FLOAT;
 }
 
-/// The type of a mean, which no integer holds.
-Imf::PixelType type_of_mean(const Render& first, const Layer& layer, const std::string& channel) {
-  return type_in_file(first, layer, channel) == Imf::HALF ? Imf::HALF : Imf::FLOAT;
+/// A mean is more precise than the renders, and rounded means of layers would no longer add up. Joined regions are
+/// copies.
+Imf::PixelType type_of_mean(const MergeTask& task, const Layer& layer, const std::string& channel) {
+  return task.joins && type_in_file(task.first(), layer, channel) == Imf::HALF ? Imf::HALF : Imf::FLOAT;
 }
 
 Imf::ChannelList output_channels(const MergeTask& task) {
@@ -68,10 +69,9 @@ Imf::ChannelList output_channels(const MergeTask& task) {
       for (const char* companion : output_companions)
         if (!task.joins || *companion == 0)
           list.insert(output_name(task.first(), layer, name, companion),
-                      Imf::Channel(*companion == 0 ? type_of_mean(task.first(), layer, name) : Imf::FLOAT));
+                      Imf::Channel(*companion == 0 ? type_of_mean(task, layer, name) : Imf::FLOAT));
     if (!layer.alpha.empty())
-      list.insert(output_name(task.first(), layer, layer.alpha),
-                  Imf::Channel(type_of_mean(task.first(), layer, layer.alpha)));
+      list.insert(output_name(task.first(), layer, layer.alpha), Imf::Channel(type_of_mean(task, layer, layer.alpha)));
   }
   for (const std::size_t l : task.kept) {
     const Layer& layer = task.first().layers[l];
