@@ -89,8 +89,8 @@ TEST(MergeRenders, MeansOfHalfFloatsAreFloats) {
     renders.push_back(part);
   }
   merge(write_all(folder, renders), out);
-  for (const ChannelInfo& channel : describe_file(out).parts[0].channels)
-    EXPECT_EQ(channel.type, SampleType::Float) << channel.name;
+  const FileInfo file = describe_file(out);
+  for (const ChannelInfo& channel : file.parts[0].channels) EXPECT_EQ(channel.type, SampleType::Float) << channel.name;
 }
 
 TEST(MergeRenders, ALossyCompressionIsForJoinedColoursAlone) {
