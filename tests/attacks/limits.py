@@ -9,35 +9,10 @@ from tests.attacks.program import MEGABYTE
 
 NAME = "limits"
 NOBODY = 64998  # A user without processes, whom the limit of processes binds.
+DENOISE = ["denoise", "-i", "plain.exr", "-o", "o.exr", "--quality", "draft"]
 COMMANDS = {
-    "denoise": [
-        "denoise",
-        "-i",
-        "plain.exr",
-        "-o",
-        "o.exr",
-        "--quality",
-        "draft",
-        "--error-map",
-        "e.exr",
-        "--report",
-        "r.json",
-    ],
-    "maps": [
-        "denoise",
-        "-i",
-        "plain.exr",
-        "-o",
-        "o.exr",
-        "--quality",
-        "draft",
-        "--sample-map",
-        "s.exr",
-        "--budget",
-        "4",
-        "-t",
-        "3",
-    ],
+    "denoise": [*DENOISE, "--error-map", "e.exr", "--report", "r.json"],
+    "maps": [*DENOISE, "--sample-map", "s.exr", "--budget", "4", "-t", "3"],
     "inspect": ["inspect", "plain.exr"],
     "merge": ["merge", "plain.exr", "second.exr", "-o", "o.exr"],
     "compare": ["compare", "plain.exr", "second.exr", "--html", "o.html"],
