@@ -11,7 +11,7 @@
 
 #include "io/layers/channel_groups.h"
 #include "io/layers/channel_names.h"
-#include "io/layers/choose_layers.h"
+#include "io/layers/open_source.h"
 #include "io/merge/place_renders.h"
 #include "polyrecon/error.h"
 
