@@ -1,9 +1,11 @@
 #!/usr/bin/env python3
-"""Damages the folder of passes of a loop in random ways and resumes it: journal_attacks.py COUNT [SEED]
+"""Damages the folders of passes of a loop in random ways and resumes it: journal_attacks.py COUNT [SEED] [--shot]
 
-Each time the journal is edited, cut or replaced, or a file that it names is swapped, cut, removed, or another kind of
-entry. The loop must end with a documented exit code and one line, or finish with the samples that its journal lists."""
+Each time a journal is edited, cut or replaced, or a file that it names is swapped, cut, removed, or another kind of
+entry. The loop must end with a documented exit code and one line, or finish with the samples that its journal lists.
+With --shot it is the loop of three frames that share a budget."""
 
+import argparse
 import collections
 import contextlib
 import copy
@@ -24,7 +26,7 @@ if __name__ == "__main__":
 from pipelines.common import exr
 from pipelines.common.errors import run_main
 from pipelines.loop.budget import Budget
-from tests.pipelines.loop import synthetic
+from tests.pipelines.loop import synthetic, test_shot
 
 BUDGET, SIZE = Budget(samples=12), {"width": 24, "height": 16}
 REFUSALS = {2, 3, 4, 5, 6, 7, 33}
@@ -120,35 +122,55 @@ def damage_file(passes, rng):
             os.mkfifo(path)
 
 
-def attack(whole, folder, rng):
+def run_frame(folder, resume=False):
+    synthetic.loop(folder, BUDGET, resume=resume, **SIZE)
+
+
+def run_shot(folder, resume=False):
+    test_shot.run(folder, BUDGET, resume=resume)
+
+
+def attack(loop, whole, folder, rng):
     """Resumes a damaged copy of the folder `whole`; returns what happened."""
     shutil.rmtree(folder, ignore_errors=True)
     shutil.copytree(whole, folder)
-    rng.choice((damage_journal, damage_journal, damage_file))(folder / "passes", rng)
+    journals = sorted(folder.glob("*/journal.json"))
+    rng.choice((damage_journal, damage_journal, damage_file))(rng.choice(journals).parent, rng)
     with contextlib.redirect_stderr(io.StringIO()) as stderr:
-        code = run_main("loop", lambda _: synthetic.loop(folder, BUDGET, resume=True, **SIZE))
+        code = run_main("loop", lambda _: loop(folder, resume=True))
     lines = stderr.getvalue().splitlines()
     if code in REFUSALS and len(lines) == 1:
         return f"refused with {int(code)}"
     if code or lines:
         return f"wrong: code {code}, {lines}"
-    parts = json.loads((folder / "passes/journal.json").read_text())["parts"]
-    counts = exr.read(folder / "passes/merged.exr")["L.Sample Count.X"]
-    same = np.isclose(counts.mean(), sum(part["samples"] for part in parts), rtol=1e-3)
-    return "finished" if same and len(parts) >= 8 else f"wrong: {counts.mean()} samples of {len(parts)} parts"
+    for journal in journals:
+        parts = json.loads(journal.read_text())["parts"]
+        counts = exr.read(journal.with_name("merged.exr"))["L.Sample Count.X"]
+        if not np.isclose(counts.mean(), sum(part["samples"] for part in parts), rtol=1e-3) or len(parts) < 8:
+            return f"wrong: {counts.mean()} samples of {len(parts)} parts"
+    return "finished"
 
 
-def run(count, seed):
+def run(count, seed, loop=run_frame):
     """Makes so many attacks; returns {what happened: how often}."""
     with tempfile.TemporaryDirectory() as folder:
         folder = pathlib.Path(folder)
-        synthetic.loop(folder / "whole", BUDGET, **SIZE)
+        loop(folder / "whole")
         found, rng = collections.Counter(), random.Random(seed)
         for _ in range(count):
-            found[attack(folder / "whole", folder / "damaged", rng)] += 1
+            found[attack(loop, folder / "whole", folder / "damaged", rng)] += 1
         return found
 
 
-if __name__ == "__main__":
-    for what, often in sorted(run(int(sys.argv[1]), int(sys.argv[2]) if len(sys.argv) > 2 else 1).items()):
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("count", type=int)
+    parser.add_argument("seed", type=int, nargs="?", default=1)
+    parser.add_argument("--shot", action="store_true")
+    options = parser.parse_args()
+    for what, often in sorted(run(options.count, options.seed, run_shot if options.shot else run_frame).items()):
         print(f"{often:6} {what}")
+
+
+if __name__ == "__main__":
+    main()
