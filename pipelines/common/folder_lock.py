@@ -7,12 +7,28 @@ import fcntl
 import json
 import os
 import pathlib
+import resource
 import socket
 import stat
 
 from .errors import DriverError, ExitCode
 
 LOCK = "polyrecon.lock"  # Stays in the folder; empty while no driver works there.
+OTHER_FILES = 256  # Open files that a driver needs besides locks
+
+
+def allow_many(count):
+    """Raises this process's limit of open files, so that it can hold so many folders; each has an open lock file."""
+    soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
+    needed = count + OTHER_FILES
+    if soft == resource.RLIM_INFINITY or needed <= soft:
+        return
+    if hard != resource.RLIM_INFINITY and needed > hard:
+        raise DriverError(
+            ExitCode.USAGE,
+            f"{count} frames need {needed} open files and the limit (ulimit -Hn) is {hard}: give fewer --frames",
+        )
+    resource.setrlimit(resource.RLIMIT_NOFILE, (needed, hard))
 
 
 @contextlib.contextmanager

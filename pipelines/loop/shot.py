@@ -18,6 +18,7 @@ import math
 import os
 import time
 
+from ..common import folder_lock
 from ..common.frame_names import frame_path, ranges_text
 from ..common.work_folder import WorkFolder
 from .budget import (
@@ -72,6 +73,7 @@ def run(renderer, polyrecon, frames, progress, tell=lambda notes: None):
 
     frames: the Settings of each, which differ in their files only. tell: as in adaptive.run."""
     renderer.shot = True
+    folder_lock.allow_many(len(frames))
     with contextlib.ExitStack() as folders:
         loops = []
         for settings in frames:

@@ -17,6 +17,21 @@ HOLD = (
     "with claimed(sys.argv[1]): print(1, flush=1); input()"
 )
 
+HOLD_MANY = """
+import contextlib, resource, sys
+from pipelines.common import folder_lock
+from pipelines.common.errors import run_main
+
+def main(words):
+    resource.setrlimit(resource.RLIMIT_NOFILE, (64, int(words[1])))
+    folder_lock.allow_many(100)
+    with contextlib.ExitStack() as folders:
+        for number in range(100):
+            folders.enter_context(folder_lock.claimed(f"{words[0]}/{number}"))
+
+sys.exit(run_main("test", main, sys.argv[1:]))
+"""
+
 
 class OwnFolders(unittest.TestCase):
     def setUp(self):
@@ -118,3 +133,21 @@ class OwnFolders(unittest.TestCase):
 
 if __name__ == "__main__":
     unittest.main()
+
+
+class ManyFolders(unittest.TestCase):
+    def hold(self, hard_limit):
+        """Claims a hundred folders in a process that may have 64 files open, and raise that to the hard limit."""
+        with tempfile.TemporaryDirectory() as folder:
+            words = [sys.executable, "-c", HOLD_MANY, folder, str(hard_limit)]
+            return subprocess.run(words, cwd=ROOT, capture_output=True, text=True)
+
+    def test_the_limit_of_open_files_is_raised(self):
+        result = self.hold(400)
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+
+    def test_more_frames_than_the_system_allows_are_refused(self):
+        result = self.hold(200)
+        self.assertEqual(result.returncode, ExitCode.USAGE)
+        self.assertIn("100 frames need 356 open files and the limit (ulimit -Hn) is 200", result.stderr)
+        self.assertEqual(len(result.stderr.splitlines()), 1)
