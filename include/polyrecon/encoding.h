@@ -14,7 +14,7 @@ constexpr double default_dwa_level = 45;
 /// How a file is packed. Channels that a compression may not change, such as ids and noise, keep their bits: a part
 /// with one that it would change is written with ZIP.
 struct Encoding {
-  std::optional<Compression> compression;  ///< Nothing: as the function that takes it says.
+  std::optional<Compression> compression;  ///< Unset: each function that takes it names its default.
   double dwa_level = default_dwa_level;    ///< Of Dwaa and Dwab: higher makes smaller files and larger errors.
 };
 

@@ -26,7 +26,7 @@ struct MergeOptions {
 struct MergeResult {
   int files = 0;                     ///< Renders merged.
   double samples = 0;                ///< Mean samples per pixel of the result; 0 if unknown.
-  std::vector<std::string> merged;   ///< Written with mean, variance and halves; of joined regions as they are.
+  std::vector<std::string> merged;   ///< Written with mean, variance and halves, or as joined regions.
   bool joined = false;               ///< Regions of one render each were put side by side, without new variance.
   std::vector<std::string> kept;     ///< Copied from the first file.
   std::vector<std::string> dropped;  ///< Left out, as they describe one input only: its companions and sample count.
@@ -48,11 +48,11 @@ struct MergeResult {
 /// Layers without noise, and layers that only the first file has, are copied from the first file bit for bit.
 ///
 /// Data windows may differ. Renders whose windows have at least half of the smaller one in common show the same region
-/// of the frame: beyond its window a render has samples of 0, but none where the others show that the picture goes on.
-/// Other renders are regions of the frame: each has samples in its own region only, and the result covers all of them,
-/// 0 in between. For a render that is black outside a region, the box of its other pixels takes the place of its
-/// window. If some region, or more than 5 % of the picture, has one render only, no variance or halves are made; those
-/// of the files are kept where all have them.
+/// of the frame. Beyond its window a render saw black, which counts as samples of 0. If the other renders are not black
+/// there, the render has no samples beyond its window. All other renders are regions of the frame: each has samples in
+/// its region only, and the result covers all regions, with 0 in between. For a render that is black outside a region,
+/// the box of its other pixels takes the place of its window. If some region, or more than 5 % of the picture, has one
+/// render only, no variance or halves are made; those of the files are kept where all have them.
 ///
 /// The result has one part of scanlines. Its means, variances and halves are floats; regions that are joined keep the
 /// first file's types. It is read back before it takes its name.

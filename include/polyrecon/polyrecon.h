@@ -34,10 +34,10 @@ extern "C" {
 typedef enum polyrecon_error {
   POLYRECON_OK = 0,
   POLYRECON_INTERNAL = 1,      ///< A fault of the library.
-  POLYRECON_USAGE = 2,         ///< A name or value that cannot be, or two that contradict each other.
+  POLYRECON_USAGE = 2,         ///< An unknown name, a value out of range, or a contradiction.
   POLYRECON_BAD_INPUT = 3,     ///< An input is damaged, or does not fit the others.
   POLYRECON_MISSING = 4,       ///< A file, layer, image or library does not exist.
-  POLYRECON_CANNOT_WRITE = 5,  ///< An older file of that name stays as it was.
+  POLYRECON_CANNOT_WRITE = 5,  ///< A file cannot be written; an older one stays as it was.
   POLYRECON_CHECK_FAILED = 6,  ///< The result failed a check and is not given out.
   POLYRECON_OUT_OF_MEMORY = 33,
   POLYRECON_INTERRUPTED = 130  ///< The progress function asked to stop.

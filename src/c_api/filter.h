@@ -38,8 +38,8 @@ class Filter {
   Filter(const Filter&) = delete;
   Filter& operator=(const Filter&) = delete;
 
-  /// Takes an input image, or takes it away (no data). Throws Error{Usage} for a name that the filter does not have and
-  /// for an image that cannot be.
+  /// Sets an input image; an image without data removes it. Throws Error{Usage} for a name that the filter does not
+  /// have and for an invalid image.
   void set_image(const std::string& name, const MemoryImage& image);
   void set_text(const std::string& name, const std::string* value);
   void set_number(const std::string& name, double value);
@@ -47,7 +47,7 @@ class Filter {
   /// Threads to use; 0: as many as there are processors.
   int threads() const { return static_cast<int>(threads_); }
 
-  /// Does the work. Nothing is left of results before where it throws.
+  /// Does the work. If it throws, the results of an earlier call are gone too.
   void execute(Progress& progress);
 
   const std::vector<NamedImage>& images() const { return images_; }

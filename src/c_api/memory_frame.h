@@ -28,8 +28,8 @@ std::vector<std::string> frame_image_names();
 std::vector<NamedImage> named_images(const Frame& frame);
 
 /// Makes a frame of images in memory. samples: per pixel, 0 if unknown. Values are treated as those of files are
-/// (read_frame): half samples of +Inf, sample counts, halves that contradict their mean; `notes` tells of it. Throws
-/// Error{Usage} where images do not fit together or there is no beauty.
+/// (read_frame): half samples of +Inf, sample counts, halves that contradict their mean; each case adds a line to
+/// `notes`. Throws Error{Usage} where images do not fit together or there is no beauty.
 Frame frame_from_memory(const std::map<std::string, MemoryImage>& images, double samples,
                         std::vector<std::string>& notes);
 

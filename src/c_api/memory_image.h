@@ -16,11 +16,11 @@ struct NamedImage {
   Image image;
 };
 
-/// Throws Error{Usage} where the description cannot be: no data, no pixels, more pixels than the program reads
-/// (ReadLimits), strides of 0 next to others, an unknown format.
+/// Throws Error{Usage} if the description is invalid: no data, no pixels, more pixels than the program reads
+/// (ReadLimits), some strides 0 and others not, an unknown format.
 void check(const std::string& name, const MemoryImage& image);
 
-/// The message about an image that should have the size of `image`, and has not.
+/// The message for `other`, which must have the size of `image` and does not.
 std::string size_conflict(const std::string& name, const Image& image, const MemoryImage& other);
 
 /// Copies the samples. The description must have passed `check`.

@@ -19,8 +19,8 @@ struct DenoiserOptions {
 };
 
 /// A run of a denoiser takes at least these image channels and bytes in addition to its arguments and its result. Open
-/// Image Denoise has copies of colour, albedo, normal and output, and one of them is on its way there or back; its code
-/// and weights have 350 MB for 1920 x 1080 and more (version 2.5).
+/// Image Denoise holds copies of colour, albedo, normal and output, and a fifth image while one is copied. Its code and
+/// weights take 350 MB for 1920 x 1080 and more (version 2.5).
 constexpr std::size_t denoiser_run_channels = std::size_t{4 + 1} * ColorLayout::primaries;
 constexpr std::size_t least_denoiser_bytes = std::size_t{384} << 20;
 

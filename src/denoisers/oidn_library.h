@@ -47,7 +47,8 @@ class OidnLibrary {
   std::string device() const;   ///< "cpu"
 
   /// Denoises the colour by the filter for ray tracing; without a colour, the albedo or the normal alone.
-  /// max_bytes: working memory of the library, which takes tiles if it needs more. It has a least need of its own.
+  /// max_bytes: working memory of the library, which takes tiles if it needs more, and exceeds it if
+  /// even the smallest tile needs more.
   /// advance: is called with the share of the work that was done since the last call, and returns whether to go on.
   /// Throws Error{Interrupted} where it said no.
   Image filter(const OidnImages& images, std::size_t max_bytes, const std::function<bool(double)>& advance) const;

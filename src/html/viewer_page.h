@@ -40,8 +40,8 @@ struct ViewedLayer {
   bool listed = false;       ///< Its values at a pixel are shown while another layer is looked at.
 };
 
-/// A page in one file in which people look at images of one or more frames: the viewer of html/viewer/, the images, and
-/// text. It needs no other file and no network. A Content-Security-Policy lets only the viewer's own script and style
+/// An HTML page in which people look at images of one or more frames: the viewer of html/viewer/, the images, and text.
+/// It is a single file and needs no network. A Content-Security-Policy lets only the viewer's own script and style
 /// sheet act.
 class ViewerPage {
  public:
@@ -55,8 +55,8 @@ class ViewerPage {
   std::size_t add_image(const ViewedImage& image);
 
   /// Adds a layer of an image to these frames. It is stored as halves if are_halves, or if it is a picture and fits
-  /// into them, else as floats. The first layer of an image is the one shown where it has none of the slot that is
-  /// looked at. Returns whether it was added: false where the page would have more than max_bytes.
+  /// into them, else as floats. If an image has no layer of the slot that is looked at, its first layer is shown.
+  /// Returns whether the layer was added: false if the page would have more than max_bytes.
   bool add_layer(std::size_t image, const std::vector<std::size_t>& frames, const ViewedLayer& layer,
                  const Image& values, bool are_halves);
 

@@ -145,8 +145,8 @@ bool has_finite_sample(const Image& image) {
   return false;
 }
 
-/// The number of samples of a channel that are not finite where those of the mean are usable. What nothing was rendered
-/// for does not count.
+/// The number of samples of a channel that are not finite where those of the mean are usable. Pixels in which nothing
+/// was rendered do not count.
 std::size_t samples_lacking(const Image& companion, const Image& mean, int c) {
   std::size_t count = 0;
   for (std::size_t i = 0; i < mean.pixels(); ++i) {

@@ -93,7 +93,8 @@ Candidate unfitted(const HalfPair& pair) {
           Image(pair.width(), pair.height(), 1)};
 }
 
-/// Noise variance of the halves of a stage's result, from their difference.
+/// Squared difference of the halves of a stage's result, blurred: on average twice the noise variance of a half, and
+/// four times that of their mean.
 Image residual_variance(const Candidate& candidate, const Image& mask) {
   Image out(candidate.half[0].width(), candidate.half[0].height(), 3);
   for (int c = 0; c < 3; ++c)

@@ -8,7 +8,7 @@
 
 namespace polyrecon {
 
-/// The knowledge about a frame before any work on its pixels.
+/// What is known about a frame before its pixels are worked on.
 struct Survey {
   NoiseVariance noise;      ///< That of the beauty.
   Preparation preparation;  ///< The features that take part, and which steps run.

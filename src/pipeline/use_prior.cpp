@@ -22,8 +22,8 @@ namespace polyrecon {
 namespace {
 
 constexpr double most_noise_in_prior = 0.9;  // above it the prior is the input, which would validate itself
-// The mean of a prior against that of its halves in the picture that is mixed in. Both are of the same samples; the
-// mean is denoised with more of them at once.
+// Share of the denoised mean in the picture that is mixed in; the rest is the mean of the denoised halves. Both are
+// made of the same samples, but the denoiser sees all of them at once in the mean.
 constexpr Real mean_share = Real(2) / 3;
 constexpr std::uint64_t validation_stream = std::uint64_t{1} << 40;  // apart from those of frames and their neighbours
 

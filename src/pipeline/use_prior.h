@@ -34,7 +34,7 @@ struct ReadyPrior {
   Pass pass;
   bool made_here = false;       ///< By a denoiser in this process, of this very frame.
   bool validated = false;       ///< Its halves are of independent samples, so that each is validated by the other half.
-  bool foreign_halves = false;  ///< It has halves, but not of the render's (made_of_halves), so they validate nothing.
+  bool foreign_halves = false;  ///< Its halves are not of the render's (made_of_halves), so they validate nothing.
   ValidationHalves validation;  ///< By make_validation; empty unless validated.
 };
 

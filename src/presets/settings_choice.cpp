@@ -31,8 +31,9 @@ constexpr std::size_t pilot_preset = 2;
 constexpr int least_crop = 256;  // pixels, each side; the start of a denoiser would count too much on smaller ones
 constexpr int repair_depth = 2;
 
-/// Mean relative variance of a tile's green channel: from the file's variance, else from the half buffers, else from
-/// the differences between neighbouring pixels.
+/// Rank of a tile by its noise: the mean over its pixels of the relative variance of green, each at most 1. The
+/// variance is that of the file, else the squared difference of the half buffers, else that of neighbouring pixels. The
+/// latter two are larger than the variance by a factor; only the order of the tiles matters.
 double noise_of(const Frame& frame, const Rect& r) {
   const Pass& beauty = frame.beauty;
   double sum = 0;

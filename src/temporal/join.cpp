@@ -125,8 +125,8 @@ Image square_of_radiance(const Image& color) {
   return out;
 }
 
-/// Shares of the pixels around a pixel that agree: up to the first it gets no neighbours, from the second on whole
-/// ones.
+/// Shares of the pixels around a pixel that agree with the neighbour: up to `none` the neighbour's weight is 0, from
+/// `full` on it is not lowered.
 struct Trust {
   double none, full;
 };

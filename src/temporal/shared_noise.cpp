@@ -124,7 +124,8 @@ Image common_blocks(const HalfPair& pair, const Places& neighbour) {
   return out;
 }
 
-/// Detail that both frames show is noise only as far as the noise of the current one goes: a texture is in both, too.
+/// Whether the neighbour repeats the noise in a block. Both frames show a texture too, so correlation alone does not
+/// tell: what the frames do not have in common must also be less than the noise.
 bool repeats(const Image& blocks, int column, int row) {
   const Real count = blocks.at(column, row, 2);
   return blocks.at(column, row, 0) > least_repeated * count && blocks.at(column, row, 1) < most_of_noise * count;
@@ -144,7 +145,7 @@ double hide_repeated_noise(const HalfPair& pair, Places& neighbour) {
       hidden += 1;
       seen[pair.variance.index(x, y)] = 0;
     }
-  // A seed is that of the whole frame: what moves repeats the noise in part, and may not show it.
+  // A seed holds for the whole frame. Moving parts repeat the noise only in part, so it may not be found in them.
   if (hidden > one_seed * noisy) std::fill(seen.begin(), seen.end(), static_cast<unsigned char>(0));
   neighbour.seen = std::move(seen);
   return hidden > one_seed * noisy ? 1 : noisy > 0 ? hidden / noisy : 0;

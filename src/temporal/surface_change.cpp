@@ -13,8 +13,8 @@ namespace {
 constexpr double around = 1;  // pixels; contrast and squares are averaged with a Gaussian of this standard deviation
 // Gaussians under which surfaces are compared: wider ones find less, as noise and sampling errors average out.
 constexpr std::array<double, 2> scales{1, 2};
-// Squared difference of a pixel, in units of the variance of the surface around it, that is no change: the sampling of
-// an edge by some ten samples makes as much, or a place that is wrong by a third of a pixel.
+// Largest squared difference of a pixel that is no change, in units of the variance of the surface around it. An edge
+// that is sampled by some ten samples differs by this much, and so does a place that is wrong by a third of a pixel.
 constexpr double sampled_edge = 0.15;
 constexpr double same_depth = 0.1;  // of the logarithm; a camera that moves changes depths by less from frame to frame
 constexpr double dark_albedo = 0.01, short_normal = 0.5;  // added to the squares that differences are relative to

@@ -27,7 +27,7 @@ class RunProgress : public Progress {
   virtual void failed(const std::string& message);
   /// Prints lines above the bar, if there is one.
   virtual void print(std::FILE* stream, const std::string& text);
-  /// Whether this text is new in this run: what holds for all frames is said once.
+  /// Whether this run has not printed the text yet; a note that all frames have is printed once.
   bool is_new(const std::string& text) { return said_.insert(text).second; }
 
  private:

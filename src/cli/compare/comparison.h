@@ -15,7 +15,7 @@ struct Comparison {
   std::string image, layer;  ///< Path of the image, whole name of the layer.
   Score score;
   double flip = 0;  ///< Mean of HDR-FLIP.
-  /// That the pictures do not show the same, and why the reference's variance is not used; empty where all is well.
+  /// A note if the pictures do not show the same, and one if the reference's variance is not used.
   std::vector<std::string> notes;
   std::optional<int> frame;       ///< Number of the frame; nothing where no sequence is compared.
   std::optional<double> flicker;  ///< flicker() from the frame before; nothing in the first frame.
@@ -31,7 +31,8 @@ struct Comparison {
 std::vector<Comparison> compare_files(const LayeredFile& image, const LayeredFile& reference, bool with_images,
                                       Progress& progress);
 
-/// flicker() of a comparison, whose layer is searched in the frame before; nothing where that has none of its size.
+/// flicker() between a comparison and that of its layer in the frame before; nothing if that frame lacks the layer or
+/// has another size.
 std::optional<double> flicker_since(const std::vector<Comparison>& before, const Comparison& now);
 
 /// The figures alone.

@@ -30,14 +30,14 @@ class FileRun {
   /// The job and the files must outlive the run.
   FileRun(const Job& job, const FrameFiles& files) : job_(job), files_(files) {}
 
-  /// Lists which other pictures of the file are to be denoised, and takes layers that are none of the beauty's out of
-  /// the frame. Call it with each picture as it was loaded, before denoise.
+  /// Lists which other pictures of the file are to be denoised, and takes the layers that are no part of the beauty out
+  /// of the frame. Call it with each picture as it was loaded, before denoise.
   void list_others(LoadedFrame& loaded);
 
   /// The picture to load after those that were listed; nothing when there is none left.
   std::optional<PictureChoice> next();
 
-  /// Reconstructs a picture within max_memory bytes, of which the results of those before take their part. Prints what
+  /// Reconstructs a picture within max_memory bytes, less what the results of earlier pictures take. Prints what
   /// was read unless the job is quiet. Throws as reconstruct does.
   void denoise(LoadedFrame loaded, std::size_t max_memory, RunProgress& progress);
 

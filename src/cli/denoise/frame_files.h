@@ -67,8 +67,8 @@ struct FrameList {
   int radius = 0;            ///< How many frames before and after help each one.
 };
 
-/// The output of an input if none was named: "shot_denoised.exr" beside "shot.exr", and
-/// "shot_denoised.####.exr" beside "shot.####.exr".
+/// The output of an input if none was named: "shot_denoised.exr" next to "shot.exr", and
+/// "shot_denoised.####.exr" next to "shot.####.exr".
 std::string default_output(const std::string& input);
 
 /// The path of an output that goes into a folder: it has the name of the input.

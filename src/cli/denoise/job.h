@@ -20,8 +20,8 @@ struct FrameLimits {
   double seconds = 0;       ///< For a whole frame, reading and writing included.
   double relative_mse = 0;  ///< Largest mean relative MSE.
 
-  /// The limits that are left after so many seconds. If none are left it is a millisecond, which still selects the
-  /// fastest settings.
+  /// The limits that are left after so many seconds. At least a millisecond is left, which selects the fastest
+  /// settings.
   FrameLimits after(double spent) const;
 };
 
@@ -29,7 +29,7 @@ struct FrameLimits {
 /// for each frame within the limits.
 struct Job {
   std::vector<FrameFiles> frames;
-  bool is_sequence = false;  ///< Then a frame that fails does not end the run.
+  bool is_sequence = false;  ///< A frame of a sequence that fails does not end the run.
   ReadOptions read;
   Params params;  ///< If a pilot chooses the settings: those of standard quality.
   std::optional<FrameLimits> limits;

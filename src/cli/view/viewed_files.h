@@ -21,8 +21,8 @@ struct ViewSelection {
   std::vector<std::string> layers;  ///< Names; empty: the picture or the main map of a file, then all others.
   bool first_only = false;          ///< Only the layer of each file that is shown first.
   std::optional<Rect> region;       ///< In the files' coordinates.
-  int scale = 1;                    ///< So many by so many pixels become one.
-  std::size_t max_bytes = 0;        ///< The page's most.
+  int scale = 1;                    ///< The mean of scale x scale pixels becomes one pixel.
+  std::size_t max_bytes = 0;        ///< Limit of the page.
 };
 
 /// Adds the layers of the files to the page: first what is shown first, then maps and variances, then all others, as

@@ -20,14 +20,14 @@ std::set<std::string> changed_channels(const Imf::Header& header);
 /// ZIP; returns that channel, else an empty text.
 std::string encode(Imf::Header& header, const Encoding& encoding, const std::set<std::string>& exact);
 
-/// What is known of a band's samples before its part is written, to be compared with those that are read back: of each
-/// channel a hash, or if its compression may change it, the number of samples that are not finite.
+/// Remembers the samples of each band before a part is written, to compare them with those that are read back. It keeps
+/// a hash of each channel, or if the compression may change the channel, the number of samples that are not finite.
 class BandCheck {
  public:
   explicit BandCheck(const Imf::Header& header);
 
-  /// Takes samples of channels that may change away from the end of the range, beyond which their errors would lead.
-  /// Returns the number of these samples.
+  /// Limits the samples of channels that may change to largest_changed_sample, since the errors of the compression
+  /// would lead beyond the range of half floats. Returns the number of samples that were limited.
   std::size_t keep_in_range(NativeBand& band) const;
 
   /// To be called for each band in the order of writing.
@@ -46,7 +46,7 @@ class BandCheck {
   std::size_t compared_ = 0;
 };
 
-/// Samples of channels that a compression may change end here, so that none becomes infinite.
+/// Largest sample of a channel that a compression may change, so that none becomes infinite.
 constexpr float largest_changed_sample = 32752;
 
 }  // namespace polyrecon

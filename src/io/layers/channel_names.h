@@ -23,7 +23,7 @@ std::vector<Layer> find_layers(const FileInfo& file);
 /// Sets role, companion and rank of layers by the names that renderers use (io/renderers/).
 void classify_layers(const std::vector<FileInfo>& files, std::vector<Layer>& layers);
 
-/// Makes the only colour layer of a file without a beauty its beauty. Returns whether there is just one.
+/// If a file without a beauty has a single colour layer, makes it the beauty. Returns whether it did.
 bool adopt_only_color(std::vector<Layer>& layers);
 
 /// The layer that holds the picture: the first view layer and view with a beauty, in it the denoised beauty where there

@@ -172,7 +172,7 @@ int find_beauty(FrameSource& source, const ReadOptions& options) {
     const int index = find_layer(source, options.own_windows);
     if (index < 0) no_such_layer(source, options.own_windows);
     Layer& layer = source.layers[static_cast<std::size_t>(index)];
-    layer.role = Role::Beauty;  // it guides itself no more, as a shadow would
+    layer.role = Role::Beauty;  // even if it is a feature by name, such as a shadow
     layer.rank = rank_by_hand;
     return index;
   }

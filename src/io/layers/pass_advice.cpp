@@ -13,7 +13,7 @@
 namespace polyrecon {
 namespace {
 
-/// Costs of missing features, the dearest first (docs/guide/README.md has the figures).
+/// What is worse without a feature, the worst loss first (docs/guide/passes.md has the figures).
 struct MissingFeature {
   Role role;
   const char* without;

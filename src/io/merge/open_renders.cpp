@@ -93,7 +93,8 @@ std::set<std::string> leave_out_lone_passes(std::vector<Render>& renders) {
     const auto is_lone = [&](const Layer& layer) { return layer.file > 0 && lone.count(layer.name) > 0; };
     render.layers.erase(std::remove_if(render.layers.begin(), render.layers.end(), is_lone), render.layers.end());
     if (lone.size() < uses.size()) continue;
-    render.files.resize(1);  // whose picture has the pass of the file's name only where others are next to it
+    // A picture takes the pass in its file's name only if files with other passes are next to it.
+    render.files.resize(1);
     render.layers = find_layers(render.files.front());
   }
   return lone;

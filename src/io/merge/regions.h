@@ -26,12 +26,13 @@ struct Region {
 
 /// Finds which pixels each render has samples for.
 ///
-/// A data window may be a region of the frame (beyond it the render has no samples), or what a renderer left of a
-/// picture when it cut black margins away (beyond it the render saw black, which counts). A render can also keep the
-/// window of the frame and be black outside its region; its box of pixels that are not black then takes the place of
-/// its window. Renders whose boxes have at least half of the smaller one in common form a group, over whose union each
-/// of them has samples, but not beyond a side of its box at which the picture goes on: where the other renders of the
-/// group are not black in half of the pixels, or in 16 of each on average.
+/// A data window may be a region of the frame: beyond it the render has no samples. Or the renderer has cut black
+/// margins away: beyond the window the render saw black, which counts. A render can also keep the window of the frame
+/// and be black outside its region; the box of its pixels that are not black then takes the place of its window.
+///
+/// Renders whose boxes have at least half of the smaller one in common form a group. Each of them has samples over the
+/// union of the group, except beyond a side of its box at which the picture goes on: there, half of the pixels of the
+/// other renders are not black, or 16 pixels of each render on average.
 std::vector<Region> find_regions(const std::vector<ShownPart>& renders);
 
 /// The share of the pixels covered by any rectangle that one alone covers.

@@ -13,8 +13,8 @@
 namespace polyrecon {
 namespace {
 
-/// Display-encoded colours of one of OpenImageIO's maps, whose tables are linear; level(value) from 0 to 1 says where
-/// on it. What is not finite becomes cyan.
+/// Display-encoded colours of one of OpenImageIO's maps, whose tables are linear. level(value) is the position on the
+/// map, 0 to 1. Values that are not finite become cyan.
 Image mapped(const Image& values, const char* map, const std::function<double(double)>& level) {
   OIIO::ImageBuf levels(OIIO::ImageSpec(values.width(), values.height(), 1, OIIO::TypeDesc::FLOAT));
   for (int y = 0; y < values.height(); ++y)

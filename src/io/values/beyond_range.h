@@ -25,10 +25,10 @@ BeyondRange beyond_range(const PartInfo& part, const Layer& layer, Role role, co
 template <typename Sample>
 std::size_t bring_into_range(BeyondRange beyond, Sample* samples, std::size_t count);
 
-/// Makes single pixels and pairs of +Inf NaN: three and more that touch are lamps, of which the largest half is a fair
-/// value, but the value of a firefly is unknown, and its energy would be spread over the picture. Returns their number.
-/// To be called before bring_into_range where that makes +Inf the largest half. Pixels further than lone_reach away do
-/// not matter.
+/// Sets single pixels and pairs of +Inf to NaN and returns their number. Three and more that touch are lamps, for which
+/// the largest half is a fair value. One or two are fireflies: their value is unknown, and their energy would be spread
+/// over the picture. If bring_into_range makes +Inf the largest half, call this before it. Pixels further than
+/// lone_reach away do not matter.
 template <typename Sample>
 std::size_t drop_lone_overflows(Sample* plane, int width, int height);
 
