@@ -31,8 +31,8 @@ void setup_app(CLI::App& app, Command& chosen) {
       "  polyrecon denoise -i render.exr -o clean.exr\n"
       "  polyrecon inspect render.exr\n"
       "  polyrecon merge part*.exr -o merged.exr\n"
-      "A file, a folder or a sequence in place of a command is denoised beside it. polyrecon help COMMAND describes\n"
-      "a command.");
+      "A file, a folder or a sequence in place of a command is denoised; the result is next to it.\n"
+      "polyrecon help COMMAND describes a command.");
   setup_denoise(app, chosen);
   setup_inspect(app, chosen);
   setup_merge(app, chosen);

@@ -31,7 +31,7 @@ CLI::Option* add_files(OptionSet& set, DenoiseOptions& o) {
       ->type_name("FILE");
   set.add(Changes::Run, "-o,--output", o.outputs.picture,
           "Denoised EXR to write; #### or %04d for a sequence; a folder takes the inputs' names; default: "
-          "NAME_denoised.exr beside the input")
+          "NAME_denoised.exr next to the input")
       ->type_name("FILE");
   set.add(Changes::Run, "--error-map", o.outputs.error_map, "Write the estimated error of each pixel")
       ->type_name("FILE");
