@@ -163,7 +163,7 @@ def _decode_state(path):
 
 
 def _check_state(state):
-    """Checks that types alone cannot make. The loop divides by some of these numbers."""
+    """Checks what types alone do not: the loop divides by some of these numbers."""
     if state.first_pass_parts < len(HALVES) or state.first_pass_parts % len(HALVES):
         raise InvalidFileError("first_pass_parts is not a positive multiple of 2")
     for index, part in enumerate(state.parts):

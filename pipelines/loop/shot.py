@@ -83,13 +83,13 @@ def run(renderer, polyrecon, frames, progress, tell=lambda notes: None):
 
 
 class _Frame(FrameLoop):
-    """A frame of a shot. Its clock goes, and its sums are in memory, while the shot works on it."""
+    """A frame of a shot. While the shot works on it, its clock runs and its sums are in memory."""
 
     def __init__(self, *arguments):
         super().__init__(*arguments)
         self.journal.stop_clock()
         self.rendering = None
-        self.noise, self.noise_samples = math.nan, 0.0  # See Reconstruction.noise; of so many samples per pixel
+        self.noise, self.noise_samples = math.nan, 0.0  # Reconstruction.noise, and the samples per pixel that it is of
         self.has_ended = False  # Whether no error is left, or no round that is large enough.
         number = len(self.state.rounds) - 1
         if self.is_judged and not all(self.folder.in_round(number, f"error_{half}").exists() for half in HALVES):

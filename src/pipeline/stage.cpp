@@ -48,7 +48,7 @@ std::vector<unsigned char> noisy_pixels(const HalfPair& pair, const Params& para
 /// Colours in which patches are compared for the weights of a window.
 struct Guide {
   std::array<const Image*, 2> color;  ///< color[h] is for the fit of half h.
-  const Image* variance;              ///< Noise variance of the colours.
+  const Image* variance;              ///< Noise variance of the colours, or residual_variance, which is larger.
 };
 
 /// Adds a candidate for every bandwidth. With cross_filter, half h is fitted with the features and the guess of the

@@ -180,7 +180,7 @@ def _device_words(context):
 
 
 def _second_opinion(chosen):
-    """Whether Open Image Denoise is asked: if it is chosen, and found."""
+    """Whether Open Image Denoise is used: if it is chosen, and found."""
     if not chosen.second_opinion:
         return False
     try:
