@@ -107,7 +107,8 @@ std::string figures_of(const LayeredFile& file, const LayeredFile& reference) {
   return fmt::format("relMSE {:.3g}, FLIP {:.3g}", found.score.relative_mse, found.flip);
 }
 
-/// Radiance and layers of three channels are shown as pictures, all others in false colours, as on request are all.
+/// Radiance, in colour or grey, and other layers of three channels are shown as pictures. All other layers, and with
+/// --false-colour all layers, are shown in false colours.
 Panel make_panel(const LayeredFile& file, const Layer& layer, bool several_layers, const PreviewOptions& o) {
   const Image image = is_color(layer) ? read_radiance(file, layer) : read_layer(file, layer);
   Panel panel;

@@ -30,7 +30,7 @@ const tooLarge = (layer) => layer.width > painter.largest || layer.height > pain
 
 const two = () => state.mode === 'wipe' || state.mode === 'difference';
 
-let painted = ''; // what the painter was last asked for
+let painted = ''; // the last request to the painter
 
 /** Paints cells, unless the canvas shows them already: without a graphics processor a large picture takes a second. */
 function paint(parts) {

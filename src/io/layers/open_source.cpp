@@ -33,7 +33,7 @@ bool has_mean(const FrameSource& source, Role role) {
                      [&](const Layer& l) { return l.role == role && l.companion == Companion::Mean; });
 }
 
-/// Whether the file holds one pass without a name in the file.
+/// Whether the file holds a single pass, which has no name in it.
 bool is_one_bare_image(const FrameSource& source) {
   return source.layers.size() == 1 && source.layers.front().view_layer.empty() &&
          (is_bare_name(source.layers.front().pass) || source.layers.front().channels.size() == 1);
