@@ -30,8 +30,8 @@ for candidate in python3.13 "${PYENV_ROOT:-$HOME/.pyenv}"/versions/3.13.*/bin/py
 done
 if [ -n "$python_3_13" ]; then
   [ -x "$blender_5_2/bin/python3" ] || "$python_3_13" -m venv "$blender_5_2"
-  "$blender_5_2/bin/python3" -c 'import importlib.util as u, sys; sys.exit(not u.find_spec("bpy"))' ||
-    "$blender_5_2/bin/python3" -m pip install --quiet --disable-pip-version-check bpy==5.2.3
+  "$blender_5_2/bin/python3" -c 'import importlib.util as u, sys; sys.exit(not (u.find_spec("bpy") and u.find_spec("OpenImageIO")))' ||
+    "$blender_5_2/bin/python3" -m pip install --quiet --disable-pip-version-check bpy==5.2.3 OpenImageIO==3.2.2.0
 else
   echo "no Python 3.13: the tests with Blender 5.2 are skipped"
 fi

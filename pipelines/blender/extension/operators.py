@@ -6,7 +6,7 @@ import shutil
 
 import bpy
 
-from . import jobs, preferences, settings
+from . import compositor, jobs, preferences, settings
 from .programs import SetupError
 
 
@@ -292,6 +292,7 @@ class POLYRECON_OT_show(_Operator, bpy.types.Operator):
             ("CLEAN", "Result", ""),
             ("NOISY", "Noisy", ""),
             ("ERROR", "Error Map", ""),
+            ("COMPARE", "Compare", ""),
             ("REPORT", "Report", ""),
             ("FOLDER", "Folder", ""),
         )
@@ -301,12 +302,61 @@ class POLYRECON_OT_show(_Operator, bpy.types.Operator):
         path = jobs.current.results.get(self.which) if jobs.current else None
         if path is None or not os.path.exists(path):
             raise SetupError("there is no such picture yet: run the job first")
-        if self.which in ("REPORT", "FOLDER"):
-            if not bpy.app.background:
-                bpy.ops.wm.url_open(url=path.as_uri())
+        if self.which in ("COMPARE", "REPORT", "FOLDER"):
+            open_outside(path)
             return
         space = image_editor(context) or _new_image_editor(context)
         show(path, space)
+
+
+def open_outside(path):
+    """Opens a page or a folder in the system's browser. The page of POLYRECON_OT_compare begins with the slider."""
+    if not bpy.app.background:
+        bpy.ops.wm.url_open(url=path.as_uri() + ("#mode=wipe" if path.suffix == ".html" else ""))
+
+
+class POLYRECON_OT_compare(_Start, bpy.types.Operator):
+    """Make a page with a slider between the noisy picture and the result, the error map, and the values of each pixel,
+    and open it in the browser"""
+
+    bl_idname = "polyrecon.compare"
+    bl_label = "Compare"
+
+    def work(self, context):
+        clean, noisy = _clean_and_noisy()
+        files, page = [noisy, clean], clean.with_name(clean.stem + "_compare.html")
+        error = jobs.current.results["ERROR"].with_suffix(".exr")
+        files += [error] if error.exists() else []
+        words = [preferences.program(), "view", *files, "-o", page, "--overwrite"]
+        results = {**jobs.current.results, "COMPARE": page}
+        jobs.start("Comparing", [words], results, environment=preferences.environment())
+
+
+class POLYRECON_OT_compositor(_Operator, bpy.types.Operator):
+    """Use the clean passes in the compositor in place of the render's, with a node that says how much noise to keep"""
+
+    bl_idname = "polyrecon.compositor"
+    bl_label = "Use in Compositor"
+    bl_options = {"REGISTER", "UNDO"}
+
+    def work(self, context):
+        clean, noisy = _clean_and_noisy()
+        chosen = context.scene.polyrecon
+        frames = chosen.frames_of(context.scene)
+        if clean not in chosen.outputs(context.scene).values():
+            frames = [context.scene.frame_current]
+        numbered = len(frames) == 1 or noisy.parent == clean.parent  # not those of adaptive renders
+        links = compositor.use_result(context.scene, clean, noisy if numbered else None, frames)
+        self.report({"INFO"}, f"{links} links of the render's passes now come from {clean.name}")
+
+
+def _clean_and_noisy():
+    """The result of the last job and the picture that it was made of."""
+    results = jobs.current.results if jobs.current else {}
+    files = [results.get(name) for name in ("CLEAN", "NOISY")]
+    if not all(file and file.exists() for file in files):
+        raise SetupError("there is no result yet: denoise a render first")
+    return files
 
 
 def show(path, space):
@@ -339,8 +389,10 @@ def _new_image_editor(context):
 
 def show_result(job):
     """Shows the result of a job that is done, where an image editor is open."""
-    clean = job.results.get("CLEAN")
-    if job.state == "done" and clean and clean.exists():
+    clean, page = job.results.get("CLEAN"), job.results.get("COMPARE")
+    if job.state == "done" and page and page.exists():
+        open_outside(page)
+    elif job.state == "done" and clean and clean.exists():
         show(clean, image_editor(bpy.context))
 
 
@@ -353,4 +405,6 @@ CLASSES = (
     POLYRECON_OT_cancel,
     POLYRECON_OT_preferences,
     POLYRECON_OT_show,
+    POLYRECON_OT_compare,
+    POLYRECON_OT_compositor,
 )

@@ -35,9 +35,8 @@ class POLYRECON_PT_render(bpy.types.Panel):
         if jobs.current:
             _draw_job(layout.box(), jobs.current, letters)
         layout.prop(chosen, "quality")
-        layout.column(heading="Second Opinion").prop(chosen, "second_opinion")
-        layout.column(heading="Denoise Too").prop(chosen, "light_passes")
         layout.prop(chosen, "output")
+        _draw_switches(layout, chosen, "second_opinion", "light_passes")
 
         column = layout.column()
         column.operator("polyrecon.set_up_passes", icon="RENDERLAYERS")
@@ -50,12 +49,20 @@ class POLYRECON_PT_render(bpy.types.Panel):
         layout.separator()
         layout.prop(chosen, "limit")
         layout.prop(chosen, {"SECONDS": "seconds", "SPP": "spp", "TARGET": "target"}[chosen.limit])
-        layout.prop(chosen, "resume")
+        _draw_switches(layout, chosen, "resume")
         layout.operator("polyrecon.adaptive", icon="RENDER_STILL")
 
         layout.separator()
         layout.prop(chosen, "folder")
         layout.operator("polyrecon.frames", icon="FILE_FOLDER")
+
+
+def _draw_switches(layout, chosen, *names):
+    """Switches that are as wide as the panel, since half of it is too narrow for their labels."""
+    column = layout.column(align=True)
+    column.use_property_split = False
+    for name in names:
+        column.prop(chosen, name)
 
 
 def _letters(context):
@@ -81,11 +88,15 @@ def _draw_job(box, job, letters):
         box.label(text=f"{job.title}: {job.state}", icon="CHECKMARK" if job.state == "done" else "CANCEL")
     for missing, how in job.advice:
         _draw_text(box, f"Could be better: {missing}. {how}", "INFO", letters)
-    shown = [name for name, path in job.results.items() if os.path.exists(path)]
+    shown = [name for name, path in job.results.items() if os.path.exists(path) and name != "COMPARE"]
     if shown and not job.running:
         row = box.row(align=True)
         for name in shown:
             row.operator("polyrecon.show", text=name.title()).which = name
+        if {"CLEAN", "NOISY"} <= set(shown):
+            column = box.column(align=True)
+            column.operator("polyrecon.compare", icon="ARROW_LEFTRIGHT")
+            column.operator("polyrecon.compositor", icon="NODE_COMPOSITING")
 
 
 CLASSES = (POLYRECON_PT_render,)

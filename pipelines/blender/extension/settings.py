@@ -30,13 +30,13 @@ class PolyreconSettings(bpy.types.PropertyGroup):
         ),
     )
     second_opinion: BoolProperty(
-        name="Open Image Denoise",
+        name="Ask Open Image Denoise",
         default=True,
-        description="Ask Open Image Denoise too, and use its picture where it is better. It makes the largest "
-        "difference with few samples",
+        description="A second opinion: its picture is used where it is better. It makes the largest difference with few "
+        "samples",
     )
     light_passes: BoolProperty(
-        name="Light Passes",
+        name="Denoise Light Passes",
         description="Denoise the light passes and light groups too, so that they still add up to the picture. "
         "Off: they stay noisy",
     )

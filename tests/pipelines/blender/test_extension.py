@@ -184,6 +184,70 @@ class Extension(unittest.TestCase):
             self.assertEqual(bpy.data.images[name].type, kind)
         self.assertGreater(bpy.data.images["clean_0001_error.png"].size[0], 0)
 
+    def test_compares_the_result_with_the_noisy_picture(self):
+        with self.assertRaisesRegex(RuntimeError, "there is no result yet"):
+            self.jobs.current = None
+            bpy.ops.polyrecon.compare()
+        self.denoise_a_render()
+        self.assertEqual(bpy.ops.polyrecon.compare(), {"FINISHED"})
+        self.assert_done()
+        page = self.jobs.current.results["COMPARE"].read_text(encoding="utf-8")
+        for name in ("clean_0001_noisy", "clean_0001", "clean_0001_error"):
+            self.assertIn(name, page)
+        self.assertIn("bpy.ops.polyrecon.compare()", self.panel())  # It can be made again.
+
+    def test_the_compositor_takes_the_clean_passes(self):
+        bpy.context.view_layer.use_pass_diffuse_direct = True
+        self.scene.polyrecon.light_passes = True
+        self.denoise_a_render()
+        self.assertEqual(bpy.ops.polyrecon.compositor(), {"FINISHED"})
+        tree = self.scene.compositing_node_group
+        (end,) = [node for node in tree.nodes if node.bl_idname == "NodeGroupOutput"]
+        picture = end.inputs["Image"]
+        group = picture.links[0].from_node
+        self.assertEqual(group.node_tree.name, "polyrecon: Keep Noise")
+        sources = {name: group.inputs[name].links[0].from_node for name in ("Clean", "Noisy")}
+        self.assertEqual(
+            [sources[name].image.filepath for name in ("Clean", "Noisy")],
+            [str(self.folder / name) for name in ("clean_0001.exr", "clean_0001_noisy.exr")],
+        )
+        for kept, name in ((0, "clean_0001.exr"), (1, "clean_0001_noisy.exr")):
+            group.inputs["Noise Kept"].default_value = kept
+            self.assertLess(np.abs(self.composited() - self.combined(name)).max(), 2e-3)
+
+        # A second result goes into the same nodes; a light pass comes from the clean file too.
+        render = next(node for node in tree.nodes if node.bl_idname == "CompositorNodeRLayers")
+        tree.links.new(render.outputs["Diffuse Direct"], picture)
+        count = len(tree.nodes)
+        self.assertEqual(bpy.ops.polyrecon.compositor(), {"FINISHED"})
+        self.assertEqual(len(tree.nodes), count)
+        self.assertEqual(picture.links[0].from_socket, sources["Clean"].outputs["Diffuse Direct"])
+
+    def test_the_compositor_takes_a_sequence(self):
+        self.scene.frame_end, self.scene.polyrecon.frames = 2, "RANGE"
+        bpy.ops.polyrecon.render()
+        self.assert_done()
+        self.assertEqual(bpy.ops.polyrecon.compositor(), {"FINISHED"})
+        for frame in (1, 2):
+            self.scene.frame_set(frame)
+            self.assertLess(np.abs(self.composited() - self.combined(f"clean_{frame:04d}.exr")).max(), 2e-3)
+
+    def denoise_a_render(self):
+        bpy.ops.polyrecon.set_up_passes()
+        bpy.ops.render.render()
+        bpy.ops.polyrecon.denoise()
+        self.assert_done()
+
+    def composited(self):
+        """The picture that the compositor makes."""
+        self.scene.render.use_compositing = True
+        self.scene.render.image_settings.file_format = "OPEN_EXR"
+        self.scene.render.image_settings.color_depth = "32"
+        bpy.ops.render.render()
+        bpy.data.images["Render Result"].save_render(str(self.folder / "composited.exr"), scene=self.scene)
+        found = exr.read(self.folder / "composited.exr")
+        return np.stack([found[c] for c in "RGB"], axis=-1)
+
     def test_the_panel_says_which_passes_are_missing(self):
         bpy.context.view_layer.cycles.denoising_store_passes = False
         bpy.ops.render.render()
