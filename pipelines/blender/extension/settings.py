@@ -32,8 +32,8 @@ class PolyreconSettings(bpy.types.PropertyGroup):
     second_opinion: BoolProperty(
         name="Ask Open Image Denoise",
         default=True,
-        description="A second opinion: its picture is used where it is better. It makes the largest difference with few "
-        "samples",
+        description="A second opinion: its picture is used where it is better. With few samples it makes the largest "
+        "difference",
     )
     light_passes: BoolProperty(
         name="Denoise Light Passes",
