@@ -59,14 +59,12 @@ def range_text(frames):
     return ranges_text(sorted(frames))
 
 
-def template_for(template, request, threads, options):
+def template_for(template, request, threads, gpus, options):
     """The template with the requirements of a worker, and with further options of the program."""
     denoise, report = template["steps"]
+    amounts = {"vcpu": threads, "memory": math.ceil(request / MIB), **({"gpu": gpus} if gpus else {})}
     denoise["hostRequirements"] = {
-        "amounts": [
-            {"name": "amount.worker.vcpu", "min": threads},
-            {"name": "amount.worker.memory", "min": math.ceil(request / MIB)},
-        ]
+        "amounts": [{"name": f"amount.worker.{name}", "min": least} for name, least in amounts.items()]
     }
     for step in (denoise, report):
         step["script"]["actions"]["onRun"]["args"] += options
@@ -103,7 +101,7 @@ def write_bundle(options):
         seconds_of(options, frame, threads), options.task_minutes, len(frames), MAX_TASKS
     )
     yaml, template = load_template()
-    template = template_for(template, request, threads, without_quality(options.options))
+    template = template_for(template, request, threads, options.gpus, without_quality(options.options))
     values = {
         "InputFolder": os.path.dirname(os.path.abspath(options.input)),
         "InputName": os.path.basename(options.input),
@@ -121,7 +119,7 @@ def write_bundle(options):
     write_text(folder / "template.yaml", yaml.safe_dump(template, sort_keys=False))
     write_text(folder / "parameter_values.yaml", yaml.safe_dump(parameters, sort_keys=False))
     say = quiet_or_print(options)
-    tasks = f"tasks of up to {counted(chunk, 'frame')}, each with {task_text(threads, request)}"
+    tasks = f"tasks of up to {counted(chunk, 'frame')}, each with {task_text(threads, request, options.gpus)}"
     say(f"{folder}: {counted(len(frames), 'frame')} in {tasks}")
     say(f"checked with {polyrecon.describe()}; workers run {values.get('Polyrecon', 'the one on their PATH')}")
     if options.verbose:

@@ -45,6 +45,7 @@ examples:
   %(prog)s -i shot.####.exr -o clean/shot.####.exr --frames 1-240
   %(prog)s -i shot.####.exr -o clean/shot.####.exr --frames 1-240 --after 4711 \\
       --partition night --sbatch=--account=film --wait -- --quality best --aov 'Diffuse Direct'
+  %(prog)s -i shot.####.exr -o clean/shot.####.exr --frames 1-240 --gpus 1 -- --prior oidn
   %(prog)s -i shot.####.exr -o clean/shot.####.exr --frames 1-240 --dry-run
   polyrecon-farm report clean/polyrecon_farm/shot        # progress, at any time
 """
@@ -144,6 +145,8 @@ def array_words(options, job, request, name, folder):
     words += ["--ntasks=1", f"--cpus-per-task={job.threads}"]
     if request:
         words.append(f"--mem={math.ceil(request / MIB)}M")
+    if options.gpus:
+        words.append(f"--gres=gpu:{options.gpus}")
     if options.after:
         words.append(f"--dependency=afterany:{options.after}")
     return [*words, str(folder / "task")]
@@ -205,9 +208,9 @@ def make_folder(folder, job):
     write_script(folder / "report", "report", [str(folder)])
 
 
-def describe(job, request):
+def describe(job, request, gpus):
     tasks = f"{counted(len(job.chunks), 'task')} of up to {counted(job.chunk, 'frame')}"
-    return f"{counted(len(job.frames), 'frame')}: {tasks}, each with {task_text(job.threads, request)}"
+    return f"{counted(len(job.frames), 'frame')}: {tasks}, each with {task_text(job.threads, request, gpus)}"
 
 
 def submit(options):
@@ -218,7 +221,7 @@ def submit(options):
         raise DriverError(ExitCode.USAGE, f"--name {name}: is the name of a folder, too: give one without /")
     folder = job_folder(options, name, job)
     say = quiet_or_print(options)
-    say(*about, describe(job, request))
+    say(*about, describe(job, request, options.gpus))
     if options.verbose:
         say(f"a task: {shlex.join(job.words(job.chunks[0]))}")
     if options.verbose or options.dry_run:

@@ -56,6 +56,13 @@ def add_job_options(parser):
     )
     add("--memory", type=size, metavar="SIZE", help="memory of a task, such as 4G (default: by the measured model)")
     add(
+        "--gpus",
+        type=positive,
+        default=0,
+        metavar="N",
+        help="graphics cards of a task, which --prior oidn uses (default: none)",
+    )
+    add(
         "--model",
         metavar="FILE",
         help="constants of your nodes, by tests/bench/farm_model.py (default: those of one machine)",
@@ -137,9 +144,14 @@ def counted(number, thing):
     return f"{number} {thing}{'' if number == 1 else 's'}"
 
 
-def task_text(threads, request):
+def task_text(threads, request, gpus):
     """What a task needs, in words. request: bytes; 0 where memory is not managed."""
-    return counted(threads, "thread") + (f" and {request / 1e9:.2f} GB" if request else "")
+    words = [counted(threads, "thread")]
+    if gpus:
+        words.append(counted(gpus, "graphics card"))
+    if request:
+        words.append(f"{request / 1e9:.2f} GB")
+    return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"
 
 
 def request_of(options, frame):

@@ -46,8 +46,11 @@ SelectType=select/cons_tres
 SelectTypeParameters=CR_CPU_Memory
 AccountingStorageType=accounting_storage/none
 JobAcctGatherType=jobacct_gather/none
+GresTypes=gpu
 """
-NODE = "NodeName={name} NodeHostname={host} NodeAddr=127.0.0.1 Port={port} CPUs=1 RealMemory={memory} State=UNKNOWN\n"
+NODE = (
+    "NodeName={name} NodeHostname={host} NodeAddr=127.0.0.1 Port={port} CPUs=1 RealMemory={memory}{gpu}\n"
+)
 
 
 def free_ports(count):
@@ -68,10 +71,12 @@ def can_run():
 
 
 class Cluster:
-    """A context manager. Slurm's commands reach the cluster with its `environment`."""
+    """A context manager. Slurm's commands reach the cluster with its `environment`.
 
-    def __init__(self, nodes, megabytes):
-        self.nodes, self.megabytes, self.daemons = nodes, megabytes, {}
+    gpu_node: the node that has a graphics card. Slurm only checks that the file of the card exists."""
+
+    def __init__(self, nodes, megabytes, gpu_node):
+        self.nodes, self.megabytes, self.gpu_node, self.daemons = nodes, megabytes, gpu_node, {}
 
     def __enter__(self):
         self.folder = pathlib.Path(tempfile.mkdtemp(prefix="polyrecon_slurm_"))
@@ -126,10 +131,12 @@ class Cluster:
         )
         for node, port in zip(self.nodes, ports[1:]):
             (self.folder / f"spool.{node}").mkdir()
-            text += NODE.format(name=node, host=host, port=port, memory=self.megabytes)
+            gpu = " Gres=gpu:1" if node == self.gpu_node else ""
+            text += NODE.format(name=node, host=host, port=port, memory=self.megabytes, gpu=gpu)
         text += "PartitionName=main Nodes=ALL Default=YES MaxTime=INFINITE State=UP\n"
         (self.folder / "state").mkdir()
         (self.folder / "slurm.conf").write_text(text)
+        (self.folder / "gres.conf").write_text(f"NodeName={self.gpu_node} Name=gpu File=/dev/null\n")
         self.environment = dict(os.environ, SLURM_CONF=str(self.folder / "slurm.conf"))
 
     def _munge_files(self):

@@ -131,12 +131,16 @@ class Template(unittest.TestCase):
         bundle = self.folder / "bundle"
         words = ["-i", self.folder / "in/shot.####.exr", "-o", self.folder / "out/shot.####.exr", "--frames", "1-5x2"]
         words += ["--bundle", bundle, "--worker-cpus", "4", "--worker-memory", "16G", "--polyrecon", POLYRECON]
+        words += ["--gpus", "2"]
         done = run(sys.executable, FARM / "farm.py", "openjd", *words, "--", "--quality", "draft", "--alpha")
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
         checked = run(OPENJD, "check", bundle / "template.yaml")
         self.assertEqual(checked.returncode, 0, checked.stdout + checked.stderr)
         amounts = yaml.safe_load((bundle / "template.yaml").read_text())["steps"][0]["hostRequirements"]["amounts"]
-        self.assertEqual([amount["name"] for amount in amounts], ["amount.worker.vcpu", "amount.worker.memory"])
+        least = {amount["name"]: amount["min"] for amount in amounts}
+        self.assertEqual((least["amount.worker.vcpu"], least["amount.worker.gpu"]), (1, 2))
+        self.assertEqual(sorted(least), ["amount.worker.gpu", "amount.worker.memory", "amount.worker.vcpu"])
+        self.assertIn("each with 1 thread, 2 graphics cards and ", done.stdout)
         values = yaml.safe_load((bundle / "parameter_values.yaml").read_text())["parameterValues"]
         given = {value["name"]: value["value"] for value in values}
         self.assertEqual((given["Frames"], given["Quality"], given["Threads"]), ("1,3,5", "draft", 1))

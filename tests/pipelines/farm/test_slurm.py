@@ -64,7 +64,7 @@ class Slurm(unittest.TestCase):
 
     @classmethod
     def setUpClass(cls):
-        cls.cluster = cls.enterClassContext(Cluster(NODES, 2000))
+        cls.cluster = cls.enterClassContext(Cluster(NODES, 2000, gpu_node="node2"))
         cls.folder = Path(cls.enterClassContext(tempfile.TemporaryDirectory(prefix="-a 'b' \"{c}\" ä日;")))
         (cls.folder / "in").mkdir()
         (cls.folder / "local").mkdir()
@@ -173,6 +173,16 @@ class Slurm(unittest.TestCase):
         request = Model().request_bytes(frame_of(inspection), "best") // MIB
         self.assertIn(f"--mem={request}M", array)
         self.assertFalse((self.out / "job").exists())
+
+    def test_tasks_with_a_graphics_card_run_where_there_is_one(self):
+        words = ["-i", self.folder / "in/shot.####.exr", "-o", self.out / "shot.####.exr", "--frames", "1-4"]
+        code, output = self.finish(self.submit("--wait", "--chunk", "1", "--gpus", "1", words=words))
+        self.assertEqual(code, 0, output)
+        self.assertIn("each with 1 thread, 1 graphics card and ", output)
+        records = [json.loads(path.read_text()) for path in (self.out / "job/records").glob("*.json")]
+        self.assertEqual([record["node"] for record in records], ["node2"] * 4)
+        code, output = self.finish(self.submit("--gpus", "2", words=words, folder=self.out / "other"))
+        self.assertEqual((code, len(output.splitlines()) - 2), (2, 1), output)
 
     def test_what_slurm_refuses_is_told_in_one_line(self):
         code, output = self.finish(self.submit("--memory", "1T"))
