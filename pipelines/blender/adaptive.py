@@ -47,6 +47,7 @@ def arguments(words):
 def work(words):
     options = arguments(words)
     command.run_frames(
+        "polyrecon-blender",
         options,
         renderer_of(options, options.method),
         {

@@ -62,7 +62,7 @@ def one_frame(options, renderer, notes, frame, polyrecon, progress):
         render_parts(options, renderer, notes, frame, polyrecon, progress)
     if not options.keep_parts and os.listdir(passes) == [folder_lock.LOCK]:
         (passes / folder_lock.LOCK).unlink()
-        passes.rmdir()
+        frame.remove_empty_folders()
 
 
 def render_parts(options, renderer, notes, frame, polyrecon, progress):

@@ -1,5 +1,6 @@
 """The command line options of every driver of a renderer, and the loop over the frames that they name."""
 
+import contextlib
 import dataclasses
 import pathlib
 from typing import Optional
@@ -7,7 +8,7 @@ from typing import Optional
 from . import outputs
 from .arguments import add_program, add_verbosity
 from .errors import DriverError, ExitCode
-from .frame_names import frame_path, is_pattern, parse_ranges
+from .frame_names import frame_path, is_pattern, parse_ranges, passes_of_all, passes_of_frame
 from .polyrecon_cli import Polyrecon
 from .progress import STYLES, Progress
 from .terminal import print_lines
@@ -25,6 +26,13 @@ class Frame:
     output: pathlib.Path
     error_map: Optional[pathlib.Path] = None
     report: Optional[pathlib.Path] = None
+    passes_of_all: Optional[pathlib.Path] = None  # The folder of the passes of all --frames; None: a frame by itself
+
+    def remove_empty_folders(self):
+        """Removes the folders of passes in which nothing is left."""
+        for folder in filter(None, (self.passes, self.passes_of_all)):
+            with contextlib.suppress(OSError):
+                folder.rmdir()
 
     @property
     def outputs(self):
@@ -52,7 +60,8 @@ def add_frame_arguments(parser):
         "--passes-dir",
         type=pathlib.Path,
         metavar="DIR",
-        help="folder for passes and other intermediate files (default: OUT.passes)",
+        help="folder for passes and other intermediate files, with one for each of several frames in it (default: "
+        "OUT.passes)",
     )
     parser.add_argument(
         "--progress",
@@ -129,7 +138,7 @@ def _frame_of(options, number, of_all):
             option = "-o" if name == "output" else f"--{name.replace('_', '-')}"
             raise DriverError(ExitCode.USAGE, f"{option} {path}: several frames need #### or %04d in the file's name")
         paths[name] = pathlib.Path(path)
-    passes = options.passes_dir or paths["output"].with_suffix(".passes")
-    if options.frames and options.passes_dir:
-        passes = passes / frame_path("####", number)
-    return Frame(number, passes, **paths)
+    if not options.frames:
+        return Frame(number, options.passes_dir or paths["output"].with_suffix(".passes"), **paths)
+    of_all = options.passes_dir or passes_of_all(options.output)
+    return Frame(number, passes_of_frame(of_all, number), **paths, passes_of_all=of_all)

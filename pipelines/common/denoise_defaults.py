@@ -2,4 +2,6 @@
 
 QUALITIES = ("draft", "standard", "best")  # --quality, from fast to accurate
 DEFAULT_QUALITY = "standard"
+DEFAULT_OUTPUTS = "input"
+ON_MISS = ("keep", "fail")  # --on-miss, the default first
 DEFAULT_FRAME_RADIUS = 2  # --frame-radius of a sequence

@@ -12,6 +12,7 @@ tests/inputs/frame_names.json has examples of every rule; the tests of the progr
 """
 
 import os
+import pathlib
 import re
 
 from .errors import DriverError, ExitCode
@@ -89,11 +90,24 @@ def frame_path(pattern, frame):
 
 def without_number(pattern, name):
     """The path of a file for all frames of a pattern: shot.####.html -> shot.html. `name` is its name where nothing but
-    the number was in it."""
+    the number was in it. Folders that have the number too are left out: ####/shot.####.html -> shot.html."""
     folder, text = _split(pattern)
     place = list(_PLACE.finditer(text))[-1]
     stem, suffix = text[: place.start()].rstrip("._- "), text[place.end() :]
+    if not os.path.isdir(folder):
+        numbered = [match.start() for match in _PLACE.finditer(folder) if match.group() == place.group()]
+        folder = folder[: folder.rfind("/", 0, numbered[0]) + 1] if numbered else folder
     return folder + (stem + suffix if stem else name + suffix)
+
+
+def passes_of_all(pattern):
+    """The folder of the passes of all frames of a pattern: out/shot_####.exr -> out/shot.passes."""
+    return pathlib.Path(without_number(pattern, "shot")).with_suffix(".passes")
+
+
+def passes_of_frame(folder, frame):
+    """The folder of the passes of one of several frames, in that of all."""
+    return folder / frame_path("####", frame)
 
 
 def _split(path):

@@ -2,11 +2,13 @@
 
 import os
 import pathlib
+import shlex
 import shutil
 
 import numpy as np
 
 from . import exr
+from .denoise_defaults import DEFAULT_OUTPUTS
 from .errors import DriverError, ExitCode
 from .files import replacing
 
@@ -51,8 +53,16 @@ def nearest_folder(path):
     return folder
 
 
-def add_encoding(parser):
-    """Adds the options that say how the picture is compressed."""
+def add_contents(parser):
+    """Adds the options that say what the picture's file holds, and how it is compressed. The program checks the words
+    of --outputs."""
+    parser.add_argument(
+        "--outputs",
+        default=DEFAULT_OUTPUTS,
+        metavar="LIST",
+        help="what the result holds, as of `polyrecon denoise`: beauty, layers or input, and in addition noisy, error "
+        "and order; input is what the scene requests, with --keep-passes all that was rendered",
+    )
     parser.add_argument(
         "--compression",
         choices=COMPRESSIONS,
@@ -115,3 +125,9 @@ def is_colour(name):
 def size_text(size):
     """The bytes of a file or a folder, to read."""
     return f"{size / 1e9:.1f} GB" if size >= 1e9 else f"{size / 1e6:.1f} MB"
+
+
+def removal(folders):
+    """The command line that removes these folders."""
+    names = [str(folder) for folder in folders]
+    return shlex.join(["rm", "-r", *(["--"] if any(name.startswith("-") for name in names) else []), *names])

@@ -47,6 +47,13 @@ class Polyrecon:
             raise DriverError(ExitCode.MISSING, f"{self.program}: is not polyrecon: {reason}")
         return f"{output.strip()} ({self.program})"
 
+    def check_options(self, command, *words):
+        """Raises DriverError where a sub-command would refuse these options. No file is looked at."""
+        code, _, errors = process.run([self.program, "--check-options", command, *words])
+        if code:
+            line = (process.lines_of(errors) or [f"ended with code {code}"])[-1].removeprefix("polyrecon: ")
+            raise DriverError(ExitCode.USAGE, line)
+
     def run(self, command, *words):
         """Runs one sub-command; returns its standard output."""
         return self.run_side_by_side(command, [words])[0]

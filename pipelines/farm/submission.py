@@ -5,7 +5,6 @@ import json
 import os
 import re
 
-from ..common import process
 from ..common.arguments import add_program, add_verbosity
 from ..common.denoise_defaults import DEFAULT_FRAME_RADIUS, DEFAULT_QUALITY
 from ..common.errors import DriverError, ExitCode
@@ -81,11 +80,11 @@ def parse_words(parser, words):
 
 def check_options(polyrecon, options):
     """Lets the program check the options of `polyrecon denoise`, so that no task fails because of them."""
-    words = ["denoise", "-i", options.input, "-o", options.output, "--frames", options.frames, "--skip-existing"]
-    code, _, errors = process.run([polyrecon.program, "--check-options", *words, *options.options])
-    if code:
-        line = (process.lines_of(errors) or [f"ended with code {code}"])[-1].removeprefix("polyrecon: ")
-        raise DriverError(ExitCode.USAGE, f"options of polyrecon denoise: {line}")
+    words = ["-i", options.input, "-o", options.output, "--frames", options.frames, "--skip-existing"]
+    try:
+        polyrecon.check_options("denoise", *words, *options.options)
+    except DriverError as error:
+        raise DriverError(error.code, f"options of polyrecon denoise: {error}") from error
 
 
 def value_of(option, words, default):

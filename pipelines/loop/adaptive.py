@@ -21,7 +21,7 @@ from .budget import (
 )
 from .decision import UNIFORM_STEPS, what_is_spent
 from .folder import PassFolder
-from .frame import NO_ERROR_LEFT, FrameLoop
+from .frame import MAX_ROUNDS, NO_ERROR_LEFT, FrameLoop
 from .journal import Round
 
 NO_DECISION = ", too few of them to judge where samples should go"
@@ -101,7 +101,7 @@ class _Loop(FrameLoop):
         """(cost-weighted samples per pixel, reason): as in budget.py, and none beyond --max-rounds."""
         samples, reason = samples_of_next_round(self.budget, spent)
         if samples and number >= self.settings.max_rounds:
-            return 0.0, f"{number} rounds are done (--max-rounds)"
+            return 0.0, f"{MAX_ROUNDS} {number} is reached"
         return samples, reason
 
     def finish(self):

@@ -1,12 +1,13 @@
 """The command line options of the adaptive loop, and the loop over the frames that they name."""
 
+import contextlib
 import pathlib
-import shlex
+import sys
 
 from ..common import exr, outputs
 from ..common.arguments import positive
 from ..common.command import Notes, check_outputs, found_polyrecon, frames_of, progress_of
-from ..common.denoise_defaults import DEFAULT_QUALITY, QUALITIES
+from ..common.denoise_defaults import DEFAULT_QUALITY, ON_MISS, QUALITIES
 from ..common.errors import DriverError, ExitCode
 from ..common.frame_names import is_pattern, without_number
 from ..common.terminal import print_lines
@@ -32,6 +33,13 @@ def add_loop_arguments(parser, first_pass, first_pass_help):
     budget.add_argument(
         "--target", type=positive, metavar="E", help="estimated relative MSE, mean of all pixels of all --frames"
     )
+    parser.add_argument(
+        "--on-miss",
+        choices=ON_MISS,
+        default=ON_MISS[0],
+        help="where --target or --budget-seconds cannot be reached, the best that can be done is written; keep ends "
+        "with code 0, fail with 8",
+    )
     parser.add_argument("--first-pass", type=int, default=first_pass, metavar="N", help=first_pass_help)
     parser.add_argument("--max-rounds", type=int, default=8, metavar="N", help="limit of the rounds of extra samples")
     parser.add_argument(
@@ -46,12 +54,12 @@ def add_loop_arguments(parser, first_pass, first_pass_help):
         metavar="FILE.html",
         help="write a page with pictures and figures of every round; of several frames, one of the shot too",
     )
-    outputs.add_encoding(parser)
+    outputs.add_contents(parser)
     parser.add_argument(
         "--keep-passes",
         action="store_true",
-        help="keep the folder of passes, which --resume continues from; the result has the layers of the features, "
-        "their variance and halves too",
+        help="keep the folder of passes, which --resume continues from; --outputs input then has the features, and "
+        "variance and halves of all layers",
     )
     parser.add_argument(
         "--resume", action="store_true", help="continue with the passes of an earlier run; what is finished is skipped"
@@ -67,9 +75,10 @@ def check_budget(parser, options):
         parser.error(f"--budget-spp {options.budget_spp:g} is less than --first-pass {options.first_pass}")
 
 
-def run_frames(options, renderer, identity):
+def run_frames(program, options, renderer, identity):
     """Runs the loop for the frame of the options, or for several frames as a shot.
 
+    program: the name of the driver in messages.
     identity: every setting that changes a sample, with a name; `scene` is the path of a file. --resume continues only
     passes of the same identity, frame and --first-pass, and of the same inputs (Audit.inputs)."""
     try:
@@ -81,6 +90,8 @@ def run_frames(options, renderer, identity):
         if options.with_prior:
             prior.check(options.polyrecon)
         polyrecon = found_polyrecon(options)
+        files = ["-i", frames[0].passes / "merged.exr", "-o", frames[0].output]
+        polyrecon.check_options("denoise", *files, "--outputs", options.outputs)
         settings = [
             Settings(
                 files=frame,
@@ -91,6 +102,7 @@ def run_frames(options, renderer, identity):
                 resume=options.resume,
                 with_prior=options.with_prior,
                 keep_passes=options.keep_passes,
+                contents=options.outputs,
                 compression=options.compression,
                 dwa_level=options.dwa_level,
                 identity=identity,
@@ -103,12 +115,19 @@ def run_frames(options, renderer, identity):
         with progress_of(options, len(frames), together=bool(numbers)) as progress:
             progress.begin_frame()
             arguments = (options.verbose, renderer, polyrecon, progress, notes.tell)
+            missed = ""
             if options.resume and is_finished(settings, options.overwrite):
                 said = [f"{entry.files.output}: finished already: skipped" for entry in settings]
+            elif numbers:
+                said, missed = whole_shot(settings, page, *arguments)
             else:
-                said = whole_shot(settings, page, *arguments) if numbers else one_frame(settings[0], *arguments)
+                said, missed = one_frame(settings[0], *arguments)
         if not options.quiet:
             print_lines(*said)
+        if missed and options.on_miss == "fail":
+            raise DriverError(ExitCode.MISSED, missed)
+        if missed:
+            print_lines(f"{program}: {missed}", file=sys.stderr)
     finally:
         renderer.close()
 
@@ -131,7 +150,7 @@ def is_finished(settings, overwrite):
     if not strange and all(is_made_by(entry) for entry in settings):
         for entry in settings:
             if entry not in gone:
-                remove_passes(PassFolder(entry.files.passes))
+                remove_passes(entry.files)
         return True
     if overwrite:
         return False
@@ -154,51 +173,58 @@ def is_made_by(settings):
     return output.exists() and exr.metadata(output).get(SETTINGS_ATTRIBUTE) == settings.digest()
 
 
-def remove_passes(folder):
+def remove_passes(files):
+    """Removes the passes of a frame, and its folders if nothing else is in them."""
+    folder = PassFolder(files.passes)
     with folder.claimed():
         folder.remove()
+    files.remove_empty_folders()
 
 
 def one_frame(settings, verbose, renderer, polyrecon, progress, tell):
-    """Renders a frame; returns the lines about it. tell: gets notes as they are known."""
+    """Renders a frame; returns the lines about it, and what it missed or ''. tell: gets notes as they are known."""
     folder = PassFolder(settings.files.passes)
-    try:
+    with advice_of_passes([settings.files]):
         result = adaptive.run(renderer, polyrecon, settings, progress, tell)
-    except BaseException as error:
-        if folder.journal.exists():
-            error.advice = f"; {passes_text(folder)}"
-        raise
     pages = [page for page in (settings.files.report, folder.report if settings.keep_passes else None) if page]
     if pages:
         report.write(result, settings, polyrecon, pages)
     tell(result.audit.notes)
-    said = report.lines(result, settings, verbose)
-    if settings.keep_passes:
-        return [*said, f"  {passes_text(folder)}"]
-    remove_passes(folder)
-    return said
+    missed = report.missed(result, settings.budget)
+    said = [*report.lines(result, settings, verbose), *end_of_passes([settings])]
+    return said, f"{settings.files.output}: {missed}" if missed else ""
 
 
 def whole_shot(settings, page, verbose, renderer, polyrecon, progress, tell):
-    """Renders the frames of a shot; returns the lines about them. page: path of the shot's page, or None."""
-    folders = [PassFolder(entry.files.passes) for entry in settings]
-    try:
+    """Renders the frames of a shot; returns as one_frame does. page: path of the shot's page, or None."""
+    with advice_of_passes([entry.files for entry in settings]):
         result = shot.run(renderer, polyrecon, settings, progress, tell)
-    except BaseException as error:
-        if any(folder.journal.exists() for folder in folders):
-            size = outputs.size_text(sum(folder.size for folder in folders))
-            error.advice = f"; passes in {folders[0].path} and so on ({size}): --resume continues with them"
-        raise
     write_pages(result, page, polyrecon)
     for _, frame in result.frames:
         tell(frame.audit.notes)
-    said = shot_report.lines(result, verbose)
+    missed = report.missed(result, result.budget)
+    said = [*shot_report.lines(result, verbose), *end_of_passes(settings)]
+    return said, f"shot of {len(settings)} frames: {missed}" if missed else ""
+
+
+def end_of_passes(settings):
+    """Removes the passes of finished frames; if they stay, returns the line about them."""
     if settings[0].keep_passes:
-        size = outputs.size_text(sum(folder.size for folder in folders))
-        return [*said, f"  passes in {folders[0].path} and so on ({size}): --resume continues with them"]
-    for folder in folders:
-        remove_passes(folder)
-    return said
+        return [f"  {passes_text([entry.files for entry in settings])}"]
+    for entry in settings:
+        remove_passes(entry.files)
+    return []
+
+
+@contextlib.contextmanager
+def advice_of_passes(files):
+    """A context whose errors say where the passes of these frames are, if there are any."""
+    try:
+        yield
+    except BaseException as error:
+        if any(PassFolder(frame.passes).journal.exists() for frame in files):
+            error.advice = f"; {passes_text(files)}"
+        raise
 
 
 def write_pages(result, page, polyrecon):
@@ -211,8 +237,14 @@ def write_pages(result, page, polyrecon):
         shot_report.write(result, polyrecon, page)
 
 
-def passes_text(folder):
-    """The place, size and use of the render passes, and how to remove them."""
-    words = ["rm", "-r", *(["--"] if str(folder.path).startswith("-") else []), str(folder.path)]
-    size = outputs.size_text(folder.size)
-    return f"passes in {folder.path} ({size}): --resume continues with them, `{shlex.join(words)}` removes them"
+def passes_text(files):
+    """The place, size and use of the passes of these frames, and how to remove them."""
+    folders = [frame.passes for frame in files if frame.passes.exists()]
+    of_all = files[0].passes_of_all
+    if of_all and set(of_all.iterdir()) == set(folders):
+        folders = [of_all]
+    size = outputs.size_text(sum(PassFolder(folder).size for folder in folders))
+    return (
+        f"passes in {of_all or folders[0]} ({size}): --resume continues with them, `{outputs.removal(folders)}` "
+        "removes them"
+    )

@@ -8,7 +8,7 @@ import pathlib
 from typing import Optional
 
 from ..common.command import Frame
-from ..common.denoise_defaults import DEFAULT_QUALITY
+from ..common.denoise_defaults import DEFAULT_OUTPUTS, DEFAULT_QUALITY
 from ..common.digests import digest
 from ..common.outputs import DEFAULT_DWA_LEVEL
 from .budget import Budget
@@ -20,6 +20,7 @@ from .renderer import Audit
 from .rendering import PartRendering
 
 MIN_UNIFORM_COUNT = 1  # Samples of each half: a uniform round of fewer does not exist.
+MAX_ROUNDS = "--max-rounds"  # In the reason where that option ended the loop.
 NO_ERROR_LEFT = "no error is left that more samples could lower"
 
 
@@ -32,7 +33,8 @@ class Settings:
     quality: str = DEFAULT_QUALITY  # That of the last reconstruction
     resume: bool = False
     with_prior: bool = False  # Whether Open Image Denoise gives a second opinion
-    keep_passes: bool = False  # Whether the picture has the channels that only the reconstruction needs
+    keep_passes: bool = False  # Whether the folder of passes stays
+    contents: str = DEFAULT_OUTPUTS  # --outputs: what the picture's file holds
     compression: Optional[str] = None  # The picture's, in OpenImageIO's words; None: the scene's
     dwa_level: float = DEFAULT_DWA_LEVEL
     identity: dict = dataclasses.field(default_factory=dict)  # Digests of the scene: see journal.State
@@ -46,9 +48,15 @@ class Settings:
         shot = {"shot": True} if self.shot else {}
         return {**self.identity, **shot, "frame": self.files.number, "first_pass": self.first_pass}
 
+    @property
+    def keeps_working_layers(self):
+        """Whether the picture's file has the layers that only the reconstruction needs."""
+        return self.keep_passes and DEFAULT_OUTPUTS in self.contents.split(",")
+
     def digest(self):
-        """The SHA-256 of the scene and of every setting that changes the picture."""
+        """The SHA-256 of the scene and of every setting that changes the picture or its file."""
         chosen = [self.passes_identity, dataclasses.asdict(self.budget), self.max_rounds, self.quality, self.with_prior]
+        chosen += [self.contents, self.compression, self.dwa_level]
         chosen += [list(self.shot)] if self.shot else []
         scene = digest(self.scene) if self.scene else None
         return hashlib.sha256(json.dumps([scene, *chosen], sort_keys=True).encode()).hexdigest()

@@ -133,9 +133,13 @@ class Reconstruction:
         """Merges all parts, reconstructs them, and writes the outputs of the settings. Returns the mean relative MSE
         that is estimated for the picture, and that of the noise before."""
         self.merge_all(self.folder.merged)
-        options = ["--quality", settings.quality, "--error-map", self.folder.error_map, *self.prior, "--quiet"]
-        self.polyrecon.run("denoise", "-i", self.folder.merged, "-o", self.folder.clean, *options)
+        files = ["-i", self.folder.merged, "-o", self.folder.clean, "--error-map", self.folder.error_map]
+        self.polyrecon.run("denoise", *files, *self.result_options(settings))
         return self.deliver(settings)
+
+    def result_options(self, settings):
+        """Options of `polyrecon denoise` for the result."""
+        return ["--quality", settings.quality, "--outputs", settings.contents, *self.prior, "--quiet"]
 
     def deliver(self, settings):
         """Writes the outputs of the settings from the reconstruction in the folder, which is removed there. Returns as
@@ -145,21 +149,27 @@ class Reconstruction:
             outputs.copy(error_map, files.error_map)
         compression = outputs.encoding(settings.compression or self.audit.compression, settings.dwa_level)
         attributes = {SETTINGS_ATTRIBUTE: settings.digest()}
-        note = outputs.deliver(clean, files.output, self._type_of(settings.keep_passes), compression, attributes)
+        note = outputs.deliver(clean, files.output, self._type_of(settings), compression, attributes)
         self.audit.notes += [note] if note else []
         clean.unlink()
         found = exr.read(error_map, lambda name: name in ("relmse.Y", "relnoise.Y"))
         return tuple(float(np.nanmean(found[name])) for name in ("relmse.Y", "relnoise.Y"))
 
-    def _type_of(self, everything):
-        """The type of each channel of the result, as a function of its name. Without `everything` those are left out
-        that only the reconstruction needs."""
+    def _type_of(self, settings):
+        """The type of each channel of the result, as a function of its name; None: it is left out."""
+        merged = set(exr.names(self.folder.merged))
         rendered = {name.rpartition(".")[0] for name in exr.names(self._files(HALVES[0])[0])}
 
-        def type_of(name):
+        def is_working(name):
+            """Whether only the reconstruction needs the channel. What the reconstruction adds was not merged."""
             layer = name.rpartition(".")[0]
-            if layer not in rendered or layer in self.audit.working or name.endswith((SAMPLE_COUNT, RENDER_SECONDS)):
-                return "float" if everything else None
+            if layer in self.audit.working or name.endswith((SAMPLE_COUNT, RENDER_SECONDS)):
+                return True
+            return name in merged and layer not in rendered
+
+        def type_of(name):
+            if is_working(name):
+                return "float" if settings.keeps_working_layers else None
             return "half" if outputs.is_colour(name) and not self.audit.float_colours else "float"
 
         return type_of

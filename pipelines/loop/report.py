@@ -12,9 +12,10 @@ from ..common.terminal import printable
 from ..common.work_folder import WorkFolder
 from .budget import CONVERGENCE_RATE
 from .folder import PassFolder
-from .frame import NO_ERROR_LEFT
+from .frame import MAX_ROUNDS, NO_ERROR_LEFT
 
 TEMPLATE = pathlib.Path(__file__).with_name("report.html.j2")
+LATE_SHARE = 0.1  # Share of --budget-seconds by which a result may be late: its last steps are predicted.
 FEW_SAMPLES = 64  # per pixel; with more, --with-prior does not pay (docs/guide/adaptive.md)
 CURVE = {"width": 1000, "height": 300, "left": 74, "right": 984, "top": 14, "bottom": 250}  # Pixels
 
@@ -49,6 +50,8 @@ def round_lines(result):
 def advice(result, settings):
     """The options of the driver that would lower the error. result: of a frame or a shot."""
     budget, factor = settings.budget, 2 ** (1 / CONVERGENCE_RATE)
+    if budget.target and MAX_ROUNDS in result.why_ended and missed(result, budget):
+        return f"{MAX_ROUNDS} {2 * settings.max_rounds}"
     if result.why_ended == NO_ERROR_LEFT:
         return "nothing, the picture has no noise left"
     if budget.samples:
@@ -63,6 +66,17 @@ def advice(result, settings):
     if not settings.with_prior and result.samples <= FEW_SAMPLES:
         words.append("--with-prior, since the samples are few")
     return "; ".join(words)
+
+
+def missed(result, budget):
+    """What a frame or a shot missed of its budget; '' where nothing."""
+    if budget.target and not result.error <= budget.target:
+        return f"estimated relMSE {error_text(result.error)}, so --target {budget.target:g} was missed: " + (
+            result.why_ended
+        )
+    if budget.seconds and result.seconds > (1 + LATE_SHARE) * budget.seconds:
+        return f"took {seconds_text(result.seconds)}, so --budget-seconds {budget.seconds:g} was missed"
+    return ""
 
 
 def write(result, settings, polyrecon, pages):

@@ -32,7 +32,7 @@ from .budget import (
 )
 from .decision import UNIFORM_STEPS, masked_over_uniform, seconds_per_uniform_sample
 from .folder import PassFolder
-from .frame import NO_ERROR_LEFT, FrameLoop
+from .frame import MAX_ROUNDS, NO_ERROR_LEFT, FrameLoop
 from .journal import HALVES, Round
 from .sharing import Figures, left_to_target, next_slice
 
@@ -260,7 +260,7 @@ class _Shot:
         if any(f.error > 0 for f in figures):
             return SAMPLES_SPENT if self.budget.samples else SECONDS_SPENT
         if any(self.rounds_are_done(frame) for frame in self.frames):
-            return f"{self.settings.max_rounds} rounds are done (--max-rounds)"
+            return f"{MAX_ROUNDS} {self.settings.max_rounds} is reached"
         return NO_ERROR_LEFT
 
     def figures(self, frame):
@@ -332,7 +332,7 @@ class _Shot:
         """Denoises the frames as one sequence, with those before and after."""
         pattern = {name: folder / f"{name}.{NUMBER}.exr" for name in ("merged", "clean", "error")}
         words = ["--frames", ranges_text([frame.settings.files.number for frame in self.frames])]
-        words += ["--quality", self.settings.quality, *self.frames[0].reconstruction.prior, "--quiet"]
+        words += self.frames[0].reconstruction.result_options(self.settings)
         files = ["-i", pattern["merged"], "-o", pattern["clean"], "--error-map", pattern["error"]]
         self.polyrecon.run("denoise", *files, *words)
 

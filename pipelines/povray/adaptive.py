@@ -45,6 +45,7 @@ def _main(words):
         options.scene, povray_options, options.povray, options.pass_timeout, options.first_pass, options.camera
     )
     command.run_frames(
+        "polyrecon-povray",
         options,
         renderer,
         {

@@ -28,10 +28,13 @@ class CommandLine(unittest.TestCase):
         if change:
             self.fail(f"{PAGE} is stale. Update it with `{UPDATE}` and commit it. What differs:\n{change}")
 
-    def test_drivers_know_qualities_and_the_frame_radius(self):
+    def test_drivers_know_choices_and_defaults(self):
         page = tree.read(PAGE)
         self.assertEqual(list(denoise_defaults.QUALITIES), re.search(r"\| `--quality` `([^`]+)`", page)[1].split("\\|"))
         self.assertIn(denoise_defaults.DEFAULT_QUALITY, denoise_defaults.QUALITIES)
+        self.assertEqual(list(denoise_defaults.ON_MISS), re.search(r"\| `--on-miss` `([^`]+)`", page)[1].split("\\|"))
+        self.assertIn(f"(default {denoise_defaults.ON_MISS[0]})", re.search(r"\| `--on-miss` .*", page)[0])
+        self.assertIn(f"(default {denoise_defaults.DEFAULT_OUTPUTS})", re.search(r"\| `--outputs` .*", page)[0])
         radius = re.search(r"\| `--frame-radius` .*; default: (\d+)", page)[1]
         self.assertEqual(denoise_defaults.DEFAULT_FRAME_RADIUS, int(radius))
 

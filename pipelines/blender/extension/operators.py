@@ -120,14 +120,14 @@ class POLYRECON_OT_adaptive(_Start, bpy.types.Operator):
         last = list(outputs.values())[-1]
         copy = last.parent / COPY
         if not (chosen.resume and copy.exists()):
-            _forget(outputs.values())
+            _forget(chosen.passes(scene))
             copy = _save_copy(outputs)
         words += [copy, "-o", chosen.output_pattern(), *chosen.limit_words(), *chosen.frames_words(scene)]
         words += [*_device_words(context), "--quality", chosen.quality]
         words += ["--with-prior"] if _second_opinion(chosen) else []
         words += ["--polyrecon", program, "--progress", "json", "--keep-passes", "--overwrite"]
         words += ["--resume"] if chosen.resume else []
-        passes = _passes(last)
+        passes = chosen.passes(scene)[-1]
         results = {
             "CLEAN": last,
             "NOISY": passes / "merged.exr",
@@ -243,14 +243,9 @@ def _save_render(scene, path):
             setattr(settings, name, value)
 
 
-def _passes(clean):
-    """The folder of a frame's passes."""
-    return clean.with_suffix(".passes")
-
-
-def _forget(outputs):
+def _forget(folders):
     """Removes passes of an earlier scene, which the loop would refuse."""
-    for folder in map(_passes, outputs):
+    for folder in folders:
         if (folder / "journal.json").exists():
             shutil.rmtree(folder)
 

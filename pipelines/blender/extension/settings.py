@@ -116,6 +116,15 @@ class PolyreconSettings(bpy.types.PropertyGroup):
         pattern = self.output_pattern()
         return pathlib.Path(frame_names.frame_path(pattern, frame)) if frame_names.is_pattern(pattern) else pattern
 
+    def passes(self, scene):
+        """The folders of the passes that the drivers make for these frames."""
+        from polyrecon_pipelines.common import frame_names
+
+        if self.frames == "CURRENT":
+            return [output.with_suffix(".passes") for output in self.outputs(scene).values()]
+        folder = frame_names.passes_of_all(self.output_pattern())
+        return [frame_names.passes_of_frame(folder, frame) for frame in self.frames_of(scene)]
+
     def outputs(self, scene):
         """{frame: output} of the frames to render."""
         found = {frame: self.output_of(frame) for frame in self.frames_of(scene)}

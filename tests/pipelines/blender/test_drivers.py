@@ -105,12 +105,10 @@ class Adaptive(SceneTest):
             scene.name,
         )
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertEqual(
-            sorted(p.name for p in folder.iterdir()), ["<i>ä_01.exr", "<i>ä_01.passes", "<i>ä_03.exr", "<i>ä_03.passes"]
-        )
+        self.assertEqual(sorted(p.name for p in folder.iterdir()), ["<i>ä.passes", "<i>ä_01.exr", "<i>ä_03.exr"])
         first, second = (exr.read(folder / f"<i>ä_0{n}.exr")["ViewLayer.Combined.R"] for n in (1, 3))
         self.assertGreater(np.abs(first - second).max(), 0.05)
-        self.assertIn("&lt;i&gt;ä_01.exr", (folder / "<i>ä_01.passes" / "report.html").read_text())
+        self.assertIn("&lt;i&gt;ä_01.exr", (folder / "<i>ä.passes" / "0001" / "report.html").read_text())
 
     def test_case31_case32_killed_outright_it_goes_on_within_its_seconds(self):
         out, passes = self.folder / "out.exr", self.folder / "out.passes"
@@ -186,7 +184,8 @@ class Adaptive(SceneTest):
         more = self.driver("adaptive.py", scene, "-o", "new/lean.exr", *words, "--resume", "--quality", "standard")
         self.assertEqual(more.returncode, 2, more.stderr)
         self.assertIn("add --overwrite to render it again", more.stderr)
-        kept = self.driver("adaptive.py", scene, "-o", "new/lean.exr", *words, "--overwrite", "--keep-passes")
+        added = ["--outputs", "input,noisy,error,order"]
+        kept = self.driver("adaptive.py", scene, "-o", "new/lean.exr", *words, "--overwrite", "--keep-passes", *added)
         self.assertEqual(kept.returncode, 0, kept.stderr)
         last = kept.stdout.splitlines()[-1]
         self.assertRegex(
@@ -195,6 +194,36 @@ class Adaptive(SceneTest):
         types = channel_types(self.folder / "new" / "lean.exr")
         for layer in ("Combined A.R", "Combined Variance.R", "Denoising Albedo.R", "Sample Count.X"):
             self.assertEqual(types[f"ViewLayer.{layer}"], "float")
+        self.assertEqual(types["ViewLayer.Combined Noisy.R"], "half")
+        for layer in ("Error", "Order"):
+            self.assertEqual(types[f"ViewLayer.Combined {layer}.X"], "float")
+        pictures = exr.read(self.folder / "new" / "lean.exr")
+        merged = exr.read(self.folder / "new" / "lean.passes" / "merged.exr")["ViewLayer.Combined.R"]
+        np.testing.assert_allclose(pictures["ViewLayer.Combined Noisy.R"], merged, rtol=2**-10, atol=1e-6)
+        layers = self.driver("adaptive.py", scene, "-o", "a.exr", *words, "--outputs", "layers,error", "--keep-passes")
+        self.assertEqual(layers.returncode, 0, layers.stderr)
+        names = {name.rpartition(".")[0].partition(".")[2] for name in channel_types(self.folder / "a.exr")}
+        self.assertEqual(names, {"Combined", "Combined Error", "Depth", "Object Index", "Diffuse Color"})
+
+    def test_what_is_missed_is_said_and_fails_only_on_request(self):
+        scene = self.scene("user_passes")
+        words = ["-o", "new/a.exr", "--outputs", "beauty", "--first-pass", 4, "--quality", "draft", "--bpy", "-q"]
+        impossible = ["--target", 1e-9, "--max-rounds", 1]
+        for limit, said in (
+            (["--budget-seconds", 0.5], r"took \d+\.\d s, so --budget-seconds 0.5 was missed"),
+            (impossible, r"estimated relMSE .*, so --target 1e-09 was missed: --max-rounds 1 is reached"),
+            ([*impossible, "--on-miss", "fail"], "estimated relMSE .*, so --target 1e-09 was missed"),
+        ):
+            done = self.driver("adaptive.py", scene, *words, *limit, "--overwrite")
+            self.assertEqual((done.returncode, done.stdout), (8 if "fail" in limit else 0, ""), done.stderr)
+            self.assertRegex(done.stderr, f"^polyrecon-blender: new/a.exr: {said}.*\n$")
+        types = channel_types(self.folder / "new" / "a.exr")
+        self.assertEqual(set(types), {f"ViewLayer.Combined.{c}" for c in "RGBA"})
+        self.assertEqual(os.listdir(self.folder / "new"), ["a.exr"])
+        wrong = ["--budget-spp", 8, "--overwrite", "--outputs", "beaty"]
+        done = self.driver("adaptive.py", scene, *words, *wrong)
+        self.assertEqual(done.returncode, 2)
+        self.assertRegex(done.stderr, "^polyrecon-blender: --outputs: beaty is none of .*; did you mean beauty\\?\n$")
 
     def test_view_layers_and_transparent_film(self):
         scene, words = self.scene("view_layers"), ["--budget-spp", 16, "--first-pass", 4, "--quality", "draft", "--bpy"]

@@ -47,13 +47,17 @@ class Shots(SceneTest):
         return [np.stack([channels[name] for name in PICTURE], -1).astype(float) for channels in files]
 
     def journals(self, name):
-        return {n: json.loads((self.folder / f"{name}_{n}.passes" / "journal.json").read_text()) for n in FRAMES}
+        passes = self.folder / f"{name}.passes"
+        return {n: json.loads((passes / f"{n:04}" / "journal.json").read_text()) for n in FRAMES}
 
     def test_the_noisy_frame_gets_more_and_a_killed_run_goes_on_to_the_same_pictures(self):
         scene = self.scene("shot")
         whole, broken = self.folder / "whole_#.exr", self.folder / "broken_#.exr"
         said = self.run_driver("adaptive.py", *self.words(scene, whole, "--report", self.folder / "report_#.html"))
         self.assertRegex(said, r"shot: 4 frames, 48 x 28, .* samples per pixel on average")
+        where = f"{self.folder}/whole.passes"
+        last = rf"  passes in {where} \([\d.]+ MB\): --resume continues with them, `rm -r {where}` removes them"
+        self.assertRegex(said.splitlines()[-1], f"^{last}$")
 
         samples = {n: sum(part["samples"] for part in entry["parts"]) for n, entry in self.journals("whole").items()}
         self.assertGreater(samples[NOISY], 1.5 * SPP)
@@ -62,7 +66,7 @@ class Shots(SceneTest):
         for n in FRAMES:
             self.assertIn(f'href="report_{n}.html"', page)
             self.assertTrue((self.folder / f"report_{n}.html").exists())
-            merged = exr.read(self.folder / f"whole_{n}.passes" / "merged.exr")
+            merged = exr.read(self.folder / "whole.passes" / f"{n:04}" / "merged.exr")
             self.assertIn("ViewLayer.Vector.X", merged)
             self.assertAlmostEqual(merged[f"ViewLayer.{SAMPLE_COUNT}"].mean(), samples[n], delta=1e-3 * samples[n])
 
@@ -81,7 +85,7 @@ class Shots(SceneTest):
         )
         self.assertLess(shared, divided)
 
-        self.kill_at(self.folder / f"broken_{NOISY}.passes" / "part_1a0.exr", *self.words(scene, broken))
+        self.kill_at(self.folder / "broken.passes" / f"{NOISY:04}" / "part_1a0.exr", *self.words(scene, broken))
         self.run_driver("adaptive.py", *self.words(scene, broken, "--resume"))
         for a, b in zip(self.pictures(whole), self.pictures(broken)):
             np.testing.assert_array_equal(a, b)

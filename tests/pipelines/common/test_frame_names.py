@@ -102,8 +102,10 @@ class EachFrame(unittest.TestCase):
         self.assertEqual(self.frames("-o", "a_#.exr"), [(None, "a_#.exr", "a_#.passes")])
         self.assertEqual(self.frames("-o", "a.exr", "--frame=7"), [(7, "a.exr", "a.passes")])
         self.assertEqual(self.frames("-o", "a_##.exr", "--frame=-7"), [(-7, "a_-07.exr", "a_-07.passes")])
-        two = [(3, "a_03.exr", "a_03.passes"), (4, "a_04.exr", "a_04.passes")]
+        two = [(3, "a_03.exr", "a.passes/0003"), (4, "a_04.exr", "a.passes/0004")]
         self.assertEqual(self.frames("-o", "a_##.exr", "--frames=3-4"), two)
+        one = [(3, "x/####/03/03.exr", "x/####/shot.passes/0003")]
+        self.assertEqual(self.frames("-o", "x/####/##/##.exr", "--frames=3"), one)
         two = [(-3, "a_-03.exr", "p/-0003"), (4, "a_04.exr", "p/0004")]
         self.assertEqual(self.frames("-o", "a_##.exr", "--frames=-3,4", "--passes-dir", "p"), two)
 

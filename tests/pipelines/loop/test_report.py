@@ -1,3 +1,4 @@
+import dataclasses
 import json
 import re
 import tempfile
@@ -59,6 +60,24 @@ class Report(unittest.TestCase):
                 self.assertLess(result.error, result.noise)
                 self.assertIn(f"{more} halves the error", better)
                 self.assertGreater(len(report.lines(result, settings, verbose=True)), 4)
+
+    def test_what_was_missed_is_said(self):
+        with tempfile.TemporaryDirectory() as folder:
+            _, result = loop(Path(folder), Budget(samples=8), max_rounds=1)
+            for limit, said in (
+                (Budget(samples=8), "^$"),
+                (Budget(target=result.error), "^$"),
+                (Budget(target=result.error / 2), f"^estimated relMSE {result.error:.3g}, so --target .* was missed: "),
+                (Budget(seconds=result.seconds), "^$"),
+                (Budget(seconds=result.seconds / 1.2), "^took .* s, so --budget-seconds .* was missed$"),
+            ):
+                self.assertRegex(report.missed(result, limit), said)
+            impossible = Budget(target=result.error / 2)
+            ended = dataclasses.replace(result, why_ended="--max-rounds 4 is reached")
+            settings = Settings(Frame(7, Path(folder, "passes"), Path(folder, "out.exr")), impossible, max_rounds=4)
+            self.assertEqual(report.advice(ended, settings), "--max-rounds 8")
+            without_error = dataclasses.replace(result, error=float("nan"))
+            self.assertIn("estimated relMSE unknown", report.missed(without_error, impossible))
 
 
 if __name__ == "__main__":

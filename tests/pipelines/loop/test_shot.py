@@ -125,7 +125,7 @@ class Budgets(Folder):
 
     def test_rounds_of_each_frame_are_limited(self):
         _, result = run(self.folder, Budget(samples=64), max_rounds=1)
-        self.assertEqual(result.why_ended, "1 rounds are done (--max-rounds)")
+        self.assertEqual(result.why_ended, "--max-rounds 1 is reached")
         for _, frame in result.frames:
             self.assertLessEqual(max(part.round for part in frame.state.parts), 1)
 
@@ -163,7 +163,7 @@ class Passes(Folder):
     def test_passes_that_a_kill_left_of_a_finished_shot_are_removed(self):
         budget = Budget(samples=8)
         run(self.folder, budget)
-        command.remove_passes(command.PassFolder(self.folder / "1.passes"))
+        command.remove_passes(settings_of(self.folder, budget)[0].files)
         self.assertTrue(command.is_finished(settings_of(self.folder, budget, resume=True), overwrite=False))
         self.assertEqual(sorted(path.name for path in self.folder.iterdir()), ["1.exr", "2.exr", "3.exr"])
 

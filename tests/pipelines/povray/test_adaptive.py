@@ -79,11 +79,11 @@ class Adaptive(InFolder):
         done = subprocess.run([*command, "+KFF3"], capture_output=True, text=True)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertRegex(done.stdout, r"shot: 3 frames, .* samples per pixel on average")
-        counts = [exr.read(f"ball_{n}.passes/merged.exr")["Sample Count.X"].mean() for n in (1, 2, 3)]
+        counts = [exr.read(f"ball.passes/000{n}/merged.exr")["Sample Count.X"].mean() for n in (1, 2, 3)]
         self.assertGreater(counts[1], max(counts[0], counts[2]))
         self.assertLess(sum(counts), 3 * (32 + 1))
         for n in (1, 2, 3):
-            self.assertIn("Denoising Normal.X", exr.read(f"ball_{n}.passes/merged.exr"))
+            self.assertIn("Denoising Normal.X", exr.read(f"ball.passes/000{n}/merged.exr"))
 
     def test_case34_a_scene_without_noise_ends_after_the_first_pass(self):
         # The camera sees an even wall, so all subpixels are equal.
