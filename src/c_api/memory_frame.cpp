@@ -6,9 +6,10 @@
 #include <array>
 #include <utility>
 
-#include "core/halves.h"
 #include "core/repair.h"
+#include "io/layers/channel_groups.h"
 #include "io/renderers/known_names.h"
+#include "io/values/accept_pass.h"
 #include "io/values/beyond_range.h"
 #include "io/values/pass_values.h"
 #include "polyrecon/error.h"
@@ -30,10 +31,6 @@ constexpr std::array<PartName, 4> parts{{{Part::Mean, "", &Pass::mean},
                                          {Part::Variance, " variance", &Pass::variance},
                                          {Part::HalfA, " A", &Pass::half_a},
                                          {Part::HalfB, " B", &Pass::half_b}}};
-
-bool ends_with(const std::string& text, const std::string& end) {
-  return text.size() > end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
-}
 
 /// Whether a frame in memory can have images of this role, other than further layers.
 bool is_taken(const RoleInfo& info) {
@@ -141,22 +138,16 @@ class FrameMaker {
       throw Error(ExitCode::Usage, fmt::format("there is one of '{} A' and '{} B': give both, or none", name, name));
     for (const PartName& part : parts)
       if (const Image& image = pass.*part.image; !image.empty()) check_size(name + part.suffix, image);
-    if (pass.has_halves() && contradict(pass.mean, pass.half_a, pass.half_b)) {
-      notes_.push_back(
-          fmt::format("'{0} A' and '{0} B' are not used: they contradict '{0}', which is not their mean", name));
-      pass.half_a = pass.half_b = {};
-    }
-    if (!pass.variance.empty() && !has_usable_pixel(pass.variance)) {
-      notes_.push_back(fmt::format("'{} variance' is not used: it has no finite value", name));
-      pass.variance = {};
-    }
-    const double excess = &pass == &frame_.beauty ? variance_excess(pass.mean, pass.variance) : 0;
-    if (excess > most_variance_excess)
-      notes_.push_back(
-          fmt::format("'beauty variance' is {:.0f} times as large as the differences of neighbouring "
-                      "pixels allow, so too much is smoothed; it must be that of the mean of all samples, "
-                      "not of one sample",
-                      excess));
+    const auto quoted = [&](const char* suffix) { return fmt::format("'{}{}'", name, suffix); };
+    const PassNames names{quoted(""), quoted(" variance"), quoted(" A"), quoted(" B")};
+    note(check_halves(pass, names, "give the halves of this image"));
+    note(check_variance(pass.variance, pass.mean, names));
+    if (&pass == &frame_.beauty)
+      note(note_on_large_variance(pass, names, "it must be that of the mean of all samples, not of one sample"));
+  }
+
+  void note(const std::string& text) {
+    if (!text.empty()) notes_.push_back(text);
   }
 
   void take_counts(double samples) {

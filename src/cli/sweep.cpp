@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -13,6 +12,7 @@
 #include "cli/commands.h"
 #include "cli/common/checks.h"
 #include "cli/common/display_options.h"
+#include "cli/common/frame_names.h"
 #include "cli/common/layers.h"
 #include "cli/common/memory_limit.h"
 #include "cli/common/numbers.h"
@@ -20,9 +20,9 @@
 #include "cli/common/printed_text.h"
 #include "cli/common/progress_output.h"
 #include "cli/common/verbosity.h"
+#include "core/mean.h"
 #include "core/parallel.h"
 #include "io/files/atomic_file.h"
-#include "io/layers/channel_names.h"
 #include "polyrecon/error.h"
 #include "polyrecon/read_frame.h"
 #include "sweep/page.h"
@@ -73,8 +73,6 @@ PeerFile parse_peer(const std::string& text) {
   return peer;
 }
 
-std::string file_name(const std::string& path) { return std::filesystem::path(path).filename().string(); }
-
 /// The main colour layer of a file: width x height must be the reference's.
 Image read_color(const LayeredFile& file, const Image& reference) {
   const Layer& layer = require_color_layer(file);
@@ -100,7 +98,7 @@ SweepInput read_input(const std::string& path, const Image& reference) {
     throw Error(ExitCode::BadInput,
                 fmt::format("{}: has {} x {} pixels, the reference has {} x {}", path, read.frame.width(),
                             read.frame.height(), reference.width(), reference.height()));
-  const double samples = samples_in_metadata(read.source.files.front(), read.source.view_layer).value_or(0);
+  const double samples = mean_samples(read.frame.sample_count);
   return {file_name(path), samples, std::move(read.frame)};
 }
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/halves.h"
+#include "core/mean.h"
 #include "core/relmse.h"
 #include "io/files/channel_reader.h"
 #include "io/layers/channel_names.h"
@@ -149,14 +150,6 @@ std::vector<std::string> missing_roles(const Inspection& found) {
   return missing;
 }
 
-/// Mean number of samples per pixel; 0 if unknown.
-double samples_of(const Image& counts) {
-  if (counts.empty()) return 0;
-  double sum = 0;
-  for (std::size_t i = 0; i < counts.pixels(); ++i) sum += counts.plane(0)[i];
-  return sum / static_cast<double>(counts.pixels());
-}
-
 }  // namespace
 
 const LayerStatistics* Inspection::statistics_of(const std::string& layer) const {
@@ -173,7 +166,7 @@ Inspection inspect(const std::string& path, const ReadOptions& options) {
   try {
     ReadResult read = read_frame(path, options, observe);
     result.noise_level = noise_level(read.frame.beauty);
-    result.samples = samples_of(read.frame.sample_count);
+    result.samples = mean_samples(read.frame.sample_count);
     result.source = std::move(read.source);
     result.notes = std::move(read.notes);
     result.frame = std::move(read.frame);

@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "core/frame_shape.h"
-#include "core/halves.h"
 #include "core/rect.h"
 #include "core/repair.h"
 #include "io/files/file.h"
@@ -18,6 +17,7 @@
 #include "io/layers/choose_layers.h"
 #include "io/observed_read.h"
 #include "io/renderers/known_names.h"
+#include "io/values/accept_pass.h"
 #include "io/values/beyond_range.h"
 #include "io/values/pass_values.h"
 #include "polyrecon/error.h"
@@ -136,30 +136,6 @@ Image times(Image image, const std::array<Real, 4>& factors) {
   for (int c = 0; c < image.channels(); ++c)
     for (std::size_t i = 0; i < image.pixels(); ++i) image.plane(c)[i] *= factors[static_cast<std::size_t>(c)];
   return image;
-}
-
-bool has_finite_sample(const Image& image) {
-  for (int c = 0; c < image.channels(); ++c)
-    if (std::any_of(image.plane(c), image.plane(c) + image.pixels(), [](Real v) { return std::isfinite(v); }))
-      return true;
-  return false;
-}
-
-/// The number of samples of a channel that are not finite where those of the mean are usable. Pixels in which nothing
-/// was rendered do not count.
-std::size_t samples_lacking(const Image& companion, const Image& mean, int c) {
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < mean.pixels(); ++i) {
-    const Real m = mean.plane(c)[i];
-    count += usable(m) && m != 0 && !std::isfinite(companion.plane(c)[i]);
-  }
-  return count;
-}
-
-std::size_t samples_lacking(const Image& companion, const Image& mean) {
-  std::size_t count = 0;
-  for (int c = 0; c < mean.channels(); ++c) count += samples_lacking(companion, mean, c);
-  return count;
 }
 
 /// A pass with the images that are read for it; nullptr without one.
@@ -325,33 +301,18 @@ class FrameBuilder {
       return {};
     }
     to_variance_of_mean(variance, kind, mean, counts_);
-    if (!has_finite_sample(variance)) {
-      result_.notes.push_back(fmt::format("{} is not used: it has no finite value", from.name));
-      return {};
-    }
-    const std::size_t lacking = samples_lacking(variance, mean);
-    if (lacking == 0) return variance;
-    for (int c = 0; c < mean.channels(); ++c)
-      if (2 * samples_lacking(variance, mean, c) > mean.pixels()) {
-        result_.notes.push_back(fmt::format("{} is not used: {} of its samples are not finite where {} is", from.name,
-                                            lacking, layer(wanted.choice.mean).name));
-        return {};
-      }
-    result_.notes.push_back(
-        fmt::format("{}: {} samples are not finite where {} is; their pixels take the noise of the surroundings, "
-                    "but stay as they are where that is more than {} pixels away",
-                    from.name, lacking, layer(wanted.choice.mean).name, repair_depth));
+    note(check_variance(variance, mean, names_of(wanted.choice)));
     return variance;
   }
 
-  /// Notes a variance that the picture contradicts: neighbouring pixels would differ by more than they do.
-  void note_too_large_variance(const WantedPass& wanted, const Pass& pass) {
-    const double excess = wanted.choice.role == Role::Beauty ? variance_excess(pass.mean, pass.variance) : 0;
-    if (excess > most_variance_excess)
-      result_.notes.push_back(
-          fmt::format("{} is {:.0f} times as large as the differences of neighbouring pixels allow, "
-                      "so too much is smoothed; --variance-kind sample if it is that of one sample",
-                      layer(wanted.choice.variance).name, excess));
+  /// What notes call the images of a pass: the layers.
+  PassNames names_of(const PassChoice& choice) const {
+    const auto name = [&](int index) { return index < 0 ? std::string() : layer(index).name; };
+    return {name(choice.mean), name(choice.variance), name(choice.half_a), name(choice.half_b)};
+  }
+
+  void note(const std::string& text) {
+    if (!text.empty()) result_.notes.push_back(text);
   }
 
   Pass take_pass(WantedPass& wanted) {
@@ -361,28 +322,13 @@ class FrameBuilder {
     pass.name = layer(wanted.choice.mean).name;
     pass.mean = take(wanted.mean, role, wanted.choice.mean, channels);
     pass.variance = take_variance(wanted, pass.mean);
-    note_too_large_variance(wanted, pass);
+    const PassNames names = names_of(wanted.choice);
+    if (role == Role::Beauty)
+      note(note_on_large_variance(pass, names, "--variance-kind sample if it is that of one sample"));
     pass.half_a = take(wanted.half_a, role, wanted.choice.half_a, channels);
     pass.half_b = take(wanted.half_b, role, wanted.choice.half_b, channels);
-    drop_contradicting_halves(wanted.choice, pass);
+    note(check_halves(pass, names, "if they are halves of another layer, name it with --map"));
     return pass;
-  }
-
-  /// Drops halves that contradict the mean: the result is made of the halves, so it would be another picture.
-  void drop_contradicting_halves(const PassChoice& choice, Pass& pass) {
-    if (!pass.has_halves() || !contradict(pass.mean, pass.half_a, pass.half_b)) return;
-    const std::string &a = layer(choice.half_a).name, &b = layer(choice.half_b).name;
-    const std::size_t unusable = samples_lacking(pass.half_a, pass.mean) + samples_lacking(pass.half_b, pass.mean);
-    result_.notes.push_back(
-        unusable > 0
-            ? fmt::format(
-                  "{} and {} are not used: {} of their samples are not finite where {} is, and they contradict it; "
-                  "render the halves again",
-                  a, b, unusable, pass.name)
-            : fmt::format("{} and {} are not used: they contradict {}, which is not their mean; if they are halves of "
-                          "another layer, name it with --map",
-                          a, b, pass.name));
-    pass.half_a = pass.half_b = {};
   }
 
   void place(WantedPass& wanted) {

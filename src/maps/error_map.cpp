@@ -7,6 +7,7 @@
 #include "core/gaussian.h"
 #include "core/halves.h"
 #include "core/mask.h"
+#include "core/mean.h"
 #include "core/parallel.h"
 #include "core/real.h"
 #include "core/relmse.h"
@@ -49,15 +50,6 @@ ChannelErrors errors_of_channel(const HalfPair& pair, const Image& variance, con
 }
 
 }  // namespace
-
-double mean_of(const Image& image) {
-  const double sum = ordered_sum(static_cast<std::size_t>(image.height()), [&](std::size_t y) {
-    double row = 0;
-    for (int x = 0; x < image.width(); ++x) row += static_cast<double>(image.at(x, static_cast<int>(y), 0));
-    return row;
-  });
-  return sum / static_cast<double>(image.pixels());
-}
 
 ErrorMap make_error_map(const HalfPair& pair, const Image& variance, const Candidate& result, const Image& rendered) {
   ErrorMap map;

@@ -26,7 +26,4 @@ ErrorMap make_error_map(const HalfPair& pair, const Image& variance, const Candi
 void lower_error(const Image& reconstruction, const Image& prior, const Image& share, const Image& sampled,
                  ErrorMap& error);
 
-/// Mean of an image of 1 channel.
-double mean_of(const Image& image);
-
 }  // namespace polyrecon

@@ -9,6 +9,7 @@
 #include "blend/undershoot.h"
 #include "core/color_layout.h"
 #include "core/halves.h"
+#include "core/mean.h"
 #include "core/parallel.h"
 #include "core/rect.h"
 #include "core/repair.h"

@@ -8,6 +8,7 @@
 
 #include "core/color_layout.h"
 #include "core/halves.h"
+#include "core/mean.h"
 #include "core/parallel.h"
 #include "core/repair.h"
 #include "denoisers/denoise_frame.h"

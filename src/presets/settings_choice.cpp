@@ -29,7 +29,7 @@ constexpr int tiles_per_thread = 8;      // the most, so that the pilot of a lar
 // three times too high.
 constexpr std::size_t pilot_preset = 2;
 constexpr int least_crop = 256;  // pixels, each side; the start of a denoiser would count too much on smaller ones
-constexpr int repair_depth = 2;
+constexpr int pilot_repair_depth = 2;
 
 /// Rank of a tile by its noise: the mean over its pixels of the relative variance of green, each at most 1. The
 /// variance is that of the file, else the squared difference of the half buffers, else that of neighbouring pixels. The
@@ -101,7 +101,7 @@ std::array<double, preset_count> time_prior(const Frame& frame, const Denoiser& 
   const Frame part = crop(frame, middle);
   const double parts = static_cast<double>(frame.width()) * frame.height() / static_cast<double>(middle.area());
   Image noisy = part.beauty.mean;
-  repair_nonfinite(noisy, repair_depth);
+  repair_nonfinite(noisy, pilot_repair_depth);
   progress.begin("pilot of the denoiser", 2 * Denoiser::units);
   const Stopwatch prefilter;
   const DenoiserFeatures features = denoiser.prefilter(denoiser_features(part), max_bytes, progress);

@@ -142,6 +142,14 @@ std::string frames_text(std::vector<int> frames) {
   return text;
 }
 
+std::string file_name(const std::string& path) { return fs::path(path).filename().string(); }
+
+std::optional<std::size_t> number_begin(const std::string& name) {
+  const std::vector<Place> places = places_in(name, 0);
+  if (places.empty()) return std::nullopt;
+  return places.back().begin;
+}
+
 std::optional<FramePattern> FramePattern::parse(const std::string& text) {
   std::error_code ignored;
   if (fs::exists(text, ignored)) return std::nullopt;

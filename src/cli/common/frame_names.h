@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -44,6 +45,12 @@ class FramePattern {
   int width_ = 0;                    ///< Least length of the number.
   bool sign_counts_ = false;         ///< Whether a minus sign counts towards width_.
 };
+
+/// The name of a file without its folders.
+std::string file_name(const std::string& path);
+
+/// Where the number's place in a file's name begins, as FramePattern finds it; nothing where there is none.
+std::optional<std::size_t> number_begin(const std::string& name);
 
 /// The last number in a file's name, "shot.0012.exr" -> 12; nothing where there is none.
 std::optional<int> frame_in_name(const std::string& path);

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 
+#include "cli/common/frame_names.h"
 #include "cli/common/printed_text.h"
 #include "io/pictures/false_color.h"
 
@@ -24,8 +24,6 @@ std::vector<std::string> notes_of(const std::vector<Comparison>& comparisons) {
       if (std::find(notes.begin(), notes.end(), note) == notes.end()) notes.push_back(note);
   return notes;
 }
-
-std::string file_name(const std::string& path) { return std::filesystem::path(path).filename().string(); }
 
 }  // namespace
 

@@ -66,8 +66,6 @@ bool run_job(Job job, RunProgress& progress) {
   return job.is_sequence ? run_sequence(job, progress) : run_single(job, progress);
 }
 
-std::string file_name(const std::string& path) { return std::filesystem::path(path).filename().string(); }
-
 std::string contents_text(const std::string& folder, const FolderContents& contents, const std::vector<Job>& jobs) {
   std::string text = text_line("{}: {} to denoise", folder, contents.renders.size());
   for (std::size_t i = 0; i < jobs.size(); ++i) {

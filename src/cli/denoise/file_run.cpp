@@ -7,11 +7,11 @@
 #include <cctype>
 #include <cmath>
 #include <cstdio>
-#include <limits>
 #include <utility>
 
 #include "cli/common/printed_text.h"
 #include "cli/denoise/write_outputs.h"
+#include "core/mean.h"
 #include "core/stopwatch.h"
 #include "io/files/atomic_file.h"
 #include "io/layers/pass_advice.h"
@@ -70,14 +70,6 @@ std::size_t bytes_of(const DonePicture& done) {
   for_images(done.result, add);
   add(done.in.frame.sample_count);
   return samples * sizeof(Real);
-}
-
-/// The mean over all pixels; NaN without any.
-double mean_of(const Image& image) {
-  if (image.empty()) return std::numeric_limits<double>::quiet_NaN();
-  double sum = 0;
-  for (std::size_t i = 0; i < image.pixels(); ++i) sum += image.plane(0)[i];
-  return sum / static_cast<double>(image.pixels());
 }
 
 void keep_name(Pass& pass) {

@@ -53,9 +53,9 @@ bool is_finished(const Job& job, const FrameFiles& files) {
     of_pictures.push_back(maps_of(outputs, {source.pictures[p], {}}));
   try {
     const FileInfo picture = describe_file(outputs.picture);
-    if (!has_attribute(picture, "polyrecon/version", POLYRECON_VERSION) ||
+    if (!has_attribute(picture, version_attribute, POLYRECON_VERSION) ||
         !has_attribute(picture, settings_attribute, settings_of(job, files)) ||
-        !has_attribute(picture, "polyrecon/input", present_identity(job, files, source)))
+        !has_attribute(picture, input_attribute, present_identity(job, files, source)))
       return false;
     for (const OutputPaths& paths : of_pictures)
       for (const OutputOption& option : output_options())

@@ -144,7 +144,7 @@ FileKind file_kind_of(OutputKind kind) { return kind == OutputKind::Report ? Fil
 std::string default_output(const std::string& input) {
   const fs::path path(input);
   const std::string stem = path.stem().string();
-  std::size_t place = stem.find_first_of("#%");
+  std::size_t place = number_begin(stem).value_or(std::string::npos);
   while (place != std::string::npos && place > 0 && std::string("._-").find(stem[place - 1]) != std::string::npos)
     --place;
   const std::string before = stem.substr(0, place);

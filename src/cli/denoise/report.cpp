@@ -11,6 +11,7 @@
 #include "cli/common/decisions_output.h"
 #include "cli/common/printed_text.h"
 #include "cli/common/roles_output.h"
+#include "core/mean.h"
 #include "io/layers/channel_names.h"
 #include "pipeline/report_json.h"
 
@@ -99,13 +100,6 @@ std::string all_figures(const RunReport& run, bool with_advice) {
 }
 
 }  // namespace
-
-double mean_samples(const Image& counts) {
-  if (counts.empty()) return 0;
-  double sum = 0;
-  for (std::size_t i = 0; i < counts.pixels(); ++i) sum += counts.plane(0)[i];
-  return sum / static_cast<double>(counts.pixels());
-}
 
 std::size_t peak_memory() {
   rusage usage{};

@@ -34,9 +34,6 @@ struct RunReport {
 /// Peak resident memory of this process in bytes.
 std::size_t peak_memory();
 
-/// The mean of the samples per pixel; 0 where they are unknown.
-double mean_samples(const Image& counts);
-
 /// Text about the input, printed before the work: a line, or with Verbosity::Full the roles of all layers. picture: its
 /// name in a file of several.
 std::string input_text(const ReadResult& in, const std::string& picture, Verbosity verbosity);

@@ -11,7 +11,7 @@
 #include <algorithm>
 #include <array>
 
-#include "io/bad_file.h"
+#include "core/bad_file.h"
 
 namespace polyrecon {
 namespace {

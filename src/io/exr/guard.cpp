@@ -12,7 +12,7 @@
 #include <map>
 #include <string_view>
 
-#include "io/bad_file.h"
+#include "core/bad_file.h"
 #include "io/exr/chunks.h"
 #include "io/exr/compression.h"
 

@@ -11,8 +11,8 @@
 #include <fstream>
 #include <string_view>
 
+#include "core/bad_file.h"
 #include "core/parallel.h"
-#include "io/bad_file.h"
 #include "io/exr/description.h"
 #include "io/files/channel_reader.h"
 #include "io/files/file_identity.h"

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <memory>
 
+#include "core/bad_file.h"
 #include "core/first_line.h"
-#include "io/bad_file.h"
 
 namespace polyrecon {
 namespace {

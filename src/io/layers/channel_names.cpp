@@ -14,15 +14,6 @@
 namespace polyrecon {
 namespace {
 
-bool all_uint(const std::vector<FileInfo>& files, const Layer& layer) {
-  const auto& channels =
-      files[static_cast<std::size_t>(layer.file)].parts[static_cast<std::size_t>(layer.part)].channels;
-  return std::all_of(layer.channels.begin(), layer.channels.end(), [&](const std::string& name) {
-    return std::any_of(channels.begin(), channels.end(),
-                       [&](const ChannelInfo& c) { return c.name == name && c.type == SampleType::Uint; });
-  });
-}
-
 bool fits(Role role, const Layer& layer) { return info_of(role).layer_channels.allow(layer.channels.size()); }
 
 /// Whether the layer is a picture in CIE XYZ or a grey one.
@@ -254,6 +245,15 @@ std::optional<double> number_in(const FileInfo& file, const std::string& attribu
 }
 
 }  // namespace
+
+bool all_uint(const std::vector<FileInfo>& files, const Layer& layer) {
+  const auto& channels =
+      files[static_cast<std::size_t>(layer.file)].parts[static_cast<std::size_t>(layer.part)].channels;
+  return std::all_of(layer.channels.begin(), layer.channels.end(), [&](const std::string& name) {
+    return std::any_of(channels.begin(), channels.end(),
+                       [&](const ChannelInfo& c) { return c.name == name && c.type == SampleType::Uint; });
+  });
+}
 
 const char* name_of(Companion companion) {
   switch (companion) {

@@ -37,6 +37,9 @@ bool is_picture_in_xyz(const Layer& layer);
 /// noise would no longer be that of the picture.
 bool may_lose_precision(const Layer& layer);
 
+/// Whether all channels of the layer are unsigned integers: identifiers, not values.
+bool all_uint(const std::vector<FileInfo>& files, const Layer& layer);
+
 /// Whether denoise wrote the file.
 bool is_result(const FileInfo& file);
 

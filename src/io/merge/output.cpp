@@ -23,6 +23,7 @@
 #include "io/layers/channel_groups.h"
 #include "io/layers/channel_names.h"
 #include "io/renderers/known_names.h"
+#include "io/renderers/polyrecon.h"
 
 namespace polyrecon {
 namespace {
@@ -134,7 +135,7 @@ Imf::Header output_header(const MergeTask& task, const Encoding& encoding, std::
     set_attribute(header, with_view_layer(samples_attribute, view_layer),
                   Imf::FloatAttribute(static_cast<float>(samples)));
   }
-  set_attribute(header, "polyrecon/version", Imf::StringAttribute(POLYRECON_VERSION));
+  set_attribute(header, version_attribute, Imf::StringAttribute(POLYRECON_VERSION));
   if (!task.shared_samples.empty())
     set_attribute(header, shared_samples_attribute, Imf::StringAttribute(task.shared_samples));
   require_writable(path_of(task.first()), {header});

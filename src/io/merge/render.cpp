@@ -4,17 +4,12 @@
 
 #include <algorithm>
 
+#include "io/layers/channel_names.h"
 #include "io/renderers/known_names.h"
 #include "polyrecon/error.h"
 
 namespace polyrecon {
 namespace {
-
-bool all_uint(const Render& render, const Layer& layer) {
-  for (const ChannelInfo& channel : part_of(render, layer).channels)
-    if (channel.name == layer.channels.front()) return channel.type == SampleType::Uint;
-  return false;
-}
 
 /// Whether the layer is a depth for compositing next to another one in its view layer. Alone it is merged, as a
 /// feature.
@@ -51,7 +46,7 @@ std::vector<std::string> all_channels(const Layer& layer) {
 Fate fate_of(const Render& first, const Layer& layer) {
   const Values values = info_of(layer.role).values;
   if (layer.companion != Companion::Mean || values == Values::Count) return Fate::Dropped;
-  if (values == Values::Exact || all_uint(first, layer) || is_second_depth(first, layer)) return Fate::Kept;
+  if (values == Values::Exact || all_uint(first.files, layer) || is_second_depth(first, layer)) return Fate::Kept;
   return Fate::Merged;
 }
 

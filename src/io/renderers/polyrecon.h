@@ -12,6 +12,9 @@ constexpr const char* half_b_suffix = " B";
 constexpr const char* sample_count_pass = "Sample Count";
 constexpr const char* shared_samples_attribute = "polyrecon/sharedSamples";  ///< Note of `merge` about them.
 constexpr const char* samples_attribute = "polyrecon/{}/samples";            ///< "{}" stands for the view layer.
-constexpr const char* settings_attribute = "polyrecon/settings";             ///< Settings of a result of `denoise`.
+constexpr const char* version_attribute = "polyrecon/version";
+constexpr const char* input_attribute = "polyrecon/input";            ///< Identity of the file that was denoised.
+constexpr const char* error_attribute = "polyrecon/estimatedRelMSE";  ///< Of a result, mean of the picture.
+constexpr const char* settings_attribute = "polyrecon/settings";      ///< Settings of a result of `denoise`.
 
 }  // namespace polyrecon
