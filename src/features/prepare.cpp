@@ -223,12 +223,11 @@ void remove_noise_of_sky(const Image& depth, double sky, Image& variance) {
     if (static_cast<double>(depth.plane(0)[i]) >= sky) variance.plane(0)[i] = 0;
 }
 
-/// Noise variance of one half of a feature; empty where it is unknown. An estimated variance is that of the mean, which
-/// then serves as both halves: splitting it adds as much noise as the independence of the halves removes.
+/// Noise variance of one half of a feature; empty where it is unknown.
 Image feature_half_variance(Feature& feature, double sky, const Image& mask, std::size_t& repaired) {
   Pass& pass = feature.pass;
   if (!pass.variance.empty()) {
-    const Real of_half = pass.variance_is_estimated ? Real(1) : half_noise_of(pass);
+    const Real of_half = half_noise_of(pass);
     Image variance = std::move(pass.variance);
     if (may_show_sky(feature)) remove_noise_of_sky(pass.mean, sky, variance);
     repaired += repair(variance, mask);
@@ -291,28 +290,40 @@ void append(const std::array<Image, 2>& halves, std::array<Image, 2>& to, int& c
   channel += halves[0].channels();
 }
 
+/// Gives both halves their mean.
+void join(std::array<Image, 2>& halves) {
+  for_rows_of(halves[0], [&](int c, int y) {
+    Real *a = halves[0].row(c, y), *b = halves[1].row(c, y);
+    for (int x = 0; x < halves[0].width(); ++x) a[x] = b[x] = Real(0.5) * (a[x] + b[x]);
+  });
+}
+
 /// Prefilters the halves of a feature, and flattens them where the prefilter would leave noise that is fitted to the
-/// noise of the beauty.
+/// noise of the beauty. Halves that were split by an estimated variance, as each is filtered by the other, are joined
+/// after that: what is left of the numbers that split them is noise.
 std::array<Image, 2> prefiltered(std::array<Image, 2> halves, const Image& variance, const FeatureUse& use,
-                                 const PrefilterParams& params, const Image& mask, Progress& progress) {
-  if (!use.flatten) return prefilter(halves, variance, params, progress, mask);
-  const Image part = noise_in_variation(halves[0], variance, mask);
+                                 bool split_by_estimate, const PrefilterParams& params, const Image& mask,
+                                 Progress& progress) {
+  const Image part = use.flatten ? noise_in_variation(halves[0], variance, mask) : Image();
   halves = prefilter(halves, variance, params, progress, mask);
+  if (split_by_estimate) join(halves);
+  if (!use.flatten) return halves;
   for (Image& half : halves) half = flattened(std::move(half), part, mask);
   return halves;
 }
 
 std::array<Image, 2> prepared_feature(Feature feature, const FeatureUse& use, double sky, std::size_t stream,
-                                      const PrefilterParams& prefilter_params, const Image& mask, std::size_t& repaired,
-                                      Progress& progress) {
+                                      double correlation, const PrefilterParams& prefilter_params, const Image& mask,
+                                      std::size_t& repaired, Progress& progress) {
+  const bool estimated = feature.pass.variance_is_estimated;
   Image variance = feature_half_variance(feature, sky, mask, repaired);
-  auto halves =
-      halves_of(feature.pass, feature.pass.variance_is_estimated ? Image() : variance, stream, mask, repaired);
+  auto halves = halves_of(feature.pass, estimated && !use.prefilter ? Image() : variance, stream, mask, repaired,
+                          estimated ? correlation : 0);
   if (use.prefilter && !variance.empty()) {
     repair(feature.pass.mean, mask);
     transform_variance(use, feature.pass.mean, variance);
     for (Image& half : halves) transform(use, half);
-    return prefiltered(std::move(halves), variance, use, prefilter_params, mask, progress);
+    return prefiltered(std::move(halves), variance, use, estimated, prefilter_params, mask, progress);
   }
   for (Image& half : halves) transform(use, half);
   return halves;
@@ -361,11 +372,15 @@ void prepare_features(Frame& frame, const Preparation& preparation, const Prefil
   for (const FeatureUse& use : preparation.features) channels += frame.features[use.index].pass.mean.channels();
   for (Image& features : out.pair.features) features = Image(frame.width(), frame.height(), channels);
   int channel = 0;
-  for (const FeatureUse& use : preparation.features)
-    append(
-        prepared_feature(std::move(frame.features[use.index]), use, frame.sky_depth, preparation.stream + use.index + 1,
-                         prefilter_params, out.pair.sampled, out.repaired_pixels, progress),
-        out.pair.features, channel);
+  for (const FeatureUse& use : preparation.features) {
+    // One stream for all features whose noise is estimated, so that equal features stay equal.
+    const bool estimated = frame.features[use.index].pass.variance_is_estimated;
+    const std::uint64_t stream = preparation.stream + (estimated ? 0 : use.index) + 1;
+    append(prepared_feature(std::move(frame.features[use.index]), use, frame.sky_depth, stream,
+                            preparation.noise_correlation, prefilter_params, out.pair.sampled, out.repaired_pixels,
+                            progress),
+           out.pair.features, channel);
+  }
   frame.features.clear();
 }
 

@@ -33,6 +33,7 @@ constexpr double most_far_correlation = 0.2;  // with residuals two pixels away;
 constexpr double least_flat_share = 0.03;     // of all windows
 constexpr double left_by_plane = 0.85;  // of the correlation, in the residuals of a plane (0.84 to 0.86 for 0.1 to
                                         // 0.5, by the covariance M C M of the residuals)
+constexpr Real most_over_fit = 4;       // of a feature's variance by the corner, over that by fits
 constexpr double half_difference_sigma = 1.5;  // pixels; the variance from the halves of one pixel has one degree of
                                                // freedom, so it is averaged by a Gaussian
 
@@ -256,6 +257,53 @@ Image variance_from_halves(const Pass& beauty, const Image& mask) {
   return gaussian_blur(out, half_difference_sigma, mask);
 }
 
+/// Raises the estimated variance of a feature to what the corner of the spectrum shows, within bounds; see
+/// estimate_feature_variance.
+void raise_to_corner(const Image& feature, const Image& samples, const Image& mask, Image& variance) {
+  const Image corner = corner_variance(feature, mask);
+  const Image two_values = samples.empty() ? Image() : two_value_variance(feature, samples);
+  for_rows(variance.height(), [&](int y) {
+    for (int c = 0; c < variance.channels(); ++c)
+      for (int x = 0; x < variance.width(); ++x) {
+        Real& fitted = variance.at(x, y, c);
+        const Real value = feature.at(x, y, c);
+        if (value == 0) continue;
+        const Real most = std::max(most_over_fit * fitted, two_values.empty() ? Real(0) : two_values.at(x, y, c));
+        fitted = std::max(fitted, beyond_rounding(std::min(corner.at(x, y, c), most), value));
+      }
+  });
+}
+
+/// Whether two pixels are equal in all channels but for rounding to half floats.
+bool equal_pixels(const Image& image, int x, int y, int u, int v) {
+  for (int c = 0; c < image.channels(); ++c) {
+    const Real a = image.at(x, y, c), b = image.at(u, v, c);
+    if (std::abs(a - b) > Real(half_float_rounding) * std::max(std::abs(a), std::abs(b))) return false;
+  }
+  return true;
+}
+
+/// Whether a pixel lies in 2 x 2 equal pixels.
+bool in_equal_pixels(const Image& image, int x, int y) {
+  const auto equal = [&](int u, int v) {
+    return u >= 0 && v >= 0 && u < image.width() && v < image.height() && equal_pixels(image, x, y, u, v);
+  };
+  for (const int dy : {-1, 1})
+    if (equal(x, y + dy))
+      for (const int dx : {-1, 1})
+        if (equal(x + dx, y) && equal(x + dx, y + dy)) return true;
+  return false;
+}
+
+/// Sets the variance of a feature to 0 where adjacent pixels are equal; see estimate_feature_variance.
+void remove_from_equal_pixels(const Image& feature, Image& variance) {
+  for_rows(variance.height(), [&](int y) {
+    for (int x = 0; x < variance.width(); ++x)
+      if (in_equal_pixels(feature, x, y))
+        for (int c = 0; c < variance.channels(); ++c) variance.at(x, y, c) = 0;
+  });
+}
+
 }  // namespace
 
 bool noise_is_measured(const Frame& frame) { return frame.beauty.noise_is_known(); }
@@ -327,6 +375,8 @@ void estimate_feature_variance(Frame& frame, Progress& progress, const Image& ma
     repair_nonfinite(mean, 2);
     feature.pass.variance =
         estimate_variance(mean, Image(mean.width(), mean.height(), 0), progress, mask, {}, correlation);
+    raise_to_corner(mean, frame.sample_count, mask, feature.pass.variance);
+    remove_from_equal_pixels(mean, feature.pass.variance);
     feature.pass.variance_is_estimated = true;
   }
 }

@@ -51,7 +51,11 @@ Image estimate_variance(const Image& y, const Image& features, Progress& progres
 
 /// Sets the variance of the features whose noise is estimated (noise_is_estimated, polyrecon/roles.h). Renderers carry
 /// features through reflections, depth of field and motion blur, which makes them noisy; a model that takes this noise
-/// for detail keeps noise in the beauty.
+/// for detail keeps noise in the beauty. Fits take noise of edges and fine texture for detail, so the variance F of
+/// estimate_variance is raised to what the corner of the spectrum shows (corner_variance in noise/edge_variance.h), but
+/// no further than 4 F or, where the sample count is known, two_value_variance: the corner shows clean aliased edges,
+/// too. Where 2 x 2 pixels are equal but for rounding to half floats, the variance is 0: noise does not repeat, and
+/// halves split by a variance that is none would blur clean edges.
 void estimate_feature_variance(Frame& frame, Progress& progress, const Image& mask = {}, double correlation = 0);
 
 }  // namespace polyrecon

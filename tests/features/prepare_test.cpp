@@ -156,6 +156,27 @@ TEST(Prepare, TheVarianceOfAHalfIsTwiceThatOfTheMean) {
   EXPECT_EQ(prepared(frame).pair.variance.at(3, 3, 1), Real(0));
 }
 
+/// Filtered by itself, a feature would keep noise that its weights follow.
+TEST(Prepare, AFeatureOfEstimatedNoiseIsFilteredByHalvesAndJoined) {
+  const double sigma = 0.05;
+  test::Random random(41);
+  const auto wall = [](int x) { return x < width / 2 ? 1.2 : 1.6; };  // of order 1, so it is not scaled
+  const auto noisy = [&](int x, int, int) { return wall(x) + sigma * random.normal(); };
+  Frame frame = make_scene(width, height, 0.1, 1).frame;
+  Pass pass{"f", image_of(width, height, 3, noisy), Image(width, height, 3, Real(sigma * sigma)), {}, {}};
+  pass.variance_is_estimated = true;
+  frame.features = {{Role::Albedo, pass}};
+  const std::array<Image, 2> features = prepared(frame).pair.features;
+  EXPECT_TRUE(test::same_bits(features[0], features[1]));
+  double squares = 0;
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      const double error = static_cast<double>(features[0].at(x, y, 0)) - wall(x);
+      squares += error * error / (width * height);
+    }
+  EXPECT_LT(squares, sigma * sigma / 30);
+}
+
 TEST(Prepare, LayersThatAddUpHaveHalvesThatAddUp) {
   for (const bool with_halves : {true, false}) {
     Frame frame = make_scene(width, height, 0.2, 5).frame;

@@ -302,12 +302,55 @@ TEST(FeatureVariance, AVarianceInTheFileStays) {
   EXPECT_TRUE(found[1].empty());
 }
 
+/// Grass through an open lens: stripes of one pixel with the noise of samples that fall on either of two values. A fit
+/// takes part of it for detail.
+TEST(FeatureVariance, OfFineDetailIsOfTheRightSize) {
+  Frame frame;
+  const double sigma = 0.05;
+  test::Random random(33), pattern(34);
+  std::vector<double> tone(static_cast<std::size_t>(width) * height);
+  for (double& t : tone) t = 0.5 + 0.12 * pattern.normal();
+  const auto smooth = [&](int x, int y) {  // as a pixel filter leaves it
+    double sum = 0, total = 0;
+    for (int v = -3; v <= 3; ++v)
+      for (int u = -3; u <= 3; ++u) {
+        const int i = std::clamp(x + u, 0, width - 1), j = std::clamp(y + v, 0, height - 1);
+        const double weight = std::exp(-0.5 * (u * u + v * v));
+        sum += weight * tone[static_cast<std::size_t>(j * width + i)];
+        total += weight;
+      }
+    return sum / total;
+  };
+  const auto value = [&](int x, int y, int) { return smooth(x, y) + sigma * random.normal(); };
+  frame.features.push_back({Role::Albedo, {"", test::image_of(width, height, 3, value), {}, {}, {}}});
+  const Image truth(width, height, 3, Real(sigma * sigma));
+  EXPECT_NEAR(mean_ratio(feature_variances(frame)[0], truth), 1.15, 0.15);
+}
+
 TEST(FeatureVariance, CleanTextureHasNone) {
   Frame frame;
   const auto texture = [](int x, int y, int c) { return 0.5 + 0.3 * std::sin(0.9 * x + 0.2 * c) * std::cos(0.7 * y); };
   frame.features.push_back({Role::Albedo, {"", test::image_of(width, height, 3, texture), {}, {}, {}}});
   const double of_texture = 0.3 * 0.3 / 4;
   EXPECT_LT(mean_ratio(feature_variances(frame)[0], Image(width, height, 3, Real(of_texture))), 0.02);
+}
+
+/// Tiles of 6 x 6 pixels, of which the right half of the image has noise.
+TEST(FeatureVariance, EqualPixelsHaveNoneEvenNextToEdges) {
+  Frame frame;
+  test::Random random(35);
+  const auto tile = [&](int x, int y, int) {
+    return 0.5 + 0.2 * ((x / 6 + y / 6) % 2) + (x < width / 2 ? 0 : 0.05 * random.normal());
+  };
+  frame.features.push_back({Role::Albedo, {"", test::image_of(width, height, 3, tile), {}, {}, {}}});
+  const Image found = feature_variances(frame)[0];
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      if (x < width / 2)
+        EXPECT_EQ(found.at(x, y, 0), Real(0)) << x << ' ' << y;
+      else
+        EXPECT_GT(found.at(x, y, 0), Real(0)) << x << ' ' << y;
+    }
 }
 
 }  // namespace
