@@ -32,7 +32,7 @@ class Outcome:
             wrong.append(f"ended by signal {signal.Signals(-self.code).name}")
         elif self.code not in codes:
             wrong.append(f"exit code {self.code}")
-        lines = [line for line in self.err.split(b"\n") if line and not line.startswith(self._progress())]
+        lines = [line for line in self.err.split(b"\n") if line and not self._is_progress(line)]
         most = 1 if self.code > 0 else 0
         if self._many_frames():  # A line for each frame that is missing or broken, and one for the whole.
             most = len(lines)
@@ -51,12 +51,11 @@ class Outcome:
             wrong.append(f"{self.memory // MEGABYTE} MB where {limit // MEGABYTE} MB are allowed")
         return wrong
 
-    def _progress(self):
-        """The beginnings of lines that --progress writes to standard error."""
-        for style, begin in (("json", b"{"), ("openjd", b"openjd_")):
-            if style in self.command:
-                return begin
-        return b"\0"
+    def _is_progress(self, line):
+        """Whether --progress wrote the line, or a run of minutes, as it does into a log."""
+        begins = {"json": b"{", "openjd": b"openjd_"}
+        written = tuple(begin for style, begin in begins.items() if style in self.command)
+        return line.startswith(written) or re.match(rb"polyrecon: +\d+ %, ", line) is not None
 
     def _many_frames(self):
         return b"frames are missing or broken" in self.err
