@@ -33,12 +33,9 @@ constexpr std::array<PartName, 4> parts{{{Part::Mean, "", &Pass::mean},
                                          {Part::HalfB, " B", &Pass::half_b}}};
 
 /// Whether a frame in memory can have images of this role, other than further layers.
-bool is_taken(const RoleInfo& info) {
-  return info.feature || info.role == Role::Beauty || info.role == Role::Prior || info.role == Role::Alpha ||
-         info.role == Role::SampleCount;
-}
+bool is_taken(const RoleInfo& info) { return info.chosen && !info.on_request; }
 
-bool has_noise(Role role) { return role != Role::Alpha && role != Role::SampleCount; }
+bool has_noise(Role role) { return info_of(role).feature || info_of(role).values == Values::Radiance; }
 
 [[noreturn]] void refuse_name(const std::string& name) {
   throw Error(ExitCode::Usage, fmt::format("no image '{}'; there are: {}, and 'aov NAME' for further layers", name,

@@ -65,7 +65,7 @@ void require_one_layer_for_each(const std::vector<RoleMapping>& map, const std::
                     fmt::format("--map {} and --map {} name two layers for one role: remove one", words[i], words[j]));
 }
 
-ReadOptions read_options_of(const DenoiseOptions& o, const FrameList& list, const Params& params) {
+ReadOptions read_options_of(const DenoiseOptions& o, const Params& params, bool is_sequence) {
   ReadOptions read = o.read;
   std::vector<std::string> words;
   for (const std::string& role : o.roles)
@@ -74,9 +74,9 @@ ReadOptions read_options_of(const DenoiseOptions& o, const FrameList& list, cons
       words.push_back(role);
     }
   require_one_layer_for_each(read.map, words);
-  read.motion = list.radius > 0;
-  read.accept = [params, is_sequence = list.is_sequence, denoises = !denoiser_named(o).empty()](const std::string& path,
-                                                                                                FrameShape shape) {
+  read.motion = params.temporal.radius > 0;
+  read.accept = [params, is_sequence, denoises = !denoiser_named(o).empty()](const std::string& path,
+                                                                             FrameShape shape) {
     if (denoises) add_denoiser(shape);
     if (is_sequence)
       shape.other_channels =
@@ -96,6 +96,8 @@ Params with_options(Params params, const DenoiseOptions& o, const StepsChoice& s
   return steps.applied_to(std::move(params));
 }
 
+Quality quality_of(const DenoiseOptions& o) { return o.quality.value_or(Quality::Standard); }
+
 std::string name_of(Quality quality) {
   return std::find_if(qualities.begin(), qualities.end(), [&](const auto& q) { return q.quality == quality; })->name;
 }
@@ -109,6 +111,30 @@ std::string settings_of(const OptionSet& set, Quality quality, const Job& job) {
   return set.identity(resolved);
 }
 
+/// All of a job that its options decide, without its frames; looks at no file.
+Job resolve(const DenoiseOptions& o, int frame_radius, bool is_sequence) {
+  Job job;
+  job.limits = limits_of(o);
+  if (!o.outputs.sample_map.empty()) {
+    check_sample_map_options(o.sample_map);
+    job.sample_map = o.sample_map;
+  }
+  const StepsChoice steps = parse_steps(o.steps);
+  job.params = with_options(params_for(quality_of(o)), o, steps, frame_radius);
+  validate(job.params);
+  if (job.limits)
+    for (const Preset& preset : presets()) job.presets.push_back(with_options(preset.params, o, steps, frame_radius));
+  job.read = read_options_of(o, job.params, is_sequence);
+  job.make_denoiser = denoiser_of(o);
+  job.denoiser_options = o.denoiser;
+  job.contents = parse_contents(o.contents);
+  check_encoding(o.encoding);
+  job.encoding = o.encoding;
+  job.run = o.run;
+  job.is_sequence = is_sequence;
+  return job;
+}
+
 }  // namespace
 
 FrameLimits FrameLimits::after(double spent) const {
@@ -117,42 +143,19 @@ FrameLimits FrameLimits::after(double spent) const {
 }
 
 Job make_job(const DenoiseOptions& o, const OptionSet& set) {
-  Job job;
-  job.limits = limits_of(o);
-  if (!o.outputs.sample_map.empty()) {
-    check_sample_map_options(o.sample_map);
-    job.sample_map = o.sample_map;
-  }
+  check_options(o);  // before the disk is searched for frames
   FrameList list = list_frames(o);
-  const Quality quality = o.quality.value_or(Quality::Standard);
-  const StepsChoice steps = parse_steps(o.steps);
-  job.params = with_options(params_for(quality), o, steps, list.radius);
-  validate(job.params);
-  if (job.limits)
-    for (const Preset& preset : presets()) job.presets.push_back(with_options(preset.params, o, steps, list.radius));
-  job.read = read_options_of(o, list, job.params);
-  job.make_denoiser = denoiser_of(o);
-  job.denoiser_options = o.denoiser;
-  job.contents = parse_contents(o.contents);
-  check_encoding(o.encoding);
-  job.encoding = o.encoding;
-  job.run = o.run;
-  job.is_sequence = list.is_sequence;
+  Job job = resolve(o, list.radius, list.is_sequence);
+  for (const RoleMapping& mapping : job.read.map) job.map_patterns.push_back(FramePattern::parse(mapping.layer));
+  if (job.sample_map) job.cost_pattern = FramePattern::parse(job.sample_map->cost);
   job.frames = std::move(list.frames);
-  job.settings = settings_of(set, quality, job);
+  job.settings = settings_of(set, quality_of(o), job);
   return job;
 }
 
 void check_options(const DenoiseOptions& o) {
-  limits_of(o);
-  if (!o.outputs.sample_map.empty()) check_sample_map_options(o.sample_map);
   if (!o.frames.empty()) parse_frames(o.frames);
-  validate(with_options(params_for(o.quality.value_or(Quality::Standard)), o, parse_steps(o.steps),
-                        o.frame_radius.value_or(0)));
-  read_options_of(o, {}, {});
-  denoiser_of(o);
-  parse_contents(o.contents);
-  check_encoding(o.encoding);
+  resolve(o, o.frame_radius.value_or(0), false);
 }
 
 void check_files(const Job& job) {
@@ -166,8 +169,7 @@ void check_files(const Job& job) {
     require_endings(outputs);
     require_different_files({files.input, job.sample_map ? sample_map_for(job, files).cost : std::string()}, outputs);
   }
-  if (job.sample_map && !job.sample_map->cost.empty() && !FramePattern::parse(job.sample_map->cost))
-    require_readable(job.sample_map->cost);
+  if (job.sample_map && !job.sample_map->cost.empty() && !job.cost_pattern) require_readable(job.sample_map->cost);
   if (!job.is_sequence && job.run.wait <= 0) require_readable(job.frames.front().input);
   if (!job.run.may_replace())
     require_new(all_outputs, job.is_sequence ? ", or --skip-existing to do what is still missing" : "");
@@ -180,16 +182,16 @@ void load_denoiser(Job& job) {
 
 ReadOptions read_options_for(const Job& job, std::optional<int> frame) {
   ReadOptions read = job.read;
-  for (RoleMapping& mapping : read.map)
-    if (const auto pattern = FramePattern::parse(mapping.layer); pattern && frame) mapping.file = pattern->path(*frame);
+  for (std::size_t k = 0; k < read.map.size(); ++k)
+    if (const auto& pattern = job.map_patterns[k]; pattern && frame) read.map[k].file = pattern->path(*frame);
   return read;
 }
 
 SampleMapOptions sample_map_for(const Job& job, const FrameFiles& files) {
   SampleMapOptions options = *job.sample_map;
   if (files.frame) options.frame = *files.frame;
-  const auto pattern = FramePattern::parse(options.cost);
-  if (const auto number = files.number_in_names(); pattern && number) options.cost = pattern->path(*number);
+  if (const auto number = files.number_in_names(); job.cost_pattern && number)
+    options.cost = job.cost_pattern->path(*number);
   return options;
 }
 
@@ -198,8 +200,7 @@ std::vector<std::string> fixed_file_notes(const Job& job, const FrameSource& sou
   for (const RoleMapping& mapping : job.read.map)
     for (const FileInfo& file : source.files)
       if (file.path == mapping.layer && file.path != source.path) fixed.insert(file.path);
-  if (job.sample_map && !job.sample_map->cost.empty() && !FramePattern::parse(job.sample_map->cost))
-    fixed.insert(job.sample_map->cost);
+  if (job.sample_map && !job.sample_map->cost.empty() && !job.cost_pattern) fixed.insert(job.sample_map->cost);
   std::vector<std::string> notes;
   if (job.is_sequence)
     for (const std::string& path : fixed)

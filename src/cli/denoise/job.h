@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/common/frame_names.h"
 #include "cli/common/option_set.h"
 #include "cli/common/sample_map_options.h"
 #include "cli/denoise/frame_files.h"
@@ -31,6 +32,8 @@ struct Job {
   std::vector<FrameFiles> frames;
   bool is_sequence = false;  ///< A frame of a sequence that fails does not end the run.
   ReadOptions read;
+  std::vector<std::optional<FramePattern>> map_patterns;  ///< Of the files in read.map, in its order.
+  std::optional<FramePattern> cost_pattern;               ///< Of the file of costs of the sample map.
   Params params;  ///< If a pilot chooses the settings: those of standard quality.
   std::optional<FrameLimits> limits;
   std::vector<Params> presets;  ///< Settings that a pilot chooses from, as presets(); empty without limits.
