@@ -355,14 +355,7 @@ class FrameBuilder {
         frame.motion = times(take(wanted.mean, info.role, wanted.choice.mean, info.channels),
                              motion_factors(layer(wanted.choice.mean).pass));
         break;
-      case Role::SampleCount:  // taken first
-      case Role::Normal:       // features, above
-      case Role::Albedo:
-      case Role::Depth:
-      case Role::Visibility:
-      case Role::SpecularAlbedo:  // never chosen
-      case Role::Roughness:
-      case Role::Other:
+      default:  // sample counts, which are taken first; features are above, and other roles are never chosen
         break;
     }
   }
