@@ -37,6 +37,13 @@ def arguments(words):
         default="auto",
         help="way of extra samples: osl, a camera with a mask (Blender 5), or regions, rectangles",
     )
+    parser.add_argument(
+        "--own-passes",
+        choices=("first", "full"),
+        default="first",
+        help="samples of further passes that the file has switched on, such as Cryptomatte: first, those of the first "
+        "part, or full, the scene's, in a render of their own at the end, which no limit counts",
+    )
     options = parser.parse_args(words)
     if options.first_pass != 4 and (options.first_pass < 8 or options.first_pass % 8):
         parser.error(f"--first-pass {options.first_pass}: must be 4 or a multiple of 8")
@@ -49,13 +56,14 @@ def work(words):
     command.run_frames(
         "polyrecon-blender",
         options,
-        renderer_of(options, options.method),
+        renderer_of(options, options.method, options.own_passes),
         {
             "renderer": "Blender",
             "scene": str(options.scene.resolve()),
             "visibility": options.visibility,
             "view_layer": options.view_layer,
             "device": options.device,
+            "own_passes": options.own_passes,
         },
     )
 

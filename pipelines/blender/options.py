@@ -35,7 +35,7 @@ def add_common(parser):
     add_pass_timeout(parser, 3600)
 
 
-def renderer_of(options, method="auto"):
+def renderer_of(options, method="auto", own_passes="first"):
     """The BlenderRenderer of the options."""
     if not options.scene.is_file():
         raise DriverError(ExitCode.MISSING, f"{options.scene}: no such file")
@@ -48,4 +48,5 @@ def renderer_of(options, method="auto"):
         options.pass_timeout,
         options.view_layer,
         options.device,
+        own_passes,
     )

@@ -42,16 +42,27 @@ class BlenderRenderer(Renderer):
                  'auto'.
     visibility   The pass for that feature: 'shadow', 'ambient-occlusion' or None.
     view_layer   The name of the view layer; None: the first that is switched on.
-    device       'cpu', 'gpu', or 'auto': a graphics card if the scene renders on the GPU and there is one."""
+    device       'cpu', 'gpu', or 'auto': a graphics card if the scene renders on the GPU and there is one.
+    own_passes   The samples of passes that the file has switched on and only the user needs: 'first', those of the
+                 first part, or 'full', the scene's, in a render of their own at the end."""
 
     def __init__(
-        self, scene, blender=None, method="auto", visibility=None, timeout=3600.0, view_layer=None, device="auto"
+        self,
+        scene,
+        blender=None,
+        method="auto",
+        visibility=None,
+        timeout=3600.0,
+        view_layer=None,
+        device="auto",
+        own_passes="first",
     ):
         self.scene = pathlib.Path(scene).absolute()
         self.method = method
         self.visibility = visibility
         self.view_layer = view_layer
         self.device = device
+        self.completes = own_passes == "full"
         self.session = BlenderSession(blender, timeout)
         self.inputs = SceneInputs()
         self.overhead_seconds = OVERHEAD_SECONDS
@@ -99,7 +110,8 @@ class BlenderRenderer(Renderer):
             blur = " without motion blur, at one sample" if found["motion_blur"] else ""
             passes[VECTORS] = f"motion to the frames before and after; rendered once{blur}"
         if found["user_passes"]:
-            passes[", ".join(found["user_passes"])] = "switched on in the file; rendered once, in the first part"
+            when = f"at the end, {found['samples']} samples" if self.completes else "in the first part"
+            passes[", ".join(found["user_passes"])] = f"switched on in the file; rendered once, {when}"
         effects = (f"{name}: {_effect_text(value)}" for name, value in found["effects"].items())
         notes = []
         if found["effects"]["scripted drivers"]:
@@ -176,6 +188,18 @@ class BlenderRenderer(Renderer):
             taken[y0:y1, x0:x1] += render_pass.samples * inside
         means = {name: whole if _is_time(name) else whole / np.maximum(taken, 1) for name, whole in sums.items()}
         self._write(target, means, taken)
+
+    def add_own_passes(self, merged):
+        if not self.completes or not self.opened["user_passes"]:
+            return
+        # One sequence, of whatever length: there is no other part that its samples must not repeat.
+        channels, _ = self._render_once(first=0, samples=self.opened["samples"], user_passes=True)
+        self.inputs.check()
+        own = {name: values for name, values in channels.items() if not _is_time(name) and not self._serves_loop(name)}
+        exr.write(merged, {**exr.read(merged), **own})
+
+    def _serves_loop(self, name):
+        return _layer_of(name) in {*PART_LAYERS, VECTORS, "Debug Sample Count"}
 
     def _render_ahead(self, first, passes):
         """Yields each pass with its channels. While the caller processes one, the next is rendered. An error or an

@@ -124,10 +124,11 @@ class Reconstruction:
         }
 
     def merge_all(self, merged):
-        """Merges all parts into a file."""
+        """Merges all parts into a file, for the result."""
         a, b = (self._files(half) for half in HALVES)
         self.polyrecon.run("merge", *a, "--half-b", *b, "-o", merged, *UNCOMPRESSED, "--quiet")
         self.renderer.complete(merged)
+        self.renderer.add_own_passes(merged)
 
     def finish(self, settings):
         """Merges all parts, reconstructs them, and writes the outputs of the settings. Returns the mean relative MSE

@@ -84,7 +84,7 @@ class Renderer(abc.ABC):
     # the renderer has them. Set before the first frame.
     shot = False
 
-    completes = False  # Whether `complete` adds anything.
+    completes = False  # Whether `complete` or `add_own_passes` adds anything.
 
     @abc.abstractmethod
     def begin(self, frame: Optional[int]) -> Audit:
@@ -114,6 +114,10 @@ class Renderer(abc.ABC):
     def complete(self, merged: pathlib.Path) -> None:  # noqa: B027 (optional)
         """Adds to a file of merged parts what is rendered once for the frame, such as feature passes. They must not
         depend on the samples of the picture."""
+
+    def add_own_passes(self, merged: pathlib.Path) -> None:  # noqa: B027 (optional)
+        """Puts passes that only the user needs into the file of all parts. Called once for a result, so they may have
+        samples of their own."""
 
     def close(self) -> None:  # noqa: B027 (optional)
         """Ends processes in the background. Called once, also after an error."""

@@ -74,6 +74,7 @@ class Session:
             "path_guiding": bool(getattr(scene.cycles, "use_guiding", False)),
             "output": self.output,
             "sequence": self.sequence,
+            "samples": self.file_samples,
             "filter_overhang": camera.filter_overhang(scene),
             "files": self.files,
         }
@@ -93,7 +94,7 @@ class Session:
         if scene.render.engine != "CYCLES":
             raise RuntimeError(f"the scene's renderer is {scene.render.engine}, not Cycles")
         self.file_frame, self.file_seed = scene.frame_current, scene.cycles.seed
-        self.file_animates_seed = scene.cycles.use_animated_seed
+        self.file_animates_seed, self.file_samples = scene.cycles.use_animated_seed, scene.cycles.samples
         self.view_layer = self.choose_view_layer(view_layer)
         self.scene_device = scene.cycles.device
         self.device = devices.choose(scene, device)

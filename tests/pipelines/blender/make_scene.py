@@ -235,7 +235,8 @@ def simulating(scene):
 
 
 def user_passes(scene):
-    """Passes for compositing, and how the picture is to be written."""
+    """Passes for compositing, the samples that they may have, and how the picture is to be written."""
+    scene.cycles.samples = 64
     layer = scene.view_layers[0]
     layer.use_pass_z = layer.use_pass_object_index = layer.use_pass_diffuse_color = True
     settings = scene.render.image_settings

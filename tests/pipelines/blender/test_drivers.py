@@ -205,6 +205,22 @@ class Adaptive(SceneTest):
         names = {name.rpartition(".")[0].partition(".")[2] for name in channel_types(self.folder / "a.exr")}
         self.assertEqual(names, {"Combined", "Combined Error", "Depth", "Object Index", "Diffuse Color"})
 
+    def test_own_passes_have_all_samples_on_request(self):
+        scene, words = self.scene("user_passes"), ["--budget-spp", 8, "--first-pass", 4, "--quality", "draft", "--bpy"]
+        # The first part has half of these samples.
+        done = self.driver("render_passes.py", scene, "-o", "many.exr", "--spp", 512, "--parts", 2, "--bpy")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        found = {"many": exr.read(self.folder / "many.exr")}
+        for samples in ("first", "full"):
+            done = self.driver("adaptive.py", scene, "-o", f"{samples}.exr", *words, "--own-passes", samples)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            found[samples] = exr.read(self.folder / f"{samples}.exr")
+        np.testing.assert_array_equal(*(found[samples]["ViewLayer.Combined.R"] for samples in ("full", "first")))
+        self.assertEqual(set(found["full"]), set(found["first"]))
+        color = {samples: channels["ViewLayer.Diffuse Color.R"] for samples, channels in found.items()}
+        error = {samples: np.abs(color[samples] - color["many"]).mean() for samples in ("first", "full")}
+        self.assertLess(error["full"], error["first"] / 2)
+
     def test_what_is_missed_is_said_and_fails_only_on_request(self):
         scene = self.scene("user_passes")
         words = ["-o", "new/a.exr", "--outputs", "beauty", "--first-pass", 4, "--quality", "draft", "--bpy", "-q"]
