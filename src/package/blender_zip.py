@@ -2,7 +2,7 @@
 """Packs the Blender extension as one zip: the add-on with the wheel of polyrecon and those of the modules that
 Blender's Python lacks. Needs pip and the network.
 
-    python3 -m pip wheel --no-deps -w build/packages . && src/package/blender_zip.py build/packages/polyrecon-*.whl
+    src/package/wheel/wheel.sh && src/package/blender_zip.py build/packages/polyrecon-*.whl
     src/package/blender_zip.py WHEEL [ZIP]        # default: build/packages/polyrecon_blender.zip"""
 
 import pathlib
