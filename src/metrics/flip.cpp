@@ -78,8 +78,11 @@ Color hunt_lab_of(const Color& rgb) {
   return {lightness, 0.01 * lightness * 500 * (f[0] - f[1]), 0.01 * lightness * 200 * (f[1] - f[2])};
 }
 
+/// Not std::hypot: a program that calls it needs glibc 2.35, and Red Hat Enterprise Linux 9 has 2.34.
+double length(double x, double y) { return std::sqrt(x * x + y * y); }
+
 /// HyAB distance: the difference in lightness plus the Euclidean distance in chroma.
-double hyab(const Color& a, const Color& b) { return std::abs(a[0] - b[0]) + std::hypot(a[1] - b[1], a[2] - b[2]); }
+double hyab(const Color& a, const Color& b) { return std::abs(a[0] - b[0]) + length(a[1] - b[1], a[2] - b[2]); }
 
 /// Colour difference, 0 to 1, compressed so that small differences take most of the range.
 double color_error(const Color& a, const Color& b) {
@@ -175,7 +178,8 @@ struct Features {
 Image gradient_of(const Image& channel, const Taps& derivative, const Taps& gaussian) {
   Image out = convolve(channel, derivative, gaussian);
   const Image y = convolve(channel, gaussian, derivative);
-  for (std::size_t i = 0; i < out.pixels(); ++i) out.plane(0)[i] = std::hypot(out.plane(0)[i], y.plane(0)[i]);
+  for (std::size_t i = 0; i < out.pixels(); ++i)
+    out.plane(0)[i] = static_cast<Real>(length(out.plane(0)[i], y.plane(0)[i]));
   return out;
 }
 
