@@ -179,9 +179,16 @@ class LogAxis:
         return round(self.begin + (self.end - self.begin) * part, 1)
 
     def ticks(self):
-        """1, 2 and 5 times the powers of ten, more on a short axis: where each is, and its text."""
+        """1, 2 and 5 times the powers of ten, more on a short axis, even steps where these are fewer than three: where
+        each is, and its text."""
         decades = (self.high - self.low) / math.log(10)
         digits = (1,) if decades > 4 else (1, 2, 5) if decades > 1 else (1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 8)
         powers = range(math.floor(self.low / math.log(10)), math.ceil(self.high / math.log(10)) + 1)
         values = [digit * 10.0**power for power in powers for digit in digits]
-        return [{"at": self.at(v), "text": f"{v:g}"} for v in values if self.low <= math.log(v) <= self.high]
+        values = [value for value in values if self.low <= math.log(value) <= self.high]
+        if len(values) < 3:
+            low, high = math.exp(self.low), math.exp(self.high)
+            power = 10.0 ** math.floor(math.log10((high - low) / 5))
+            step = next(power * digit for digit in (1, 2, 5, 10) if power * digit >= (high - low) / 5)
+            values = [k * step for k in range(math.ceil(low / step), math.floor(high / step) + 1)]
+        return [{"at": self.at(value), "text": f"{value:g}"} for value in values]

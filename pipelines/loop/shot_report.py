@@ -64,7 +64,7 @@ def _make_page(result, polyrecon, page, images, folder):
     first = result.frames[0][1]
     rows = [_row(settings, frame, page) for settings, frame in result.frames]
     plots = [
-        _plot("estimated relative MSE", rows, "error"),
+        _plot("estimated relMSE", rows, "error"),
         _plot("samples per pixel", rows, "samples"),
         _plot("seconds of rendering and decisions", rows, "seconds"),
     ]
@@ -74,7 +74,9 @@ def _make_page(result, polyrecon, page, images, folder):
         "frame_name": "frame",
         "frames": [f"{row['number']}: {row['samples']:.3g} spp" for row in rows],
         "images": images,
-        "report": template_of(TEMPLATE).render(result=result, rows=rows, plots=plots, size=PLOT),
+        "report": template_of(TEMPLATE).render(
+            result=result, rows=rows, plots=plots, size=PLOT, has_pages=any(row["link"] for row in rows)
+        ),
     }
     write_text(folder / "page.json", json.dumps(description))
     polyrecon.run("view", "--page", folder / "page.json", "-o", folder / "page.html")

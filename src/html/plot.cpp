@@ -13,7 +13,17 @@ namespace polyrecon {
 namespace {
 
 constexpr double width = 1000, height = 620, left = 74, right = 16, top = 14, bottom = 52;
+/// A level that is so many times the highest point would squeeze all points into one end of the axis.
+constexpr double far = 3;
 constexpr double letter_width = 6.1, letter_height = 11;  // of the labels in pixels, for a sans-serif font of 11 px
+
+/// The next number from a step upwards that is 1, 2 or 5 times a power of ten.
+double round_step(double step) {
+  const double power = std::pow(10.0, std::floor(std::log10(step)));
+  for (const double digit : {1.0, 2.0, 5.0})
+    if (digit * power >= step * (1 - 1e-9)) return digit * power;
+  return 10 * power;
+}
 
 /// A logarithmic axis from the pixel `begin` to the pixel `end`.
 class LogAxis {
@@ -24,7 +34,8 @@ class LogAxis {
     high_ = std::log(high * margin);
   }
   double at(double value) const { return begin_ + (end_ - begin_) * (std::log(value) - low_) / (high_ - low_); }
-  /// 1, 2 and 5 times the powers of ten; only the powers on a long axis, more values on a short one.
+  /// 1, 2 and 5 times the powers of ten; only the powers on a long axis, more values on a short one. Where fewer than
+  /// three of these would be left, even steps.
   std::vector<double> ticks() const {
     std::vector<double> out;
     const double decades = (high_ - low_) / std::log(10.0);
@@ -36,6 +47,10 @@ class LogAxis {
         const double value = digit * std::pow(10.0, decade);
         if (std::log(value) >= low_ && std::log(value) <= high_) out.push_back(value);
       }
+    if (out.size() >= 3) return out;
+    out.clear();
+    const double low = std::exp(low_), high = std::exp(high_), step = round_step((high - low) / 5);
+    for (double k = std::ceil(low / step); k * step <= high; ++k) out.push_back(k * step);
     return out;
   }
 
@@ -58,7 +73,7 @@ class Labels {
 
   std::string place(double x, double y, const std::string& text, const std::string& color) {
     const double half = 0.5 * letter_width * static_cast<double>(text.size());
-    for (double distance = 8; distance < 170; distance += 9)
+    for (double distance = 10; distance < 170; distance += 9)
       for (int step = 0; step < 16; ++step) {
         const double angle = 2 * pi * step / 16;
         const double cx = x + std::cos(angle) * (distance + half * std::abs(std::cos(angle)));
@@ -201,17 +216,21 @@ std::string svg_of(const LogPlot& plot) {
     ys.add(y);
   }
   if (xs.high == 0) return "<p>No point has an error above zero: nothing to draw.</p>\n";
+  const auto near = [&](double value) { return value <= far * ys.high; };
+  Range all = ys;
   for (const auto& [name, value] : plot.levels)
-    if (std::isfinite(value) && value > 0) ys.add(value);
-  const LogAxis x(xs.low, xs.high, left, width - right), y(ys.low, ys.high, height - bottom, top);
+    if (std::isfinite(value) && value > 0 && near(value)) all.add(value);
+  const LogAxis x(xs.low, xs.high, left, width - right), y(all.low, all.high, height - bottom, top);
   std::string svg = fmt::format("<svg viewBox='0 0 {} {}' role='img'>\n", width, height) + axes(plot, x, y);
   for (const auto& [name, value] : plot.levels)
     if (std::isfinite(value) && value > 0)
       svg += fmt::format(
           "<line class='level' x1='{0}' x2='{1}' y1='{2:.1f}' y2='{2:.1f}'/><text "
           "class='level-name' x='{3}' y='{4:.1f}'>{5}</text>\n",
-          left, width - right, y.at(value), width - right - 4, y.at(value) - 5, escaped(name));
-  svg += polyline(plot.front, x, y, "front", "currentColor") + series_svg(plot, x, y) + "</svg>\n";
+          left, width - right, near(value) ? y.at(value) : top, width - right - 4,
+          near(value) ? y.at(value) - 5 : top + 13,
+          near(value) ? escaped(name) : fmt::format("{}: {:.3g}, above the scale", escaped(name), value));
+  svg += polyline(plot.front, x, y, "front-line", "currentColor") + series_svg(plot, x, y) + "</svg>\n";
   std::vector<std::pair<std::string, std::string>> names;
   for (const PlotSeries& series : plot.series)
     if (!series.points.empty()) names.emplace_back(series.name, series.color);
@@ -237,10 +256,12 @@ std::string svg_of(const FramePlot& plot) {
   };
   std::string svg =
       fmt::format("<svg viewBox='0 0 {} {}' role='img'>\n", width, lower) + upward_grid(plot.y_label, y, lower);
-  const int step = std::max(1, (last - first + 11) / 12);
-  for (int frame = first; frame <= last; frame += step)
+  const int step = std::max(1, static_cast<int>(round_step((last - first) / 12.0)));
+  for (int frame = first - (first % step + step) % step; frame <= last; frame += step) {
+    if (frame < first) continue;
     svg += fmt::format("<text class='tick' x='{:.1f}' y='{}' text-anchor='middle'>{}</text>\n", x(frame),
                        lower - bottom + 17, frame);
+  }
   svg += fmt::format("<text class='axis' x='{}' y='{}' text-anchor='middle'>{}</text>\n", (left + width - right) / 2,
                      lower - 12, escaped(plot.x_label));
   std::vector<std::pair<std::string, std::string>> names;
@@ -250,7 +271,8 @@ std::string svg_of(const FramePlot& plot) {
       if (!std::isfinite(p.value) || p.value <= 0) continue;
       path += fmt::format("{}{:.1f} {:.1f}", path.empty() ? "M" : " L", x(p.frame), y.at(p.value));
       points += fmt::format(
-          "<a href='{}'><circle cx='{:.1f}' cy='{:.1f}' r='4.5' fill='{}' class='point'><title>{}, frame {}: {:.4g}"
+          "<a href='{}' tabindex='-1'><circle cx='{:.1f}' cy='{:.1f}' r='4.5' fill='{}' class='point'><title>{}, frame "
+          "{}: {:.4g}"
           "</title></circle></a>\n",
           p.address, x(p.frame), y.at(p.value), series.color, escaped(series.name), p.frame, p.value);
     }

@@ -27,8 +27,9 @@ struct PlotSeries {
 struct LogPlot {
   std::string x_label, y_label;
   std::vector<PlotSeries> series;
-  std::vector<std::pair<double, double>> front;        ///< Drawn as a separate line, all of it.
-  std::vector<std::pair<std::string, double>> levels;  ///< Named horizontal lines.
+  std::vector<std::pair<double, double>> front;  ///< Drawn as a separate line, all of it.
+  std::vector<std::pair<std::string, double>>
+      levels;  ///< Named horizontal lines; those far above all points are drawn at the upper end, with their values.
 };
 
 /// A bar for each row, made of parts.
@@ -42,7 +43,8 @@ struct StackedBars {
   std::vector<Row> rows;
 };
 
-/// A line for each image over the numbers of frames, with a logarithmic axis upwards.
+/// A line for each image over the numbers of frames, with a logarithmic axis upwards. Tab skips its points: there can
+/// be hundreds, and the viewer has a slider over the frames.
 struct FramePlot {
   std::string x_label, y_label;
   struct Point {

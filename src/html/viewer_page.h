@@ -24,7 +24,8 @@ struct MapScale {
   bool logarithmic = false;
 };
 
-enum class MapColors { Inferno, Magma };
+/// Signed: blue below zero, black at zero, orange above.
+enum class MapColors { Inferno, Magma, Signed };
 
 /// A layer of an image in one frame.
 struct ViewedLayer {

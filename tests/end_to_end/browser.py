@@ -23,6 +23,33 @@ KEYS = {"Left": "\ue012", "Up": "\ue013", "Right": "\ue014", "Down": "\ue015", "
 KEYS |= {"Escape": "\ue00c", "Enter": "\ue007", "Home": "\ue011", "End": "\ue010"}
 ELEMENT = "element-6066-11e4-a52e-4f735466cecf"
 
+# The worst contrast of a text and its ground, and where it is.
+CONTRAST = """
+const light = (c) => { c = c / 255; return c <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4; };
+const parse = (text) => text.match(/[\\d.]+/g).map(Number);
+const luminanceOf = (c) => 0.2126 * light(c[0]) + 0.7152 * light(c[1]) + 0.0722 * light(c[2]);
+const ground = (e) => {
+  for (; e; e = e.parentElement) {
+    const c = parse(getComputedStyle(e).backgroundColor);
+    if ((c[3] ?? 1) > 0.99) return c;
+  }
+  return [255, 255, 255];
+};
+const hasText = (e) => [...e.childNodes].some((n) => n.nodeType === 3 && n.textContent.trim());
+let worst = 99, where = '';
+for (const e of document.querySelectorAll('body *')) {
+  if (!e.checkVisibility() || e.disabled || !hasText(e)) continue;
+  const style = getComputedStyle(e), below = ground(e);
+  let part = 1;
+  for (let one = e; one; one = one.parentElement) part *= getComputedStyle(one).opacity;
+  const color = parse(e instanceof SVGElement ? style.fill : style.color).slice(0, 3);
+  const seen = color.map((c, i) => c * part + below[i] * (1 - part));
+  const a = luminanceOf(seen), b = luminanceOf(below);
+  const ratio = (Math.max(a, b) + 0.05) / (Math.min(a, b) + 0.05);
+  if (ratio < worst) { worst = ratio; where = e.outerHTML.slice(0, 80); }
+}
+return [worst, where]"""
+
 
 class Browser:
     """A window. Its pages have one pixel of the screen for each of CSS."""
@@ -78,6 +105,10 @@ class Browser:
             picture = oiio.ImageBuf(file.name).get_pixels(oiio.UINT8)
         return picture[:, :, :3].astype(int)
 
+    def worst_contrast(self):
+        """The lowest contrast of a visible text and its ground, and the element that has it."""
+        return self.run(CONTRAST)
+
     def print_pages(self):
         """The number of pages that it prints."""
         pdf = base64.b64decode(self._call("Print"))
@@ -103,6 +134,10 @@ class Chromium(Browser):
     def command(self, name, **parameters):
         """A command of the browser's DevTools protocol."""
         return call("POST", f"{self._address}/goog/cdp/execute", {"cmd": name, "params": parameters})
+
+    def resize(self, width, height):
+        size = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False}
+        self.command("Emulation.setDeviceMetricsOverride", **size)
 
     def log(self):
         """What the page said to the console since the last call: errors of scripts, violations of its policy."""
@@ -237,8 +272,7 @@ def start_chromium(stack, width, height, dark, wait):
     session = call("POST", f"{address}/session", {"capabilities": {"alwaysMatch": wanted}})["sessionId"]
     stack.callback(call, "DELETE", f"{address}/session/{session}", {})
     window = Chromium(address, session)
-    size = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False}
-    window.command("Emulation.setDeviceMetricsOverride", **size)
+    window.resize(width, height)
     scheme = {"name": "prefers-color-scheme", "value": "dark" if dark else "light"}
     window.command("Emulation.setEmulatedMedia", features=[scheme])
     return window

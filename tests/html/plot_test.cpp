@@ -53,6 +53,37 @@ TEST(Plot, AxesHoldTheSeparateLine) {
   EXPECT_LT(after[1] - after[0], 0.2 * (before[1] - before[0]));
 }
 
+TEST(Plot, ALevelFarAboveThePointsDoesNotSqueezeThem) {
+  LogPlot plot{"x", "y", {{"ours", "#000", Marker::Disc, false, {{1, 1, "", ""}, {2, 1.5, "", ""}}}}, {}, {}};
+  const std::regex disc("cy='([0-9.]+)'");
+  const auto heights = [&](const std::string& svg) {
+    std::vector<double> out;
+    for (std::sregex_iterator at(svg.begin(), svg.end(), disc), end; at != end; ++at)
+      out.push_back(std::stod((*at)[1]));
+    return out;
+  };
+  const auto before = heights(svg_of(plot));
+  plot.levels = {{"noisy", 100}};
+  const std::string svg = svg_of(plot);
+  EXPECT_EQ(heights(svg), before);
+  EXPECT_NE(svg.find("noisy: 100, above the scale"), std::string::npos);
+  plot.levels = {{"noisy", 2}};
+  EXPECT_NE(heights(svg_of(plot)), before);
+}
+
+TEST(Plot, FramesHaveRoundTicksAndAShortAxisHasThree) {
+  FramePlot plot{"frame", "error", {{"ours", "#000", {}}}};
+  for (int frame = -3; frame <= 96; ++frame) plot.series[0].points.push_back({frame, 15.0 + 0.01 * frame, "#"});
+  const std::string svg = svg_of(plot);
+  const std::regex tick("class='tick' x='[-0-9.]+' y='[-0-9.]+' text-anchor='(middle|end)'>([-0-9.e]+)<");
+  std::vector<std::string> frames, values;
+  for (std::sregex_iterator at(svg.begin(), svg.end(), tick), end; at != end; ++at)
+    ((*at)[1] == "middle" ? frames : values).push_back((*at)[2]);
+  EXPECT_EQ(frames, (std::vector<std::string>{"0", "10", "20", "30", "40", "50", "60", "70", "80", "90"}));
+  EXPECT_GE(values.size(), 3u);
+  EXPECT_EQ(count(svg, "tabindex='-1'"), 100u);  // Tab skips the points
+}
+
 TEST(Plot, NamesCannotBreakOut) {
   const std::string evil = "<script>'\"&";
   const LogPlot plot{evil, evil, {{evil, "#000", Marker::Diamond, false, {{1, 1, evil, evil}}}}, {}, {{evil, 1}}};

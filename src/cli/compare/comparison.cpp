@@ -58,6 +58,21 @@ std::string note_of_unrelated(const std::string& path, const Image& x, const Ima
                      found);
 }
 
+/// A note where pixels of the reference are not finite; empty where all are.
+std::string note_of_bad_reference(const std::string& path, const std::string& layer, const Image& r) {
+  std::size_t bad = 0;
+  for (std::size_t i = 0; i < r.pixels(); ++i)
+    for (int c = 0; c < r.channels(); ++c)
+      if (!std::isfinite(r.plane(c)[i])) {
+        ++bad;
+        break;
+      }
+  if (bad == 0) return {};
+  return fmt::format(
+      "{}: layer '{}': {} of {} pixels are not finite, so there are no figures: render the reference anew", path, layer,
+      bad, r.pixels());
+}
+
 Comparison compare_layers(const LayeredFile& image, const Layer& layer, const LayeredFile& reference,
                           const Layer& reference_layer, bool with_images, Progress& progress) {
   Image x = read_radiance(image, layer), r = read_radiance(reference, reference_layer);
@@ -70,7 +85,8 @@ Comparison compare_layers(const LayeredFile& image, const Layer& layer, const La
   found.image = image.info.path;
   found.layer = layer.name;
   found.score = score(x, r, known.variance);
-  for (const std::string& note : {note_of_unrelated(image.info.path, x, r), known.note})
+  for (const std::string& note : {note_of_unrelated(image.info.path, x, r),
+                                  note_of_bad_reference(reference.info.path, reference_layer.name, r), known.note})
     if (!note.empty()) found.notes.push_back(note);
   Image map = flip(x, r, progress);
   found.flip = std::accumulate(map.plane(0), map.plane(0) + map.pixels(), 0.0) / static_cast<double>(map.pixels());

@@ -16,7 +16,12 @@ using Json = nlohmann::ordered_json;
 
 Json number(double v) { return std::isfinite(v) ? Json(v) : Json(); }
 
-/// Each note once.
+}  // namespace
+
+std::string figure_text(const char* format, double value) {
+  return std::isfinite(value) ? fmt::format(fmt::runtime(format), value) : "nan";
+}
+
 std::vector<std::string> notes_of(const std::vector<Comparison>& comparisons) {
   std::vector<std::string> notes;
   for (const Comparison& c : comparisons)
@@ -25,13 +30,12 @@ std::vector<std::string> notes_of(const std::vector<Comparison>& comparisons) {
   return notes;
 }
 
-}  // namespace
-
 std::string comparison_text(const std::vector<Comparison>& comparisons) {
   std::string text;
   for (const Comparison& c : comparisons)
-    text += text_line("{}: {}  relMSE {:.5f}  trimmed {:.5f}  energy {:+.5f}  FLIP {:.4f}  bad {}", c.image,
-                      shown_layer(c), c.score.relative_mse, c.score.trimmed, c.score.energy, c.flip, c.score.bad);
+    text += text_line("{}: {}  relMSE {}  trimmed {}  energy {}  FLIP {:.4f}  bad {}", c.image, shown_layer(c),
+                      figure_text("{:.5f}", c.score.relative_mse), figure_text("{:.5f}", c.score.trimmed),
+                      figure_text("{:+.5f}", c.score.energy), c.flip, c.score.bad);
   for (const std::string& note : notes_of(comparisons)) text += text_line("note: {}", note);
   return text;
 }
@@ -61,8 +65,9 @@ std::string sequences_text(const std::string& image, const std::vector<Compariso
     for (const Comparison& c : comparisons)
       if (c.layer == layer) frames.push_back(&c);
     const SequenceFigures f = sequence_figures(frames);
-    text += text_line("{}: {}  {} frames  relMSE {:.5f}  trimmed {:.5f}  energy {:+.5f}  FLIP {:.4f}  bad {}{}", image,
-                      shown_layer(*frames.front()), frames.size(), f.relative_mse, f.trimmed, f.energy, f.flip, f.bad,
+    text += text_line("{}: {}  {} frames  relMSE {}  trimmed {}  energy {}  FLIP {:.4f}  bad {}{}", image,
+                      shown_layer(*frames.front()), frames.size(), figure_text("{:.5f}", f.relative_mse),
+                      figure_text("{:.5f}", f.trimmed), figure_text("{:+.5f}", f.energy), f.flip, f.bad,
                       f.flicker ? fmt::format("  flicker {:.6f}", *f.flicker) : std::string());
   }
   return text;

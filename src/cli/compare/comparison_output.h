@@ -11,6 +11,12 @@
 
 namespace polyrecon {
 
+/// A figure in this format, "nan" without a sign where it does not exist.
+std::string figure_text(const char* format, double value);
+
+/// The notes of all comparisons, each once.
+std::vector<std::string> notes_of(const std::vector<Comparison>& comparisons);
+
 /// A line for each comparison.
 std::string comparison_text(const std::vector<Comparison>& comparisons);
 

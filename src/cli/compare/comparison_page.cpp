@@ -17,6 +17,7 @@ namespace polyrecon {
 namespace {
 
 constexpr std::size_t worst_count = 8;  // of each image and frame
+constexpr std::size_t bad_count = 4;    // of them that are not finite
 constexpr int worst_distance = 6;       // pixels
 
 std::vector<std::string> texts(const std::vector<int>& frames) {
@@ -52,8 +53,30 @@ const std::vector<Column>& columns() {
   return all;
 }
 
-std::string figure_text(const Column& column, const SequenceFigures& figures) {
-  return fmt::format(fmt::runtime(column.format), column.value(figures));
+/// A figure that does not exist, such as the trimmed error of a few pixels, is a dash.
+std::string cell_text(const Column& column, const SequenceFigures& figures) {
+  const double value = column.value(figures);
+  return std::isfinite(value) ? figure_text(column.format, value) : "\u2013";
+}
+
+/// Text as a value of an address's fragment.
+std::string in_address(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    const bool plain = (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z');
+    plain ? out.append(1, c) : out.append(fmt::format("%{:02X}", byte));
+  }
+  return out;
+}
+
+/// Whether a pixel has a channel that is not finite.
+Image bad_pixels(const Image& image) {
+  Image out(image.width(), image.height(), 1);
+  for (int c = 0; c < image.channels(); ++c)
+    for (std::size_t i = 0; i < image.pixels(); ++i)
+      if (!std::isfinite(image.plane(c)[i])) out.plane(0)[i] = 1;
+  return out;
 }
 
 }  // namespace
@@ -112,6 +135,8 @@ void ComparisonPage::add(std::size_t image, std::size_t frame, const std::vector
     put(image, {frame}, flip, c.flip_map);
   }
   const Comparison& main = comparisons.front();
+  for (const WorstPixel& pixel : worst_pixels(bad_pixels(main.picture), bad_count, worst_distance))
+    worst_.push_back({image, frame, main.x + pixel.x, main.y + pixel.y, INFINITY});
   for (const WorstPixel& pixel : worst_pixels(main.error, worst_count, worst_distance))
     worst_.push_back({image, frame, main.x + pixel.x, main.y + pixel.y, pixel.value});
   if (estimated.empty()) return;
@@ -151,19 +176,19 @@ std::string ComparisonPage::figures(const std::vector<std::vector<Comparison>>& 
   for (const auto& row : rows) {
     const std::size_t image = row.first;
     const SequenceFigures& figures = row.second;
+    const std::string picture = main ? "" : "&amp;layer=" + in_address(layer);
     const auto to = [&](const char* what) -> std::string {
       if (what == std::string("relMSE") || what == std::string("FLIP"))
-        return main ? link(image, 0, fmt::format("&amp;layer={}", what)) : "";
-      if (what == std::string("energy")) return main ? link(image, 0, "&amp;mode=difference&amp;kind=relative") : "";
+        return link(image, 0, "&amp;layer=" + in_address(map_slot(what, layer, main)));
+      if (what == std::string("energy")) return link(image, 0, picture + "&amp;mode=difference&amp;kind=relative");
       return "";
     };
-    html += main ? fmt::format("<tr><td><a href=\"{}\">{}</a></td>", link(image, 0, ""), escaped(names_[image]))
-                 : fmt::format("<tr><td>{}</td>", escaped(names_[image]));
+    html += fmt::format("<tr><td><a href=\"{}\">{}</a></td>", link(image, 0, picture), escaped(names_[image]));
     for (const Column& column : columns()) {
       if (!flickers && column.name == std::string("flicker")) continue;
       const double value = column.value(figures);
-      const std::string text = figure_text(column, figures), address = to(column.name);
-      const auto looks_alike = [&](const auto& other) { return figure_text(column, other.second) == text; };
+      const std::string text = cell_text(column, figures), address = to(column.name);
+      const auto looks_alike = [&](const auto& other) { return cell_text(column, other.second) == text; };
       const auto is_better = [&](const auto& other) {
         return !looks_alike(other) && std::abs(column.value(other.second)) < std::abs(value);
       };
@@ -214,11 +239,12 @@ std::string ComparisonPage::worst_section() const {
     for (const Worst& pixel : worst) {
       if (pixel.image != image || count == worst_count) continue;
       ++count;
-      html += fmt::format(
-          "<li><a href=\"{}\">{}{}, {}</a>: {:.4g}</li>",
-          link(image, pixel.frame,
-               fmt::format("&amp;pixel=[{0},{1}]&amp;x={0}.5&amp;y={1}.5&amp;zoom=24", pixel.x, pixel.y)),
-          frames_.empty() ? "" : fmt::format("frame {}: ", frames_[pixel.frame]), pixel.x, pixel.y, pixel.value);
+      html +=
+          fmt::format("<li><a href=\"{}\">{}{}, {}</a>: {}</li>",
+                      link(image, pixel.frame,
+                           fmt::format("&amp;pixel=[{0},{1}]&amp;x={0}.5&amp;y={1}.5&amp;zoom=24", pixel.x, pixel.y)),
+                      frames_.empty() ? "" : fmt::format("frame {}: ", frames_[pixel.frame]), pixel.x, pixel.y,
+                      std::isfinite(pixel.value) ? fmt::format("{:.4g}", pixel.value) : "not finite");
     }
     html += count == 0 ? "<li>no difference</li></ol></div>\n" : "</ol></div>\n";
   }
@@ -264,6 +290,10 @@ std::string ComparisonPage::html(const std::vector<std::vector<Comparison>>& com
       fmt::format("<p class=\"soft\">relMSE: mean of ((x - r)² - Var r) / (r² + {:g}); ", relmse_floor) +
       "trimmed: without the 0.1 % worst pixels; energy: mean(x) / mean(r) - 1; FLIP: the difference that a viewer "
       "notices when the pictures alternate, 0 to 1. The links show the figures of each pixel.</p>\n";
+  std::vector<Comparison> all;
+  for (const std::vector<Comparison>& of_image : comparisons)
+    for (const Comparison& c : of_image) all.push_back(without_images(c));
+  for (const std::string& note : notes_of(all)) report += fmt::format("<p>{}</p>\n", escaped(note));
   for (const std::string& layer : layers) report += figures(comparisons, layer);
   report += worst_section() + over_time(comparisons) + reliability_section();
   return page_.html("polyrecon compare", report);

@@ -40,6 +40,25 @@ bool is_map(const LayeredFile& file, const Layer& layer) {
   return is_error_map(file) || is_variance(layer.companion) || (!is_color(layer) && layer.channels.size() != 3);
 }
 
+/// A file's layers with the alpha channels, which layers hold apart: data such as the coverage of Cryptomatte stay with
+/// their layer, the alpha of a picture is a layer of its own.
+LayeredFile with_alphas(LayeredFile file) {
+  std::vector<Layer> alphas;
+  const Layer* picture = color_layer(file);
+  for (Layer& layer : file.layers) {
+    if (layer.alpha.empty() || layer.companion != Companion::Mean) continue;
+    if (!is_color(layer)) layer.channels.push_back(layer.alpha);
+    if (&layer != picture) continue;
+    Layer alpha = layer;
+    alpha.name = "alpha of " + layer.name;
+    alpha.channels = {layer.alpha};
+    alpha.role = Role::Alpha;
+    alphas.push_back(std::move(alpha));
+  }
+  file.layers.insert(file.layers.end(), alphas.begin(), alphas.end());
+  return file;
+}
+
 /// The wanted layers of a file, the one that is shown first at the beginning.
 std::vector<Wanted> wanted_layers(const LayeredFile& file, const std::vector<std::string>& names) {
   std::vector<Wanted> found;
@@ -88,10 +107,28 @@ Placed selected(const Image& image, int x, int y, const ViewSelection& selection
   return {reduced(crop(image, inside), step), part.x0 / step, part.y0 / step};
 }
 
+/// The scale of values with a sign, zero in its middle. The largest ones do not count, as in log_range.
+MapScale signed_scale(const Image& values) {
+  Image magnitudes(values.width(), values.height() * values.channels(), 1);
+  for (std::size_t i = 0; i < magnitudes.pixels(); ++i)
+    magnitudes.plane(0)[i] = std::abs(values.plane(static_cast<int>(i / values.pixels()))[i % values.pixels()]);
+  const double high = log_range(magnitudes).high;
+  return {-high, high, false};
+}
+
+bool has_negatives(const Image& values) {
+  for (int c = 0; c < values.channels(); ++c)
+    if (std::any_of(values.plane(c), values.plane(c) + values.pixels(),
+                    [](Real v) { return std::isfinite(v) && v < 0; }))
+      return true;
+  return false;
+}
+
 /// A scale for a layer in false colours that holds for what the layer is, not for the values of one file.
 std::optional<MapScale> scale_of(const Layer& layer, const Image& values) {
   if (layer.name == "order") return MapScale{-1, 2, false};
   if (layer.name == "priorshare") return MapScale{0, 1, false};
+  if (layer.role != Role::Depth && has_negatives(values)) return signed_scale(values);
   Image magnitudes(values.width(), values.height(), 1);
   for (std::size_t i = 0; i < values.pixels(); ++i) {
     double sum = 0;
@@ -136,6 +173,7 @@ ViewedLayer viewed_layer(const LayeredFile& file, const Wanted& wanted, const Pl
                      is_map(file, layer)};
   if (!wanted.is_picture && viewed.slot.empty()) viewed.slot = "RGB";
   if (viewed.is_map) viewed.scale = scale_of(layer, placed.image);
+  if (viewed.scale && viewed.scale->low == -viewed.scale->high) viewed.colors = MapColors::Signed;
   // These tell most about a pixel of the picture: its noise, its samples, and the maps of a file that has no picture.
   const Layer* picture = color_layer(file);
   viewed.listed =
@@ -214,7 +252,7 @@ std::vector<std::string> add_files(ViewerPage& page, const std::vector<ViewedFil
   for (const Importance importance : {Importance::First, Importance::Maps, Importance::Rest}) {
     if (importance != Importance::First && selection.first_only) break;
     for (const ViewedFile& viewed : files) {
-      const LayeredFile file = open_layers(viewed.path);
+      const LayeredFile file = with_alphas(open_layers(viewed.path));
       std::vector<Wanted> layers;
       for (const Wanted& wanted : wanted_layers(file, selection.layers))
         if (wanted.importance == importance) layers.push_back(wanted);

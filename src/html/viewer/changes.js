@@ -69,7 +69,9 @@ function zoomTo(zoom) {
 /** Moves the held pixel by keys; the picture follows where it would leave the cell. */
 function movePixel(dx, dy) {
   const [x0, y0, w, h] = extentOf(state.frame);
-  const from = spotted() ?? [x0 + Math.floor(w / 2) - dx, y0 + Math.floor(h / 2) - dy];
+  const window = scene.layers[layerFor(state.a, state.frame, state.slot)]?.window ?? [x0, y0, w, h];
+  const middle = [0, 1].map((axis) => window[axis] + Math.floor(window[axis + 2] / 2));
+  const from = spotted() ?? [middle[0] - dx, middle[1] - dy];
   const pixel = [Math.min(Math.max(from[0] + dx, x0), x0 + w - 1), Math.min(Math.max(from[1] + dy, y0), y0 + h - 1)];
   const changes = { pixel };
   const [cell] = cells();

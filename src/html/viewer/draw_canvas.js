@@ -5,7 +5,7 @@
 class CanvasPainter {
   constructor(canvas) {
     this.canvas = canvas;
-    this.context = canvas.getContext('2d', { alpha: false });
+    this.context = canvas.getContext('2d', { alpha: false, willReadFrequently: true });
     this.largest = Infinity;
   }
 

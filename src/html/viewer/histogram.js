@@ -26,8 +26,12 @@ function showHistogram() {
   canvas.width = Math.max(1, Math.round(box.width * ratio));
   canvas.height = Math.max(1, Math.round(box.height * ratio));
   const context = canvas.getContext('2d');
-  const high = Math.max(statistics.max, 1e-7);
-  const low = Math.min(Math.max(statistics.percentile(0.002), high * 1e-7), high * 0.5);
+  $('histogram-name').textContent = `Histogram: ${nameOf(cell.image)}`;
+  showStatistics(statistics, layer);
+  const ends = statistics.range();
+  showEnds(ends ? [short(ends[0], 3), 'logarithmic; heights: square roots', short(ends[1], 3)] : ['No value is above zero.']);
+  if (!ends) return;
+  const [low, high] = ends;
   const bins = 128;
   const all = statistics.histogram(low, high * 1.0001, bins);
   const colors = layer.planes.length === 3 ? ['#ff5a5a', '#4fd06a', '#6a9cff'] : ['#ddd', '#f7b955', '#8fd3d6', '#c79bf2'];
@@ -55,23 +59,28 @@ function showHistogram() {
     context.fillStyle = '#fff';
     context.fillRect(Math.round(white * canvas.width), 0, ratio, canvas.height);
   }
-  $('histogram-name').textContent = `Histogram: ${nameOf(cell.image)}`;
-  $('histogram-ends').replaceChildren(...[short(low, 3), 'logarithmic; heights: square roots', short(high, 3)].map((text) => {
-    const span = document.createElement('span');
-    span.textContent = text;
-    return span;
-  }));
-  showStatistics(statistics, layer);
+}
+
+/** Writes texts below the histogram. */
+function showEnds(texts) {
+  $('histogram-ends').replaceChildren(
+    ...texts.map((text) => {
+      const span = document.createElement('span');
+      span.textContent = text;
+      return span;
+    }),
+  );
 }
 
 function showStatistics(statistics, layer) {
   const percent = (count) => (count ? ` (${short((100 * count) / statistics.pixels, 2)} %)` : '');
+  const finite = (value) => (Number.isFinite(value) ? short(value) : 'none'); // of a layer that has no finite sample
   const count = (number) => `${number.toLocaleString('en')}${percent(number)}`;
   const lines = [
     ['size', `${layer.width} × ${layer.height}`],
-    ['lowest', short(statistics.min)],
-    ['mean', short(statistics.mean)],
-    ['highest', short(statistics.max)],
+    ['lowest', finite(statistics.min)],
+    ['mean', finite(statistics.mean)],
+    ['highest', finite(statistics.max)],
     ['NaN', count(statistics.nan), statistics.nan],
     ['infinite', count(statistics.infinite), statistics.infinite],
     ['negative', count(statistics.negative)],

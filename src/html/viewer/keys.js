@@ -29,8 +29,14 @@ const keys = [
       ]
     : []),
   { keys: ['Escape'], stage: true, text: 'Escape', does: 'let the pixel go', act: () => set({ pixel: null }) },
-  { keys: ['?', 'h'], text: '?', does: 'this list', act: () => $('keys').showModal() },
+  { keys: ['?', 'h'], text: '?', does: 'this list', act: showKeys },
 ];
+
+/** The focus is at the beginning: on the button at the end, a small window would show the end of the list. */
+function showKeys() {
+  $('keys').showModal();
+  $('keys-title').focus();
+}
 
 function pressed(event) {
   if (event.ctrlKey || event.altKey || event.metaKey || $('keys').open) return;

@@ -11,7 +11,8 @@ function rangeOf(slot, layer) {
   }
   const statistics = statisticsOf(layer);
   const high = statistics.percentile(0.999) || 1;
-  return [Math.max(statistics.percentile(0.01), high * 1e-4), high, true];
+  const low = Math.max(statistics.percentile(0.01), high * 1e-4);
+  return [low < high ? low : high / 10, high, true];
 }
 
 const differenceScale = () => `difference ${state.kind}`;

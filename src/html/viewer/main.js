@@ -58,7 +58,7 @@ function start() {
   $('smaller').addEventListener('click', () => zoomInTheMiddle(0.5));
   $('larger').addEventListener('click', () => zoomInTheMiddle(2));
   $('link').addEventListener('click', copyLink);
-  $('help').addEventListener('click', () => $('keys').showModal());
+  $('help').addEventListener('click', showKeys);
   $('frame').addEventListener('input', (event) => setFrame(Number(event.target.value)));
   $('play').addEventListener('click', play);
   $('values').addEventListener('click', (event) => {

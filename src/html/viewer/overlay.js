@@ -7,6 +7,7 @@ function drawOverlay() {
   context.clearRect(0, 0, canvas.width, canvas.height);
   const ratio = window.devicePixelRatio || 1;
   const all = cells();
+  const titleOf = (image, frame = state.frame) => [nameOf(image), otherLayerOf(image, frame)].filter(Boolean).join(': ');
   const label = (text, x, y, align) => {
     context.font = `${12 * ratio}px system-ui, "DejaVu Sans", sans-serif`;
     context.textAlign = align;
@@ -47,7 +48,7 @@ function drawOverlay() {
       }
     }
     context.restore();
-    if (all.length > 1) label(state.mode === 'sheet' ? scene.frames[cell.frame] : nameOf(cell.image), cell.x, cell.y, 'left');
+    if (all.length > 1) label(state.mode === 'sheet' ? scene.frames[cell.frame] : titleOf(cell.image), cell.x, cell.y, 'left');
   }
   const [cell] = all;
   if (state.mode === 'wipe') {
@@ -56,11 +57,11 @@ function drawOverlay() {
     context.fillRect(x - ratio, 0, 2 * ratio, cell.height);
     context.fillStyle = '#000';
     context.fillRect(x + ratio, 0, ratio, cell.height);
-    label(nameOf(state.a), x - 2 * ratio, 0, 'right');
-    label(nameOf(state.b), x + 2 * ratio, 0, 'left');
+    label(titleOf(state.a), x - 2 * ratio, 0, 'right');
+    label(titleOf(state.b), x + 2 * ratio, 0, 'left');
   }
-  if (state.mode === 'difference') label(`A: ${nameOf(state.a)}   B: ${nameOf(state.b)}`, 0, 0, 'left');
-  if (state.mode === 'blink' || state.mode === 'single') label(nameOf(cell.image), 0, 0, 'left');
+  if (state.mode === 'difference') label(`A: ${titleOf(state.a)}   B: ${titleOf(state.b)}`, 0, 0, 'left');
+  if (state.mode === 'blink' || state.mode === 'single') label(titleOf(cell.image), 0, 0, 'left');
 }
 
 /** The values in each pixel, where pixels are large enough to hold them. */

@@ -15,7 +15,7 @@ function currentScale() {
   const look = lookOf(first);
   if (!look.falseColor) return null;
   const { slot, label } = first.info;
-  return { key: slot, name: label, range: rangeOf(slot, first), ramp: look.ramp, signed: false };
+  return { key: slot, name: label, range: rangeOf(slot, first), ramp: look.ramp, signed: look.ramp === signedRamp };
 }
 
 let scaleBounds = null; // of what the handles can reach, fixed while the reader drags

@@ -22,20 +22,6 @@ const halfValues = (() => {
   return values;
 })();
 
-/** A half float that is close to a number: histograms count these. */
-const nearHalf = (() => {
-  const number = new Float32Array(1);
-  const bits = new Uint32Array(number.buffer);
-  return (value) => {
-    number[0] = value;
-    const sign = (bits[0] >>> 16) & 32768;
-    const exponent = ((bits[0] >>> 23) & 255) - 112;
-    if (exponent === 143) return sign | 31744 | (bits[0] & 8388607 ? 512 : 0);
-    if (exponent >= 31) return sign | 31743;
-    return exponent <= 0 ? sign | Math.round(Math.abs(value) * 2 ** 24) : sign | (exponent << 10) | ((bits[0] >>> 13) & 1023);
-  };
-})();
-
 /** What Layer.marks says of a pixel. */
 const Mark = { NaN: 1, Infinite: 2 };
 
@@ -151,6 +137,12 @@ function extentOf(frame) {
   const x1 = Math.max(...windows.map((w) => w[0] + w[2]));
   const y1 = Math.max(...windows.map((w) => w[1] + w[3]));
   return [x0, y0, x1 - x0, y1 - y0];
+}
+
+/** The label of the layer that is shown of an image where it has none of the slot that is looked at; empty otherwise. */
+function otherLayerOf(image, frame) {
+  const index = layerFor(image, frame, state.slot);
+  return index < 0 || scene.layers[index].slot === state.slot ? '' : scene.layers[index].label;
 }
 
 const nameOf = (image) => scene.images[image]?.name ?? '';

@@ -1,16 +1,29 @@
 'use strict';
 // Figures of a layer: counts of what is not finite, negative or clipped, extremes, mean, histogram.
 
+/** Floats above zero are counted by their bits without so many of the lowest ones. */
+const droppedBits = 13;
+
+/** The values of the codes of floats, in their order; their number is the code of infinity. */
+let floatValues = null;
+
+function valuesOfFloats() {
+  floatValues ??= new Float32Array(Uint32Array.from({ length: 0x7f800000 >>> droppedBits }, (_, code) => code << droppedBits).buffer);
+  return floatValues;
+}
+
 /**
- * All follows from how often each half float occurs, so that figures for another exposure need no pass over the pixels.
- * Layers of floats are counted as the nearest halves; their extremes and mean are exact.
+ * All follows from how often each sample above zero occurs, so that figures for another exposure need no pass over the
+ * pixels. Halves are counted exactly, floats to ten bits of their fractions; their extremes and mean are exact.
  */
 class Statistics {
   constructor(layer) {
     const channels = layer.planes.length;
     this.pixels = layer.pixels;
-    this.counts = layer.planes.map(() => new Uint32Array(65536)); // of each channel
-    this.largest = new Uint32Array(65536); // of the largest channel of each pixel, where that is above zero
+    this.values = layer.half ? halfValues.subarray(0, 31744) : valuesOfFloats(); // of the codes that are counted
+    const codes = layer.half ? 65536 : this.values.length;
+    this.counts = Array.from({ length: channels }, () => new Uint32Array(codes)); // of each channel
+    this.largest = new Uint32Array(codes); // of the largest channel of each pixel, where that is above zero
     this.nan = this.infinite = 0;
     if (layer.half) this.#countHalves(layer);
     else this.#countFloats(layer);
@@ -60,13 +73,18 @@ class Statistics {
     this.negative = 0;
     let sum = 0;
     let finite = 0;
+    const bits = planes.map((plane) => new Uint32Array(plane.buffer, plane.byteOffset, plane.length));
     for (let i = 0; i < pixels; ++i) {
       let most = -Infinity;
+      let code = 0; // of the largest channel
       let least = Infinity;
       for (let c = 0; c < planes.length; ++c) {
         const value = planes[c][i];
-        ++this.counts[c][nearHalf(value)];
         if (!(value - value === 0)) continue; // not finite
+        if (value > 0) {
+          ++this.counts[c][bits[c][i] >>> droppedBits];
+          code = Math.max(code, bits[c][i] >>> droppedBits);
+        }
         sum += value;
         ++finite;
         least = Math.min(least, value);
@@ -75,7 +93,7 @@ class Statistics {
       if (least < 0) ++this.negative;
       this.min = Math.min(this.min, least);
       this.max = Math.max(this.max, most);
-      if (most > -Infinity) ++this.largest[nearHalf(most)];
+      if (most > 0) ++this.largest[code];
     }
     this.mean = sum / finite;
   }
@@ -83,20 +101,42 @@ class Statistics {
   /** Pixels with a channel that is above 1 when multiplied by gain. */
   clipped(gain) {
     let count = 0;
-    for (let code = 0; code < 31744; ++code) if (halfValues[code] * gain > 1) count += this.largest[code];
+    for (let code = 0; code < this.values.length; ++code) if (this.values[code] * gain > 1) count += this.largest[code];
     return count;
   }
 
   /** The value below which a part of all positive samples lie. */
   percentile(part) {
     let all = 0;
-    for (const counts of this.counts) for (let code = 1; code < 31744; ++code) all += counts[code];
+    for (const counts of this.counts) for (let code = 1; code < this.values.length; ++code) all += counts[code];
     let before = 0;
-    for (let code = 1; code < 31744; ++code) {
+    for (let code = 1; code < this.values.length; ++code) {
       for (const counts of this.counts) before += counts[code];
-      if (before >= part * all && all) return halfValues[code];
+      if (before >= part * all && all) return this.values[code];
     }
     return 0;
+  }
+
+  /**
+   * The ends of a histogram of at most 7 decades, [low, high]; null where nothing is above zero. They end at the highest
+   * value, unless more than half of the different values lie elsewhere: the distance of the sky, or a single firefly,
+   * would leave nothing to be seen of all others.
+   */
+  range() {
+    const decades = 1e7;
+    const { values } = this;
+    const found = [];
+    for (let code = 1; code < values.length; ++code) if (this.counts.some((counts) => counts[code])) found.push(values[code]);
+    if (!found.length) return null;
+    let high = found.length - 1;
+    const widths = [];
+    for (let end = 0, begin = 0; end < found.length; ++end) {
+      while (found[begin] * decades < found[end]) ++begin;
+      widths.push(end - begin + 1);
+    }
+    if (2 * widths[high] < found.length) high = widths.indexOf(widths.reduce((most, width) => Math.max(most, width)));
+    const top = found[high];
+    return [Math.min(Math.max(this.percentile(0.002), top / decades), top * 0.5), top];
   }
 
   /** Counts in bins that are even in the logarithm from low to high, one array for each channel. */
@@ -104,9 +144,9 @@ class Statistics {
     const scale = bins / Math.log(high / low);
     return this.counts.map((counts) => {
       const out = new Float64Array(bins);
-      for (let code = 1; code < 31744; ++code) {
+      for (let code = 1; code < this.values.length; ++code) {
         if (!counts[code]) continue;
-        const bin = Math.floor(Math.log(halfValues[code] / low) * scale);
+        const bin = Math.floor(Math.log(this.values[code] / low) * scale);
         if (bin >= 0 && bin < bins) out[bin] += counts[code];
       }
       return out;

@@ -16,6 +16,20 @@ function row(cells, header) {
   return tr;
 }
 
+/** The values of a pixel in one line. */
+function numbersOf(values, info) {
+  const text = document.createElement('span');
+  values.forEach((value, c) => {
+    const number = document.createElement('span');
+    number.className = 'number';
+    number.dataset.value = String(value);
+    number.dataset.channel = info.channels[c];
+    number.textContent = short(value);
+    text.append(number, ' ');
+  });
+  return text;
+}
+
 let valuesShown = '';
 
 /** Two rows for each image: its number key and name, and its values at the pixel. */
@@ -55,7 +69,21 @@ function showValues() {
     const title = document.createElement('tr');
     title.className = image === state.a ? 'a' : '';
     title.append(head);
-    const values = spot && layer?.info.slot === state.slot ? layer.values(...spot) : null;
+    const values = spot && layer ? layer.values(...spot) : null;
+    if (layer && layer.info.slot !== state.slot) {
+      const other = document.createElement('span');
+      other.className = 'layer';
+      other.textContent = layer.info.label;
+      head.append(other);
+      if (!values) return [title];
+      const line = document.createElement('tr');
+      const cell = document.createElement('td');
+      cell.colSpan = head.colSpan;
+      cell.append(numbersOf(values, layer.info));
+      line.append(cell);
+      line.className = title.className;
+      return [title, line];
+    }
     if (!values) return [title];
     const numbers = channels.map((_, c) => values[c] ?? '');
     if (colored) numbers.push(values.length === 3 ? luminance(values) : '');
@@ -76,7 +104,7 @@ function showFurther(spot, shown, all) {
     let named = false;
     for (const index of layersOf(i, state.frame)) {
       const info = scene.layers[index];
-      if (info.slot === state.slot && shown[i]?.info === info) continue;
+      if (shown[i]?.info === info) continue;
       some = true;
       if (!spot || (!all && !info.listed)) continue;
       const layer = layers.get(index);
@@ -95,15 +123,7 @@ function showFurther(spot, shown, all) {
         rows.push(head);
         named = true;
       }
-      const text = document.createElement('span');
-      values.forEach((value, c) => {
-        const number = document.createElement('span');
-        number.className = 'number';
-        number.dataset.value = String(value);
-        number.dataset.channel = info.channels[c];
-        number.textContent = short(value);
-        text.append(number, ' ');
-      });
+      const text = numbersOf(values, info);
       if (info.meaning === 'variance') {
         const noise = document.createElement('div');
         noise.textContent = `noise ${values.map((value) => short(Math.sqrt(value), 3)).join(' ')}`;

@@ -49,6 +49,12 @@ class Report(unittest.TestCase):
             self.assertIn(f"<p>{note}</p>", text)
             self.assertIn(note, result.audit.notes)
 
+    def test_an_axis_has_at_least_three_ticks(self):
+        for values in ([14.7, 17.2], [15, 15], [1, 100], [3e-5, 6e-5]):
+            ticks = report.LogAxis(values, 100, 0).ticks()
+            self.assertGreaterEqual(len(ticks), 3, values)
+            self.assertTrue(all(0 <= tick["at"] <= 100 for tick in ticks), ticks)
+
     def test_a_frame_ends_in_three_lines(self):
         with tempfile.TemporaryDirectory() as folder:
             for budget, more in ((Budget(samples=16), "--budget-spp 40"), (Budget(target=0.02), "--target 0.01")):
