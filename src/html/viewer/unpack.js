@@ -1,12 +1,12 @@
 'use strict';
 // From the blocks of the page, which are text, to samples: in workers, so that the page answers meanwhile.
 
-/** The text of a block. The page's script runs before the blocks are parsed, so that the first picture does not wait for
+/** The text of a block, which is a comment in its element. The page's script runs before the blocks are parsed, so that the first picture does not wait for
  * the others. A block is whole once something follows it. */
 async function blockText(id) {
   for (;;) {
     const element = document.getElementById(id);
-    if (document.readyState !== 'loading' || element?.nextElementSibling) return element.textContent;
+    if (document.readyState !== 'loading' || element?.nextElementSibling) return element.firstChild.data;
     await new Promise((resolve) => setTimeout(resolve, 20));
   }
 }
