@@ -4,7 +4,7 @@
 The file has the noisy picture and its features, and mean, variance and half buffers of each.
 
 examples:
-  %(prog)s shot.blend -o noisy.exr --spp 64 && polyrecon denoise -i noisy.exr -o clean.exr
+  %(prog)s shot.blend -o noisy.exr --spp 64 && polyrecon denoise -i noisy.exr -o clean.exr --outputs layers
   %(prog)s shot.blend -o 'out/noisy_####.exr' --frames 1-100 --spp 32 --bpy
 
 The mean of the subsets is the ordinary render of all samples. The scene file is not changed and none of its scripts is

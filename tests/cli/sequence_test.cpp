@@ -15,6 +15,7 @@
 namespace polyrecon::testing {
 namespace {
 
+using ::testing::EndsWith;
 using ::testing::HasSubstr;
 using ::testing::UnorderedElementsAre;
 
@@ -111,6 +112,21 @@ TEST_F(Sequence, FramesThatFailAreListedAndTheOthersGoOn) {
   EXPECT_THAT(o.err, HasSubstr("frame 4: shot.0004.exr"));
   EXPECT_THAT(o.err, HasSubstr("2 of 5 frames are missing or broken: 2,4\n"));
   EXPECT_THAT(o.out, HasSubstr("3 written, 0 skipped, 2 failed"));
+}
+
+TEST_F(Sequence, GapsBetweenFoundFramesAreSaid) {
+  render_frames(1, 7);
+  for (const char* gap : {"shot.0002.exr", "shot.0005.exr", "shot.0006.exr"}) std::filesystem::remove(path(gap));
+  const std::string gaps = "no files of frames 2,5,6\n";
+  const Outcome dry = denoise({"--dry-run"});
+  EXPECT_EQ(dry.code, 0);
+  EXPECT_THAT(dry.out, EndsWith("\n" + gaps));
+  const Outcome o = denoise({});
+  EXPECT_EQ(o.code, 0) << o.err;
+  EXPECT_THAT(o.out, EndsWith("\n4 written, 0 skipped, 0 failed; " + gaps));
+  EXPECT_THAT(denoise({"--frames", "1,3-4,7", "--skip-existing"}).out, EndsWith("0 written, 4 skipped, 0 failed\n"));
+  std::filesystem::remove(path("shot.0004.exr"));
+  EXPECT_THAT(denoise({"--dry-run", "--skip-existing"}).out, EndsWith("no files of frames 5\n"));  // every second frame
 }
 
 TEST_F(Sequence, StrictStopsAtTheFirstFrameThatFails) {

@@ -155,7 +155,8 @@ def _advice_of(report):
         advice = json.load(file).get("advice", [])
     places = {}
     for one in advice:
-        places.setdefault(one["how"], []).append(f"no {one['pass']} ({one['without']})")
+        is_pass = one["pass"] not in ("prior", "aov")
+        places.setdefault(one["how"], []).append(f"no {one['pass']} ({one['without']})" if is_pass else one["without"])
     return [(", ".join(missing), how) for how, missing in places.items()]
 
 

@@ -208,7 +208,11 @@ bool FileRun::write(RunProgress& progress) {
     if (done_.size() > 1) one.title = one.picture.name();
     reports.push_back(report_json(one, done.in.source));
     if (job_.run.verbosity == Verbosity::Short) remove_notes_said_before(one.notes, progress);
-    text += report_text(one, progress.is_new(advice_text(one.advice)), job_.run.verbosity);
+    std::vector<std::string> advice = advice_lines(one.advice);
+    advice.erase(
+        std::remove_if(advice.begin(), advice.end(), [&](const std::string& line) { return !progress.is_new(line); }),
+        advice.end());
+    text += report_text(one, advice, job_.run.verbosity);
   }
   if (!files_.outputs.report.empty()) {
     reports.front()["others"] = std::vector<nlohmann::ordered_json>(reports.begin() + 1, reports.end());

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <map>
+#include <numeric>
 #include <set>
 #include <utility>
 
@@ -135,6 +137,22 @@ Job resolve(const DenoiseOptions& o, int frame_radius, bool is_sequence) {
   return job;
 }
 
+/// More numbers than this between two frames are no gap in a sequence.
+constexpr std::int64_t most_gaps = 100'000;
+
+/// The numbers without a frame between the first and the last one. If all are a step apart, so are these.
+std::vector<int> gaps_between(const std::vector<FrameFiles>& frames) {
+  std::int64_t step = 0;
+  for (const FrameFiles& files : frames) step = std::gcd(step, std::int64_t{*files.frame} - *frames.front().frame);
+  std::vector<int> gaps;
+  for (std::size_t k = 1; k < frames.size(); ++k) {
+    const std::int64_t before = *frames[k - 1].frame, after = *frames[k].frame;
+    if (after - before > most_gaps * step) continue;
+    for (std::int64_t n = before + step; n < after; n += step) gaps.push_back(static_cast<int>(n));
+  }
+  return gaps;
+}
+
 }  // namespace
 
 FrameLimits FrameLimits::after(double spent) const {
@@ -149,6 +167,7 @@ Job make_job(const DenoiseOptions& o, const OptionSet& set) {
   for (const RoleMapping& mapping : job.read.map) job.map_patterns.push_back(FramePattern::parse(mapping.layer));
   if (job.sample_map) job.cost_pattern = FramePattern::parse(job.sample_map->cost);
   job.frames = std::move(list.frames);
+  if (o.frames.empty() && !job.frames.empty() && job.frames.front().frame) job.gaps = gaps_between(job.frames);
   job.settings = settings_of(set, quality_of(o), job);
   return job;
 }

@@ -31,6 +31,7 @@ struct FrameLimits {
 struct Job {
   std::vector<FrameFiles> frames;
   bool is_sequence = false;  ///< A frame of a sequence that fails does not end the run.
+  std::vector<int> gaps;     ///< Numbers that no file has, between those that were found; empty with --frames.
   ReadOptions read;
   std::vector<std::optional<FramePattern>> map_patterns;  ///< Of the files in read.map, in its order.
   std::optional<FramePattern> cost_pattern;               ///< Of the file of costs of the sample map.

@@ -52,20 +52,19 @@ std::string layers_text(const ReadResult& in) {
                      aovs > 0 ? fmt::format(", and {} light AOVs", aovs) : "");
 }
 
-std::string short_text(const RunReport& run, bool with_advice) {
+std::string short_text(const RunReport& run, const std::vector<std::string>& advice) {
   const Report& r = run.reconstruction;
   const std::string before = std::isfinite(run.noise_before) ? fmt::format("{:.3g} -> ", run.noise_before) : "";
   std::string text =
       text_line("{}{}: estimated relMSE {}{:.3g}, {:.1f} s", run.output, run.title.empty() ? "" : ", " + run.title,
                 before, r.estimated_relative_mse, run.seconds);
   if (run.chosen) text += line("settings chosen", settings_choice_text(*run.chosen, reconstruction_seconds(r)));
-  if (const std::string advice = advice_text(run.advice); with_advice && !advice.empty())
-    text += line("could be better", advice);
+  for (const std::string& better : advice) text += text_line("  better: {}", better);
   for (const std::string& note : run.notes) text += line("note", note);
   return text;
 }
 
-std::string all_figures(const RunReport& run, bool with_advice) {
+std::string all_figures(const RunReport& run, const std::vector<std::string>& advice) {
   const Report& r = run.reconstruction;
   std::string text = text_line("{} -> {}, {} x {}{}", run.input, run.output, r.width, r.height,
                                run.title.empty() ? "" : ", " + run.title);
@@ -93,8 +92,7 @@ std::string all_figures(const RunReport& run, bool with_advice) {
   text += line("restored gain", fmt::format("{:+.3f} {:+.3f} {:+.3f} %", 100 * r.restored_gain[0],
                                             100 * r.restored_gain[1], 100 * r.restored_gain[2]));
   text += line("estimated relMSE", fmt::format("{:.5g}", r.estimated_relative_mse));
-  if (const std::string advice = advice_text(run.advice); with_advice && !advice.empty())
-    text += line("could be better", advice);
+  for (const std::string& better : advice) text += line("better", better);
   for (const std::string& note : run.notes) text += line("note", note);
   return text;
 }
@@ -117,9 +115,9 @@ std::string input_text(const ReadResult& in, const std::string& picture, Verbosi
   return text_line("{}, {}", line, layers_text(in));
 }
 
-std::string report_text(const RunReport& run, bool with_advice, Verbosity verbosity) {
+std::string report_text(const RunReport& run, const std::vector<std::string>& advice, Verbosity verbosity) {
   if (verbosity == Verbosity::Quiet) return {};
-  return verbosity == Verbosity::Full ? all_figures(run, with_advice) : short_text(run, with_advice);
+  return verbosity == Verbosity::Full ? all_figures(run, advice) : short_text(run, advice);
 }
 
 Json report_json(const RunReport& run, const FrameSource& source) {

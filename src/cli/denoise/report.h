@@ -38,8 +38,9 @@ std::size_t peak_memory();
 /// name in a file of several.
 std::string input_text(const ReadResult& in, const std::string& picture, Verbosity verbosity);
 
-/// Text about the work, advice and notes: a line each, or with Verbosity::Full the table of all figures.
-std::string report_text(const RunReport& run, bool with_advice, Verbosity verbosity);
+/// Text about the work, advice and notes: a line each, or with Verbosity::Full the table of all figures. advice: the
+/// lines of the run's advice that are printed.
+std::string report_text(const RunReport& run, const std::vector<std::string>& advice, Verbosity verbosity);
 
 /// The same as JSON (docs/reference/report.md).
 nlohmann::ordered_json report_json(const RunReport& run, const FrameSource& source);

@@ -28,7 +28,7 @@ namespace {
 /// Counts the frames that were written, skipped or failed, and those that lacked a layer of the first frame.
 class Outcome {
  public:
-  Outcome(bool strict, RunProgress& progress) : strict_(strict), progress_(progress) {}
+  Outcome(const Job& job, RunProgress& progress) : strict_(job.run.strict), gaps_(job.gaps), progress_(progress) {}
 
   /// Call it inside a catch block.
   void failed(const FrameFiles& files, const Error& error) {
@@ -50,7 +50,12 @@ class Outcome {
       text += fmt::format("; {} without all layers of the first frame: {}", lacking_.size(), names(lacking_));
     if (!missed_.empty())
       text += fmt::format("; {} beyond --time-budget or --target: {}", missed_.size(), names(missed_));
-    return text;
+    return text + gaps_text("; ");
+  }
+
+  /// The frames that have no file, after `before`; empty where there are none.
+  std::string gaps_text(const char* before) const {
+    return gaps_.empty() ? "" : fmt::format("{}no files of frames {}", before, frames_text(gaps_));
   }
 
   void throw_if_any_failed(std::size_t all) const {
@@ -72,6 +77,7 @@ class Outcome {
   }
 
   const bool strict_;
+  const std::vector<int> gaps_;
   RunProgress& progress_;
   std::vector<const FrameFiles*> failed_, lacking_, missed_;
   std::size_t skipped_ = 0, written_ = 0;
@@ -201,7 +207,7 @@ bool concerns_one_frame(ExitCode code) {
 }
 
 bool run_sequence(const Job& job, RunProgress& progress) {
-  Outcome outcome(job.run.strict, progress);
+  Outcome outcome(job, progress);
   Consistency consistency;
   ReadAhead ahead(job, progress);
   ahead.begin(job.frames.front());
@@ -218,7 +224,7 @@ bool run_sequence(const Job& job, RunProgress& progress) {
 
 void show_dry_run(const Job& job) {
   const auto progress = make_progress(ProgressStyle::None);
-  Outcome outcome(job.run.strict, *progress);
+  Outcome outcome(job, *progress);
   for (const FrameFiles& files : job.frames) try {
       read_frame_header(files.input,
                         read_options_for(job, files.number_in_names()));  // throws where the frame would fail
@@ -230,6 +236,7 @@ void show_dry_run(const Job& job) {
     } catch (const Error& error) {
       outcome.failed(files, error);
     }
+  if (const std::string gaps = outcome.gaps_text(""); !gaps.empty()) std::fputs(text_line("{}", gaps).c_str(), stdout);
   outcome.throw_if_any_failed(job.frames.size());
 }
 

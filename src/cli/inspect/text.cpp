@@ -48,8 +48,8 @@ std::string inspect_text(const InspectReport& report) {
   for (const Layer& layer : found.source.layers) text += text_of(layer, found.statistics_of(layer.name));
   text += roles_text(found.source);
   if (!found.missing.empty()) text += text_line("missing: {}", fmt::join(found.missing, ", "));
-  if (const std::string advice = advice_text(pass_advice(found.source, found.samples)); !advice.empty())
-    text += text_line("could be better: {}", advice);
+  for (const std::string& advice : advice_lines(pass_advice(found.source, found.samples)))
+    text += text_line("better: {}", advice);
   if (found.samples > 0) text += text_line("samples per pixel: {:g}", found.samples);
   if (found.noise_level >= 0)
     text += text_line("noise level (variance / (mean^2 + {:g})): {:.4g}", relmse_floor, found.noise_level);

@@ -18,9 +18,9 @@ struct MissingFeature {
   Role role;
   const char* without;
 };
-constexpr std::array missing_features{MissingFeature{Role::Albedo, "textures get blurred"},
-                                      MissingFeature{Role::Normal, "shapes get soft edges"},
-                                      MissingFeature{Role::Depth, "things at different distances run into each other"}};
+constexpr std::array missing_features{MissingFeature{Role::Albedo, "textures blur"},
+                                      MissingFeature{Role::Normal, "edges soften"},
+                                      MissingFeature{Role::Depth, "outlines run together"}};
 
 std::string letters_of(const std::string& text) {
   std::string out;
@@ -98,7 +98,7 @@ std::string how_to(const Renderer* renderer, Role role) {
   if (renderer)
     for (const PassSwitch& one : renderer->switches)
       if (one.role == role) return renderer->name + ": " + one.place;
-  return fmt::format("render a pass of {}", name_of(role));
+  return "render such passes";
 }
 
 }  // namespace
@@ -123,19 +123,19 @@ std::vector<PassAdvice> pass_advice(const FrameSource& source, double samples) {
   return advice;
 }
 
-std::string advice_text(const std::vector<PassAdvice>& advice) {
-  std::string text;
+std::vector<std::string> advice_lines(const std::vector<PassAdvice>& advice) {
+  std::vector<std::string> lines;
   for (std::size_t i = 0; i < advice.size();) {
     std::string names, without;
     const std::string& how = advice[i].how;
     for (; i < advice.size() && advice[i].how == how; ++i) {
       if (advice[i].pass != aov && advice[i].pass != name_of(Role::Prior))
-        names += (names.empty() ? "no " : ", no ") + advice[i].pass;
+        names += (names.empty() ? "no " : ", ") + advice[i].pass;
       without += (without.empty() ? "" : ", ") + advice[i].without;
     }
-    text += fmt::format("{}{}{} ({})", text.empty() ? "" : "; ", names.empty() ? "" : names + ": ", without, how);
+    lines.push_back(fmt::format("{}{} ({})", names.empty() ? "" : names + ": ", without, how));
   }
-  return text;
+  return lines;
 }
 
 }  // namespace polyrecon

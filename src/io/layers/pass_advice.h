@@ -19,7 +19,7 @@ struct PassAdvice {
 /// samples: per pixel; 0 if unknown.
 std::vector<PassAdvice> pass_advice(const FrameSource& source, double samples);
 
-/// The advice on one line; empty without any. Passes that are switched on at one place stand together.
-std::string advice_text(const std::vector<PassAdvice>& advice);
+/// The advice for people, a line for each place where something is switched on.
+std::vector<std::string> advice_lines(const std::vector<PassAdvice>& advice);
 
 }  // namespace polyrecon

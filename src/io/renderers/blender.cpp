@@ -55,7 +55,7 @@ Renderer blender() {
       {Role::Normal, "View Layer > Passes > Data > Denoising Data"},
       {Role::Depth, "View Layer > Passes > Data > Denoising Data"},
   };
-  r.noise_switch = "polyrecon-blender renders the samples in parts, or merge renders of different seeds";
+  r.noise_switch = "polyrecon-blender-passes, or merge renders of different seeds";
   return r;
 }
 

@@ -18,7 +18,7 @@ Renderer povray() {
       {Role::Normal, "polyrecon-povray-passes renders it"},
       {Role::Depth, "polyrecon-povray-passes renders it"},
   };
-  r.noise_switch = "polyrecon-povray renders several estimates of each pixel";
+  r.noise_switch = "polyrecon-povray-passes renders several estimates of each pixel";
   return r;
 }
 
