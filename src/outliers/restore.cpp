@@ -13,6 +13,8 @@ namespace {
 
 /// Largest relative gain of a pixel where the whole image takes part, unless all pixels must gain more.
 constexpr double largest_gain = 0.5;
+/// Largest relative gain of a pixel from the energy of all outliers around it.
+constexpr double most_local_gain = 0.03;
 
 constexpr double below_all_values = 1e-100;  ///< Below every positive value of an image.
 
@@ -193,6 +195,11 @@ void give_to_all(const std::vector<double>& energy, int color, const Image& kapp
   });
 }
 
+/// The part of a gain that is within a limit.
+Real part_within(double limit, double gain) {
+  return std::abs(gain) > limit ? static_cast<Real>(limit / std::abs(gain)) : Real(1);
+}
+
 }  // namespace
 
 void restore_energy(const std::vector<Outlier>& outliers, const Image& variance, double max_gain, Image& image) {
@@ -209,6 +216,7 @@ void restore_energy(const std::vector<Outlier>& outliers, const Image& variance,
   });
   const auto row = static_cast<std::size_t>(image.width()) + 1;
   std::vector<double> whole_image_energy(static_cast<std::size_t>(ColorLayout(image.channels()).layer_channels()), 0.0);
+  Image kept(image.width(), image.height(), 3);  // part of the gain that a colour of the beauty keeps
   for (std::size_t c = 0; c < whole_image_energy.size(); ++c) {
     const auto channel = static_cast<int>(c), color = ColorLayout::beauty_channel(channel);
     std::vector<double> gain(row * (static_cast<std::size_t>(image.height()) + 1), 0.0);
@@ -222,10 +230,19 @@ void restore_energy(const std::vector<Outlier>& outliers, const Image& variance,
         add_box(gain, row, areas[k], energy / sum);
     }
     integrate(gain, row);
-    for_rows(image.height(), [&](int y) {
-      const double* gains = gain.data() + static_cast<std::size_t>(y) * row;
-      for (int x = 0; x < image.width(); ++x)
-        image.at(x, y, channel) += static_cast<Real>(share_of(shape.at(x, y, color), kappa.at(x, y, 0)) * gains[x]);
+    whole_image_energy[c] += ordered_sum(static_cast<std::size_t>(image.height()), [&](std::size_t v) {
+      const auto y = static_cast<int>(v);
+      const double* gains = gain.data() + v * row;
+      double rest = 0;
+      for (int x = 0; x < image.width(); ++x) {
+        const Real yhat = shape.at(x, y, color);
+        const double added = share_of(yhat, kappa.at(x, y, 0)) * gains[x];
+        if (channel == color) kept.at(x, y, color) = part_within(most_local_gain * positive_part(yhat), added);
+        const Real part = kept.at(x, y, color);
+        image.at(x, y, channel) += part * static_cast<Real>(added);
+        rest += (1 - static_cast<double>(part)) * added;
+      }
+      return rest;
     });
   }
   if (std::all_of(whole_image_energy.begin(), whole_image_energy.end(), [](double energy) { return energy == 0; }))
@@ -235,9 +252,9 @@ void restore_energy(const std::vector<Outlier>& outliers, const Image& variance,
 
 std::size_t restore_channels(std::size_t color_channels) {
   constexpr std::size_t in_double = sizeof(double) / sizeof(Real);
-  constexpr std::size_t kappa = 1, box_sums = 4 * in_double, gain = in_double;
+  constexpr std::size_t kappa = 1, box_sums = 4 * in_double, gain = in_double, kept = 3;
   const std::size_t image = color_channels, shape = color_channels;
-  return image + shape + kappa + box_sums + gain;
+  return image + shape + kappa + box_sums + gain + kept;
 }
 
 std::vector<double> channel_sums(const Image& image) {

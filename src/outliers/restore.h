@@ -19,6 +19,9 @@ namespace polyrecon {
 /// until the root mean square of the gain, weighted by kappa, is at most max_gain: the energy stays as close to o as it
 /// can without being visible. Where no pixel of Omega_o is positive and noisy, the energy returns to o itself.
 ///
+/// That bounds the gain from one outlier in the mean. A bright pixel among many outliers, such as the rim of a lamp,
+/// gains from all of them: more than 3 % of its value goes to the whole image.
+///
 /// If Omega_o is the whole image, no pixel changes by more than a half: the brightest ones, which would, change by a
 /// half, and the rest is shared out by squares among the others, which is the least relative squared error under this
 /// bound. Where the bound cannot be kept, all pixels gain the same factor. A colour of which no pixel takes part stays

@@ -40,6 +40,26 @@ TEST(RestoreEnergy, GivesBackExactlyWhatWasTaken) {
   EXPECT_TRUE(test::all_finite(after));
 }
 
+/// The rim of a lamp, which is by far the brightest pixel of all areas, would take the energy of all outliers.
+TEST(RestoreEnergy, ARimAmongManyOutliersGainsLittle) {
+  Image before = smooth_image(6);  // with a layer that is the beauty
+  for (int c = 0; c < 6; ++c) before.at(30, 20, c) = Real(20);
+  test::Random random(2);
+  std::vector<Outlier> outliers;
+  for (int k = 0; k < 60; ++k) {
+    const double e = 0.5 * random.uniform();
+    outliers.push_back({20 + random.below(20), 10 + random.below(20), {e, e, e, e, e, e}});
+  }
+  Image after = before;
+  restore_energy(outliers, loud(after), 0.2, after);
+  expect_energy(before, after, outliers);
+  for (int c = 0; c < 3; ++c) {
+    EXPECT_GT(after.at(30, 20, c), Real(20.6));
+    EXPECT_LT(after.at(30, 20, c), Real(21.5));  // with its part of what goes to the whole image
+  }
+  for (int c = 0; c < 3; ++c) EXPECT_EQ(test::sum_of(after, c), test::sum_of(after, c + 3)) << c;
+}
+
 TEST(RestoreEnergy, NothingTakenNothingGiven) {
   Image image = smooth_image(3);
   restore_energy({}, loud(image), max_gain, image);
