@@ -8,7 +8,9 @@
 namespace polyrecon {
 namespace {
 
+using ::testing::ElementsAre;
 using testing::flat_layer;
+using ::testing::HasSubstr;
 using testing::join;
 using testing::TemporaryFolder;
 using testing::TestChannel;
@@ -121,6 +123,18 @@ TEST(MitsubaMoments, ALayerOfTheChannelTIsTheDepth) {
   ASSERT_EQ(frame.features.size(), 1U);
   EXPECT_EQ(frame.features.front().role, Role::Depth);
   EXPECT_EQ(frame.features.front().pass.mean.at(0, 0, 0), 7);
+}
+
+TEST(MitsubaMoments, AMomentWithoutItsPictureHasANote) {
+  const TemporaryFolder folder;
+  const NoisyColor color;
+  TestPart part;
+  part.channels = join({values("", "RGB", {color.r, color.g, color.b}), values("m2_img", "XYZ", {1, 1, 1})});
+  ReadOptions options;
+  options.samples = 5;
+  const ReadResult read = read_frame(write_exr(folder / "a.exr", {part}), options);
+  EXPECT_TRUE(read.frame.beauty.variance.empty());
+  EXPECT_THAT(read.notes, ElementsAre(HasSubstr("m2_img is not used: it is the second moment of img")));
 }
 
 }  // namespace

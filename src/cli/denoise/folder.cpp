@@ -89,7 +89,7 @@ bool is_beauty_by_name(const std::string& path) {
 std::map<std::string, std::string> passes_of_others(const std::vector<Group>& groups) {
   std::map<std::string, std::string> passes;
   for (const Group& group : groups)
-    for (const SiblingFile& sibling : find_siblings(group.first))
+    for (const SiblingFile& sibling : find_siblings(group.first).others)
       if (!is_beauty_by_name(sibling.path)) passes.emplace(sibling.path, group.first);
   return passes;
 }

@@ -321,6 +321,15 @@ const Layer* picture_layer(const std::vector<Layer>& layers) {
   return best;
 }
 
+std::optional<NamedCompanion> variance_by_name(const Layer& layer) {
+  for (const Renderer& renderer : renderers())
+    for (const CompanionAffix& affix : renderer.affixes)
+      if (is_variance(affix.companion))
+        if (const auto names = names_without(affix, layer); !names.empty())
+          return NamedCompanion{affix.companion, names.front()};
+  return std::nullopt;
+}
+
 bool is_picture_in_xyz(const Layer& layer) { return is_bare_film(layer) && layer.pass == bare_tristimulus; }
 
 bool may_lose_precision(const Layer& layer) {

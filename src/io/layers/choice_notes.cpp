@@ -48,6 +48,23 @@ void note_seeming(LayerChoice& choice, const RoleInfo& info) {
           layer.name, info.name, info.name, layer.name));
 }
 
+void note_lone_variances(LayerChoice& choice, const ReadOptions& options) {
+  const FrameSource& source = choice.source;
+  const PassChoice& beauty = choice.passes.front();
+  if (beauty.variance >= 0 || beauty.half_a >= 0 || !options.own_windows.empty()) return;
+  for (const Layer& layer : source.layers) {
+    if (layer.companion != Companion::Mean || layer.rank == rank_by_hand ||
+        is_of_another_picture(source, place_of(layer)))
+      continue;
+    const auto known = variance_by_name(layer);
+    if (!known || info_of(layer.role).in_fit) continue;
+    choice.notes.push_back(fmt::format(
+        "{} is not used: it is the {} of {} by its name, and no layer {} has as many channels; write both, or name the "
+        "beauty's variance by --map variance=LAYER",
+        layer.name, name_of(known->companion), known->mean, known->mean));
+  }
+}
+
 void note_pictures(LayerChoice& choice, const ReadOptions& options) {
   const auto& pictures = choice.source.pictures;
   if (pictures.size() < 2 || options.picture) return;

@@ -12,6 +12,10 @@ void note_misshapen(LayerChoice& choice, const RoleInfo& info);
 /// Notes layers that seem to be the feature by the words of their names, which no renderer is known to use.
 void note_seeming(LayerChoice& choice, const RoleInfo& info);
 
+/// Notes layers that are variances by their names while the layers that they accompany are missing, where the noise of
+/// the beauty is unknown: it may be theirs.
+void note_lone_variances(LayerChoice& choice, const ReadOptions& options);
+
 /// Notes that the file has several pictures, unless one of them was chosen.
 void note_pictures(LayerChoice& choice, const ReadOptions& options);
 

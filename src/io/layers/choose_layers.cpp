@@ -211,6 +211,7 @@ LayerChoice choose_layers(const std::string& path, const ReadOptions& options) {
     drop_misfits(choice, pass);
     if (pass.mean >= 0) choice.passes.push_back(pass);
   }
+  note_lone_variances(choice, options);
   choose_aovs(choice, options);
   note_divided_aovs(choice);
   note_other_beauties(choice, options);

@@ -26,6 +26,15 @@ int find_companion(const FrameSource& source, const Layer& mean, Wanted wanted) 
   return best;
 }
 
+/// Why a layer of a file that was found next to the input, and that nobody named, is no pass of it; empty where it is.
+std::string found_misfit(const FrameSource& source, const Layer& layer, const Layer& beauty) {
+  const Rect &picture = part_of(source, beauty).display_window, &other = part_of(source, layer).display_window;
+  if (layer.file == 0 || layer.rank == rank_by_hand || other == picture) return {};
+  return fmt::format("its picture has {} x {} pixels, that of the beauty {} x {}; --map ROLE={} lays it over the beauty",
+                     other.width(), other.height(), picture.width(), picture.height(),
+                     source.files[static_cast<std::size_t>(layer.file)].path);
+}
+
 }  // namespace
 
 PassChoice with_companions(const FrameSource& source, Role role, int mean) {
@@ -54,7 +63,8 @@ void drop_misfits(LayerChoice& choice, PassChoice& pass) {
   for (int* index : {&pass.variance, &pass.half_a, &pass.half_b, &pass.mean}) {
     if (*index < 0) continue;
     const Layer& layer = source.layers[static_cast<std::size_t>(*index)];
-    const std::string why = misfit(part_of(source, layer), part_of(source, beauty));
+    std::string why = misfit(part_of(source, layer), part_of(source, beauty));
+    if (why.empty()) why = found_misfit(source, layer, beauty);
     if (why.empty()) continue;
     choice.notes.push_back(fmt::format("{} is not used: {}", layer.name, why));
     *index = -1;

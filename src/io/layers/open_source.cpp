@@ -61,6 +61,12 @@ bool lacks(const FrameSource& source, const std::string& pass) {
                       [](const Layer& l) { return l.role == Role::Beauty && l.companion != Companion::Mean; });
 }
 
+/// The path of a sibling as seen from the folder of the input: "shot_albedo.exr", "../albedo/shot.exr".
+std::string path_from_folder_of(const std::string& input, const std::string& sibling) {
+  const std::filesystem::path folder = std::filesystem::path(input).parent_path();
+  return std::filesystem::path(sibling).lexically_proximate(folder.empty() ? "." : folder).string();
+}
+
 /// The name of a sibling's layer. The beauty of a file of several layers keeps the name that it has there, so that its
 /// companions are called after it.
 std::string layer_name(const std::string& sibling, const std::string& in_file_name, const Layer& beauty) {
@@ -93,7 +99,8 @@ FrameSource open_source(const std::string& path, const ReadLimits& limits, std::
   source.layers = find_layers(source.files.front());
   const bool bare = is_one_bare_image(source);
   if (!bare && !may_lack_passes(source)) return source;
-  std::vector<SiblingFile> siblings = find_siblings(path);
+  FilesOfRender render = find_siblings(path);
+  std::vector<SiblingFile>& siblings = render.others;
   siblings.erase(
       std::remove_if(siblings.begin(), siblings.end(),
                      [&](const SiblingFile& sibling) {
@@ -102,14 +109,14 @@ FrameSource open_source(const std::string& path, const ReadLimits& limits, std::
                      }),
       siblings.end());
   if (siblings.empty()) return source;
-  const std::string pass = pass_in_file_name(path);
+  const std::string& pass = render.pass;
   if (bare && !pass.empty()) source.layers.front().name = source.layers.front().pass = pass;
   const Layer beauty = bare ? source.layers.front() : *picture_layer(source.layers);
   std::vector<std::string> names;
   for (const SiblingFile& sibling : siblings) {
     const auto added = static_cast<std::size_t>(add_file(source, sibling.path, Role::Other, limits));
     rename_layer(source.layers[added], layer_name(sibling.pass, pass, beauty), place_of(beauty));
-    names.push_back(std::filesystem::path(sibling.path).filename().string());
+    names.push_back(path_from_folder_of(path, sibling.path));
   }
   classify_layers(source.files, source.layers);
   notes.push_back(fmt::format("passes from files next to the input: {}", fmt::join(names, ", ")));

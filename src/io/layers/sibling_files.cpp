@@ -1,8 +1,10 @@
 #include "io/layers/sibling_files.h"
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <filesystem>
+#include <optional>
 #include <string_view>
 #include <system_error>
 #include <utility>
@@ -17,6 +19,10 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t short_word = 2;  // names of so few letters are too often something else
 constexpr std::string_view name_separators = "._- ";
+
+/// Words in front of a pass in the name of its folder, and names of folders with a file for each pass: "AOV_albedo/",
+/// "aovs/".
+constexpr std::array<std::string_view, 5> words_for_passes{"AOV", "AOVs", "pass", "passes", "elements"};
 
 bool is_name_separator(char c) { return name_separators.find(c) != std::string_view::npos; }
 
@@ -82,8 +88,7 @@ std::string beauty_at_begin(const std::string& name) {
 
 /// The pass is at the end of the name, or numbers of a frame and a version follow it: ".0001", "_v02.-0005"; a beauty
 /// may also stand in front: "beauty_shot.0001". It is empty where no pass is known.
-NameParts parts_of(const std::string& path) {
-  const std::string stem = fs::path(path).stem().string();
+NameParts parts_of(const std::string& stem) {
   NameParts parts{stem, pass_at_end(stem), {}};
   if (const std::size_t numbers = numbers_at_end(stem); parts.pass.empty() && numbers < stem.size()) {
     const std::string name = stem.substr(0, numbers);
@@ -112,20 +117,151 @@ std::string added_pass(const std::string& word) {
   return feature || is_beauty_companion(pass) ? pass : std::string();
 }
 
-/// The pass of the file `other` of the render whose files have these parts; empty where it is none of them.
+/// Whether the word is a pass, or belongs to one, in a name that begins with `before`.
+bool is_pass_or_companion(const std::string& before, const std::string& word) {
+  return is_pass(before, word) || has_known_ending(before, word) || is_beauty_companion(word) ||
+         is_other_pass_file(word);
+}
+
+/// The pass of the file or folder `other` of the render whose files or folders have these parts; empty where it is none
+/// of them.
 std::string pass_of(const std::string& other, const NameParts& parts) {
-  if (!parts.pass.empty()) {
-    std::string word = between(parts.before, other, parts.after);
-    if (is_pass(parts.before, word) || has_known_ending(parts.before, word) || is_beauty_companion(word) ||
-        is_other_pass_file(word))
+  if (!parts.pass.empty())
+    if (std::string word = between(parts.before, other, parts.after); is_pass_or_companion(parts.before, word))
       return word;
-  }
   return added_pass(between(parts.before + parts.pass, other, parts.after));
+}
+
+bool is_word_for_passes(const std::string& word) {
+  return std::any_of(words_for_passes.begin(), words_for_passes.end(),
+                     [&](std::string_view known) { return same_name(word, known); });
+}
+
+/// The pass of a folder that is called "AOV_albedo" next to one whose whole name is its pass; else empty.
+std::string pass_behind_word(const std::string& folder, const NameParts& parts) {
+  if (parts.pass.empty() || !parts.before.empty()) return {};
+  const std::string name = between({}, folder, parts.after);
+  const std::size_t end = name.find_first_of(name_separators);
+  if (end == std::string::npos || !is_word_for_passes(name.substr(0, end))) return {};
+  std::string pass = name.substr(end + 1);
+  return is_pass_or_companion({}, pass) ? pass : std::string();
+}
+
+template <class Visit>
+void visit_folder(const fs::path& folder, const Visit& visit) {
+  std::error_code failure;
+  for (fs::directory_iterator entry(folder.empty() ? "." : folder, failure), end; !failure && entry != end;
+       entry.increment(failure))
+    visit(entry->path());
+}
+
+bool is_folder(const fs::path& path) {
+  std::error_code failure;
+  return fs::is_directory(path, failure);
+}
+
+/// A folder with files of one pass, or of several where `pass` is empty.
+struct PassFolder {
+  fs::path path;
+  std::string pass;
+};
+
+/// Folders that are named after a pass or hold passes, "albedo" and "aovs", in the folder of the file.
+std::vector<PassFolder> folders_in(const fs::path& folder) {
+  std::vector<PassFolder> folders;
+  visit_folder(folder, [&](const fs::path& path) {
+    const std::string name = path.filename().string();
+    const std::string pass = added_pass("." + name);
+    if ((!pass.empty() || is_word_for_passes(name)) && is_folder(path)) folders.push_back({path, pass});
+  });
+  return folders;
+}
+
+/// The folder above a file that is named after a pass.
+struct NamedFolder {
+  fs::path parent;  ///< The folder that holds it.
+  fs::path below;   ///< The folder between it and the file, if there is one: "v01" of "beauty/v01/shot.exr".
+  std::string name;
+  NameParts parts;
+};
+
+/// The nearest of the two folders above the file that is named after a pass.
+std::optional<NamedFolder> named_folder(const fs::path& self) {
+  std::error_code failure;
+  fs::path absolute = fs::absolute(self, failure).lexically_normal().parent_path();
+  NamedFolder folder{self.has_parent_path() ? self.parent_path() : ".", {}, {}, {}};
+  for (int up = 0; up < 2; ++up) {
+    folder.name = absolute.filename().string();
+    folder.parts = parts_of(folder.name);
+    folder.parent /= "..";
+    if (!folder.parts.pass.empty()) return folder;
+    folder.below = absolute.filename();
+    absolute = absolute.parent_path();
+  }
+  return std::nullopt;
+}
+
+/// The folders of the other passes next to one that is named after a pass: "albedo", "AOV_albedo", "aovs" next to
+/// "beauty"; what they have of the same name as the folder below.
+std::vector<PassFolder> folders_next_to(const NamedFolder& named) {
+  std::vector<PassFolder> folders;
+  visit_folder(named.parent, [&](const fs::path& path) {
+    const std::string name = path.filename().string();
+    if (name == named.name) return;
+    std::string pass = pass_of(name, named.parts);
+    if (pass.empty()) pass = pass_behind_word(name, named.parts);
+    if (pass.empty() && !is_word_for_passes(name)) return;
+    if (const fs::path found = (path / named.below).lexically_normal(); is_folder(found))
+      folders.push_back({found, pass});
+  });
+  return folders;
+}
+
+/// Whether two words name the same pass, maybe as different renderers do.
+bool mean_same_pass(const std::string& a, const std::string& b) {
+  const auto known_a = classify_pass(a), known_b = classify_pass(b);
+  return same_name(a, b) || (known_a && known_b && known_a->role == known_b->role);
+}
+
+bool is_beauty(const std::string& pass) {
+  const auto known = classify_pass(pass);
+  return known && known->role == Role::Beauty;
+}
+
+/// The files of the folder with the pass of its name, or with passes of their own, that belong to a file with this stem
+/// and extension.
+std::vector<SiblingFile> files_of(const PassFolder& folder, const fs::path& self) {
+  const std::string stem = self.stem().string();
+  const NameParts parts = parts_of(stem);
+  std::vector<SiblingFile> files;
+  visit_folder(folder.path, [&](const fs::path& other) {
+    if (other.extension() != self.extension()) return;
+    const std::string other_stem = other.stem().string();
+    const std::string pass = other_stem == stem ? std::string() : pass_of(other_stem, parts);
+    if (folder.pass.empty() && !pass.empty()) files.push_back({other.string(), pass});
+    if (!folder.pass.empty() && (other_stem == stem || mean_same_pass(pass, folder.pass)))
+      files.push_back({other.string(), folder.pass});
+  });
+  return files;
+}
+
+/// Adds the files of the folders with passes that are not there yet. Returns whether it added one.
+bool add_files_of(const std::vector<PassFolder>& folders, const fs::path& self, std::vector<SiblingFile>& siblings) {
+  std::vector<SiblingFile> files;
+  for (const PassFolder& folder : folders)
+    for (SiblingFile& file : files_of(folder, self)) files.push_back(std::move(file));
+  std::sort(files.begin(), files.end(), [](const auto& a, const auto& b) { return a.path < b.path; });
+  const std::size_t before = siblings.size();
+  for (SiblingFile& file : files)
+    if (std::none_of(siblings.begin(), siblings.end(),
+                     [&](const SiblingFile& known) { return same_name(known.pass, file.pass); }))
+      siblings.push_back(std::move(file));
+  return siblings.size() > before;
 }
 
 }  // namespace
 
-std::string pass_in_file_name(const std::string& path) { return parts_of(path).pass; }
+std::string pass_in_file_name(const std::string& path) { return parts_of(fs::path(path).stem().string()).pass; }
 
 bool is_denoised_name(const std::string& pass) {
   static const std::vector<std::string> endings = denoised_endings();
@@ -135,20 +271,19 @@ bool is_denoised_name(const std::string& pass) {
          });
 }
 
-std::vector<SiblingFile> find_siblings(const std::string& path) {
+FilesOfRender find_siblings(const std::string& path) {
   const fs::path self(path);
-  const NameParts parts = parts_of(path);
-  std::vector<SiblingFile> siblings;
-  std::error_code failure;
-  const fs::path folder = self.has_parent_path() ? self.parent_path() : fs::path(".");
-  for (fs::directory_iterator entry(folder, failure), end; !failure && entry != end; entry.increment(failure)) {
-    const std::string other = entry->path().stem().string();
-    if (entry->path().extension() != self.extension() || other == self.stem().string()) continue;
-    if (std::string pass = pass_of(other, parts); !pass.empty())
-      siblings.push_back({entry->path().string(), std::move(pass)});
-  }
-  std::sort(siblings.begin(), siblings.end(), [](const auto& a, const auto& b) { return a.path < b.path; });
-  return siblings;
+  FilesOfRender render{pass_in_file_name(path), {}};
+  add_files_of({{self.parent_path(), {}}}, self, render.others);
+  add_files_of(folders_in(self.parent_path()), self, render.others);
+  const auto named = named_folder(self);
+  if (!named) return render;
+  const std::vector<PassFolder> folders = folders_next_to(*named);
+  // A folder that is named after a feature holds one if there is a beauty: "shadow" may be the name of a shot, too.
+  const bool has_beauty = is_beauty(named->parts.pass) ||
+                          std::any_of(folders.begin(), folders.end(), [](const auto& f) { return is_beauty(f.pass); });
+  if (has_beauty && add_files_of(folders, self, render.others) && render.pass.empty()) render.pass = named->parts.pass;
+  return render;
 }
 
 }  // namespace polyrecon

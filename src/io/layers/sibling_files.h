@@ -14,13 +14,25 @@ struct SiblingFile {
   std::string pass;  ///< "Albedo", "ColorVariance": the part of the name that differs from the other files.
 };
 
-/// The other passes of a render that has a file for each: files in the folder of path with the same extension, whose
-/// names differ from that of path in one of two ways. The numbers of a frame and a version may follow.
+/// A file and the other files of its render.
+struct FilesOfRender {
+  std::string pass;  ///< Of the file itself, by its name or its folder's; empty where neither is known.
+  std::vector<SiblingFile> others;
+};
+
+/// The other passes of a render that has a file for each, with the same extension.
+///
+/// Files in the folder of path have names that differ from that of path in one of two ways; the numbers of a frame and
+/// a version may follow:
 /// - Another pass that some renderer is known to write, or a companion, stands in place of the pass in the name of
 /// path:
 ///   "Color" | "Albedo", "NormalB"; "shot_beauty.0001" | "shot_N.0001", "shot_beauty_variance.0001".
 /// - A feature, or a companion of the beauty, is added to the name: "shot.0001" | "shot_albedo.0001".
-std::vector<SiblingFile> find_siblings(const std::string& path);
+///
+/// Each pass may be in a folder of its own, whose names differ in the same ways: "beauty/shot.0001" |
+/// "albedo/shot.0001", "AOV_N/shot_N.0001", or all of them in a folder: "aovs/shot_albedo.0001". Files in the folder of
+/// path come first.
+FilesOfRender find_siblings(const std::string& path);
 
 /// The pass in the file's name ("Color"), before its numbers if there are any; empty where there is none.
 std::string pass_in_file_name(const std::string& path);
