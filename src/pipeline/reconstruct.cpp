@@ -19,6 +19,7 @@
 #include "maps/error_map.h"
 #include "noise/variance.h"
 #include "outliers/restore.h"
+#include "pipeline/denoised_alpha.h"
 #include "pipeline/memory.h"
 #include "pipeline/noisy_halves.h"
 #include "pipeline/notes.h"
@@ -148,22 +149,15 @@ Image restore(const Frame& frame, const NoisyHalves& halves, const Candidate& so
   return out;
 }
 
-/// Alpha is a coverage; a polynomial may leave its range by a little.
-Image within_coverage(Image alpha) {
-  for (std::size_t i = 0; i < alpha.pixels(); ++i) alpha.plane(0)[i] = std::clamp(alpha.plane(0)[i], Real(0), Real(1));
-  return alpha;
-}
-
 /// Distributes the channels of the finished image to the layers of the result.
-void put_layers(const Image& image, const Image& input_alpha, Result& result) {
+void put_layers(const Image& image, Result& result) {
   const ColorLayout layout(image.channels());
   const auto layer_of = [&](int layer) {
     return crop(image, image.bounds(), ColorLayout::first_channel(layer), ColorLayout::primaries);
   };
   result.beauty = layer_of(0);
   for (int layer = 1; layer < layout.layers(); ++layer) result.aovs.push_back(layer_of(layer));
-  result.alpha =
-      layout.has_alpha() ? within_coverage(crop(image, image.bounds(), layout.alpha_channel(), 1)) : input_alpha;
+  if (layout.has_alpha()) result.alpha = crop(image, image.bounds(), layout.alpha_channel(), 1);
 }
 
 /// The change of each channel's sum over the pixels that are usable in the input, relative to the input's energy there.
@@ -287,7 +281,11 @@ Result reconstruct(Frame& frame, const std::vector<TimedNeighbour>& neighbours, 
   Image image = phases.run("energy", 1, [&](Progress&) { return restore(frame, halves, solved, params, report); });
   if (!ours.empty()) image = follow_beauty(std::move(ours), image);
   report.energy_change = require_energy(frame.beauty, image);
-  put_layers(image, frame.alpha, result);
+  put_layers(image, result);
+  result.alpha = result.alpha.empty() ? frame.alpha : phases.run("alpha", 1, [&](Progress& p) {
+    const Preparation& prepared = halves.survey.preparation;
+    return denoised_alpha(frame, std::move(result.alpha), prepared.sampled, prepared.noise_correlation, p);
+  });
   note_result(result);
   return result;
 }

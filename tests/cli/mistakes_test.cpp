@@ -15,7 +15,6 @@ namespace polyrecon::testing {
 namespace {
 
 using ::testing::HasSubstr;
-using ::testing::Not;
 
 class Mistakes : public ProgramTest {
  protected:
@@ -48,17 +47,6 @@ TEST_F(Mistakes, OneRoleTakesOneLayer) {
   EXPECT_EQ(beauty.code, 4);
   EXPECT_THAT(beauty.err, HasSubstr("layer ViewLayer.Combined is the beauty and cannot be the prior too"));
   EXPECT_FALSE(exists("no.exr"));
-}
-
-TEST_F(Mistakes, AlphaWhoseEdgesNoFeatureShowsIsNoted) {
-  const auto write = [&](const std::string& name, const std::vector<std::string>& channels) {
-    write_exr(path(name), 40, 24, channels, [](int x, int y, int c) { return 0.2 + 0.1 * ((3 * x + 5 * y + c) % 7); });
-  };
-  write("flat.exr", {"R", "G", "B", "A", "albedo.R", "albedo.G", "albedo.B"});
-  EXPECT_THAT(denoise("flat.exr", "flat_out.exr", {"--alpha"}).out, HasSubstr("alpha may be worse than before"));
-  EXPECT_THAT(denoise("flat.exr", "kept.exr").out, Not(HasSubstr("alpha may be worse")));
-  write("deep.exr", {"R", "G", "B", "A", "albedo.R", "albedo.G", "albedo.B", "Z"});
-  EXPECT_THAT(denoise("deep.exr", "deep_out.exr", {"--alpha"}).out, Not(HasSubstr("alpha may be worse")));
 }
 
 TEST_F(Mistakes, AResultThatIsMergedIsNoted) {

@@ -194,9 +194,13 @@ TEST_F(OwnWindows, ALayerThatIsNoPartOfTheBeautyIsDenoisedByItself) {
   EXPECT_EQ(r["others"][0]["layer"], "shadow");
   EXPECT_THAT(o.out, HasSubstr("note                       shadow gets windows of its own"));
 
-  const Outcome before = run({"inspect", "in.exr", "--aov", "key", "--aov", "shadow"});
-  EXPECT_THAT(before.out, HasSubstr("shadow gets windows of its own"));
-  EXPECT_THAT(before.out, Not(HasSubstr("key gets")));
+  for (const std::vector<std::string>& named : {std::vector<std::string>{}, {"--aov", "key", "--aov", "shadow"}}) {
+    std::vector<std::string> words{"inspect", "in.exr"};
+    words.insert(words.end(), named.begin(), named.end());
+    const Outcome before = run(words);
+    EXPECT_THAT(before.out, HasSubstr("shadow gets windows of its own"));
+    EXPECT_THAT(before.out, Not(HasSubstr("key gets")));
+  }
 }
 
 /// A beauty that is a crop of the frame, next to an albedo and a light of the whole frame.

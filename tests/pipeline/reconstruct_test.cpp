@@ -172,7 +172,8 @@ TEST(Reconstruct, ALayerThatIsNoPartOfADarkBeautyStays) {
 
 TEST(Reconstruct, AlphaIsKeptOrReconstructed) {
   Scene scene = make_scene(40, 36, 0.2, 9);
-  scene.frame.alpha = image_of(40, 36, 1, [](int x, int, int) { return x < 20 ? 0.25 : 1; });
+  test::Random random(3);
+  scene.frame.alpha = image_of(40, 36, 1, [&](int x, int, int) { return x < 20 ? 0.25 + 0.2 * random.uniform() : 1; });
   EXPECT_TRUE(test::same_bits(run(scene.frame).alpha, scene.frame.alpha));
   Params params = quick();
   params.reconstruct_alpha = true;

@@ -35,14 +35,6 @@ std::string alpha_note(const ReadResult& in, const Result& result) {
   return {};
 }
 
-/// Whether a feature shows where things end, as alpha does.
-bool shows_silhouettes(const FrameSource& source) {
-  return std::any_of(source.chosen.begin(), source.chosen.end(), [](const RoleChoice& choice) {
-    const Surface surface = info_of(choice.role).surface;
-    return surface == Surface::Direction || surface == Surface::Distance;
-  });
-}
-
 void add_replacements(const DonePicture& done, bool with_alpha, std::vector<Replacement>& list) {
   const ReadResult& in = done.in;
   const Rect& window = in.frame.data_window;
@@ -115,14 +107,8 @@ std::vector<std::string> write_outputs(const Job& job, const FrameFiles& files,
     add_replacements(done, job.params.reconstruct_alpha && done.report.picture.layer.empty(), replacements);
   for (const DonePicture& done : pictures) add_maps(job.contents, done, options.additions);
   std::vector<std::string> notes = write_result(joined_source(pictures), replacements, files.outputs.picture, options);
-  if (job.params.reconstruct_alpha) {
-    if (const std::string note = alpha_note(first.in, first.result); !note.empty())
-      notes.push_back(note);
-    else if (!shows_silhouettes(first.in.source))
-      notes.emplace_back(
-          "alpha may be worse than before: without normal or depth nothing shows its edges; leave --alpha out, or "
-          "render one of the two");
-  }
+  if (job.params.reconstruct_alpha)
+    if (const std::string note = alpha_note(first.in, first.result); !note.empty()) notes.push_back(note);
   for (const DonePicture& done : pictures) {
     const bool is_first = &done == &first;
     const OutputPaths outputs = is_first ? files.outputs : maps_of(files.outputs, done.report.picture);

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstdio>
 #include <memory>
 #include <string>
@@ -10,11 +11,13 @@
 #include "cli/common/printed_text.h"
 #include "cli/common/read_limits.h"
 #include "cli/inspect/report.h"
+#include "io/layers/layer_words.h"
 #include "pipeline/part_of_beauty.h"
 #include "pipeline/savings.h"
 #include "pipeline/survey.h"
 #include "polyrecon/error.h"
 #include "polyrecon/progress.h"
+#include "polyrecon/read_frame.h"
 #include "presets/settings_choice.h"
 
 namespace polyrecon {
@@ -38,6 +41,16 @@ std::vector<Decision> decide_steps(Frame& frame) {
   return decisions;
 }
 
+/// The light layers that are no part of the beauty: of those that the user names, else of all.
+std::vector<std::string> light_outside_beauty(const InspectOptions& o, const Inspection& found) {
+  const auto& layers = found.source.layers;
+  if (!o.read.aovs.empty() || std::none_of(layers.begin(), layers.end(), is_light_aov))
+    return layers_outside_beauty(*found.frame);
+  ReadOptions options = o.read;
+  options.aovs = {"all"};
+  return layers_outside_beauty(read_frame(o.input, options).frame);
+}
+
 std::vector<FoundDenoiser> find_denoisers(const DenoiserOptions& options) {
   std::vector<FoundDenoiser> found;
   for (const auto& [option, make] : denoisers()) {
@@ -59,7 +72,7 @@ void run(const InspectOptions& o) {
   require_readable(o.input);
   InspectReport report{inspect(o.input, o.read), {}, find_denoisers(o.denoiser)};
   if (report.file.frame) try {
-      for (const std::string& layer : layers_outside_beauty(*report.file.frame))
+      for (const std::string& layer : light_outside_beauty(o, report.file))
         report.file.notes.push_back(note_of_layer_outside_beauty(layer));
       report.steps = decide_steps(*report.file.frame);
     } catch (const Error& problem) {
