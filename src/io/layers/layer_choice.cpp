@@ -30,9 +30,10 @@ int find_companion(const FrameSource& source, const Layer& mean, Wanted wanted) 
 std::string found_misfit(const FrameSource& source, const Layer& layer, const Layer& beauty) {
   const Rect &picture = part_of(source, beauty).display_window, &other = part_of(source, layer).display_window;
   if (layer.file == 0 || layer.rank == rank_by_hand || other == picture) return {};
-  return fmt::format("its picture has {} x {} pixels, that of the beauty {} x {}; --map ROLE={} lays it over the beauty",
-                     other.width(), other.height(), picture.width(), picture.height(),
-                     source.files[static_cast<std::size_t>(layer.file)].path);
+  return fmt::format(
+      "its picture has {} x {} pixels, that of the beauty {} x {}; --map ROLE={} lays it over the beauty",
+      other.width(), other.height(), picture.width(), picture.height(),
+      source.files[static_cast<std::size_t>(layer.file)].path);
 }
 
 }  // namespace
