@@ -92,14 +92,14 @@ class _Frame(FrameLoop):
         self.noise, self.noise_samples = math.nan, 0.0  # Reconstruction.noise, and the samples per pixel that it is of
         self.has_ended = False  # Whether no error is left, or no round that is large enough.
         number = len(self.state.rounds) - 1
-        if self.is_judged and not all(self.folder.in_round(number, f"error_{half}").exists() for half in HALVES):
+        if self.error_is_known and not all(self.folder.in_round(number, f"error_{half}").exists() for half in HALVES):
             self.state.rounds.pop()
 
     def announce(self, phase, **figures):
         self.on_announce(self, phase, **figures)
 
     @property
-    def is_judged(self):
+    def error_is_known(self):
         """Whether the last decision knows all samples, and no round has followed it."""
         rounds = self.state.rounds
         return bool(rounds) and not rounds[-1].next_samples and rounds[-1].samples == self.state.samples
@@ -111,7 +111,7 @@ class _Frame(FrameLoop):
     def measure_noise(self):
         self.noise, self.noise_samples = self.reconstruction.noise(), self.state.samples
 
-    def judge(self):
+    def estimate_error(self):
         """Reconstructs both halves and estimates the frame's error."""
         number = len(self.state.rounds)
         self.announce(f"reconstruction {number}", round=number)
@@ -128,7 +128,7 @@ class _Frame(FrameLoop):
     def start_round(self, samples, if_uniform):
         """Starts a round of so many cost-weighted samples per pixel, or of `if_uniform` where no map places them.
         Returns its plan; None where no round is left."""
-        if not self.is_judged:
+        if not self.error_is_known:
             return self.start_uniform_round(len(self.state.rounds) + 1, if_uniform)
         number = len(self.state.rounds) - 1
         taken = self.start_placed_round(number, samples, if_uniform)
@@ -202,18 +202,18 @@ class _Shot:
         """Estimates the error of every frame, or its noise where that would take too long."""
         waiting = [frame for frame in self.frames if not frame.state.rounds]
         known = all(frame.variance_is_known() for frame in self.frames)
-        judging_seconds = len(waiting) * (self.decision_seconds or 0.0)
-        if not known or (self.budget.seconds and judging_seconds > MAX_DECISION_SHARE * self.left()):
+        estimate_seconds = len(waiting) * (self.decision_seconds or 0.0)
+        if not known or (self.budget.seconds and estimate_seconds > MAX_DECISION_SHARE * self.left()):
             self.compares_noise = True
             for frame in self.frames:
                 frame.measure_noise()
             return
         for frame in waiting:
-            self.judge(frame)
+            self.estimate_error(frame)
 
-    def judge(self, frame):
+    def estimate_error(self, frame):
         with self.visit(frame):
-            frame.judge()
+            frame.estimate_error()
         if self.budget.seconds:
             known = [entry.decision_seconds for frame in self.frames for entry in frame.state.rounds]
             self.decision_seconds = sum(known) / len(known)
@@ -227,19 +227,19 @@ class _Shot:
             left = self.left_for(frames, figures)
             found = next_slice(figures, left)
             if not found:
-                if self.budget.target and (unsure := [frame for frame in frames if not frame.is_judged]):
+                if self.budget.target and (unsure := [frame for frame in frames if not frame.error_is_known]):
                     for frame in unsure:
-                        self.judge(frame)
+                        self.estimate_error(frame)
                     continue
                 self.why_ended = self.reason_to_stop(frames, figures)
                 return None
             index, amount, share = found
             frame, price, step = frames[index], figures[index].price, figures[index].step
-            if not frame.is_judged and self.judging_pays(share):
-                self.judge(frame)
+            if not frame.error_is_known and self.estimate_pays(share):
+                self.estimate_error(frame)
                 continue
             # Where no decision pays now, no later one will.
-            if_uniform = min(share, UNIFORM_STEPS * step) if frame.is_judged else share
+            if_uniform = min(share, UNIFORM_STEPS * step) if frame.error_is_known else share
             return frame, amount / price, if_uniform / price
 
     def cannot_go_on(self, frame):
@@ -248,7 +248,7 @@ class _Shot:
     def rounds_are_done(self, frame):
         return sum(entry.next_samples > 0 for entry in frame.state.rounds) >= self.settings.max_rounds
 
-    def judging_pays(self, share):
+    def estimate_pays(self, share):
         """Whether a decision pays on a frame that gets so many units of the budget."""
         if self.compares_noise:
             return False
