@@ -5,17 +5,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
-#include <memory>
 #include <utility>
 
 #include "core/frame_shape.h"
 #include "core/rect.h"
 #include "core/repair.h"
-#include "io/files/file.h"
 #include "io/layers/channel_names.h"
 #include "io/layers/choose_layers.h"
 #include "io/observed_read.h"
+#include "io/part_reader.h"
 #include "io/renderers/known_names.h"
 #include "io/values/accept_pass.h"
 #include "io/values/beyond_range.h"
@@ -24,98 +22,6 @@
 
 namespace polyrecon {
 namespace {
-
-/// Copies what a band of a part has inside the frame's window to planes that cover this window.
-void place_band(const Band& band, const Rect& part, const Rect& frame, const std::vector<Real*>& planes) {
-  if (part == frame) return copy_band(band, planes);
-  const auto width = static_cast<std::size_t>(part.width());
-  const int y0 = part.y0 + static_cast<int>(band.first_pixel / width);
-  const Rect common = intersect({part.x0, y0, part.x1, y0 + static_cast<int>(band.pixels / width)}, frame);
-  if (common.empty()) return;
-  const auto index = [](const Rect& window, int y, int x) {
-    return static_cast<std::ptrdiff_t>(y - window.y0) * window.width() + (x - window.x0);
-  };
-  for (std::size_t c = 0; c < planes.size(); ++c)
-    for (int y = common.y0; y < common.y1; ++y)
-      std::copy_n(band.samples.begin() + static_cast<std::ptrdiff_t>(band.pixels * c) +
-                      index({part.x0, y0, part.x1, part.y1}, y, common.x0),
-                  common.width(), planes[c] + index(frame, y, common.x0));
-}
-
-/// Collects the images that are wanted, then decodes every part once. All images cover the frame's window; where a
-/// part's data window does not, its pixels are 0, as OpenEXR defines it.
-class PartReader {
- public:
-  PartReader(const FrameSource& source, const ReadLimits& limits) : source_(source), limits_(limits) {}
-
-  /// Sets the frame's window, before any image is wanted.
-  void cover(const Rect& window) { window_ = window; }
-
-  /// Wants channels of a layer's part. The pointer stays valid; read() fills the image.
-  Image* want(const Layer& layer, const std::vector<std::string>& channels) {
-    samples_ += window_.area() * channels.size();
-    if (samples_ > limits_.max_bytes / sizeof(Real))
-      throw Error(ExitCode::OutOfMemory, fmt::format("{}: the passes in use need more than the limit of {} MB",
-                                                     source_.path, limits_.max_bytes >> 20));
-    auto& wanted = parts_[{layer.file, layer.part}];
-    wanted.push_back({channels, std::make_unique<Image>()});
-    return wanted.back().image.get();
-  }
-
-  std::size_t samples() const { return samples_; }  ///< In all images wanted so far.
-
-  void read(const BandObserver& observer) {
-    for (auto& [place, wanted] : parts_) {
-      const FileInfo& file = source_.files[static_cast<std::size_t>(place.first)];
-      const Rect part = file.parts[static_cast<std::size_t>(place.second)].data_window;
-      std::vector<std::string> channels;
-      std::vector<Real*> planes;
-      std::vector<std::pair<Real*, Real*>> repeated;
-      for (Wanted& w : wanted) {
-        *w.image = Image(window_.width(), window_.height(), static_cast<int>(w.channels.size()));
-        for (std::size_t c = 0; c < w.channels.size(); ++c) {
-          Real* plane = w.image->plane(static_cast<int>(c));
-          const auto known = std::find(channels.begin(), channels.end(), w.channels[c]);
-          if (known != channels.end()) {
-            repeated.emplace_back(planes[static_cast<std::size_t>(known - channels.begin())], plane);
-            continue;
-          }
-          channels.push_back(w.channels[c]);
-          planes.push_back(plane);
-        }
-      }
-      if (observer) add_other_channels(file, place.second, channels);
-      read_bands(file, place.second, channels, [&, place = place](const Band& band) {
-        place_band(band, part, window_, planes);
-        if (observer) observer(source_, place.first, place.second, channels, band);
-      });
-      for (const auto& [from, to] : repeated) std::copy_n(from, window_.area(), to);
-    }
-  }
-
-  const PartInfo& part_of(const Layer& layer) const {
-    return source_.files[static_cast<std::size_t>(layer.file)].parts[static_cast<std::size_t>(layer.part)];
-  }
-
-  Rect window_of(const Layer& layer) const { return part_of(layer).data_window; }
-
- private:
-  static void add_other_channels(const FileInfo& file, int part, std::vector<std::string>& channels) {
-    const std::vector<std::string> used = channels;
-    for (const ChannelInfo& channel : file.parts[static_cast<std::size_t>(part)].channels)
-      if (std::find(used.begin(), used.end(), channel.name) == used.end()) channels.push_back(channel.name);
-  }
-
-  struct Wanted {
-    std::vector<std::string> channels;
-    std::unique_ptr<Image> image;
-  };
-  const FrameSource& source_;
-  const ReadLimits& limits_;
-  Rect window_;
-  std::size_t samples_ = 0;
-  std::map<std::pair<int, int>, std::vector<Wanted>> parts_;
-};
 
 /// The contents of a variance layer: by its name, unless the user says so.
 Companion kind_of(const Layer& layer, VarianceKind by_user) {
