@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include <nlohmann/json.hpp>
+#include <tuple>
 
 #include "cli/program.h"
 
@@ -147,10 +148,11 @@ class OwnWindows : public Pictures {
  protected:
   static bool is_floor(int y) { return y >= height / 2; }
 
-  void write_scene(const std::string& name) const {
+  /// shadow: the name of that layer.
+  void write_scene(const std::string& name, const std::string& shadow = "shadow") const {
     std::vector<std::string> channels;
-    for (const char* layer : {"", "key.", "fill.", "shadow.", "albedo."})
-      for (const char* letter : {"R", "G", "B"}) channels.push_back(std::string(layer) + letter);
+    for (const std::string& layer : std::vector<std::string>{"", "key.", "fill.", shadow + ".", "albedo."})
+      for (const char* letter : {"R", "G", "B"}) channels.push_back(layer + letter);
     testing::write_exr(path(name), width, height, channels, [](int x, int y, int c) {
       const double color = albedo(x, 0);
       const double lit = is_floor(y) ? 0 : color;
@@ -194,11 +196,16 @@ TEST_F(OwnWindows, ALayerThatIsNoPartOfTheBeautyIsDenoisedByItself) {
   EXPECT_EQ(r["others"][0]["layer"], "shadow");
   EXPECT_THAT(o.out, HasSubstr("note                       shadow gets windows of its own"));
 
-  for (const std::vector<std::string>& named : {std::vector<std::string>{}, {"--aov", "key", "--aov", "shadow"}}) {
-    std::vector<std::string> words{"inspect", "in.exr"};
+  // inspect says it beforehand: of the named layers, else of all lights. A layer `shadow` is a feature unless it is
+  // named.
+  write_scene("catcher.exr", "catcher");
+  for (const auto& [file, layer, named] :
+       {std::tuple{"in.exr", "shadow", std::vector<std::string>{"--aov", "key", "--aov", "shadow"}},
+        std::tuple{"catcher.exr", "catcher", std::vector<std::string>{}}}) {
+    std::vector<std::string> words{"inspect", file};
     words.insert(words.end(), named.begin(), named.end());
     const Outcome before = run(words);
-    EXPECT_THAT(before.out, HasSubstr("shadow gets windows of its own"));
+    EXPECT_THAT(before.out, HasSubstr(std::string(layer) + " gets windows of its own"));
     EXPECT_THAT(before.out, Not(HasSubstr("key gets")));
   }
 }
