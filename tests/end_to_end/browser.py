@@ -169,7 +169,7 @@ class Firefox(Browser):
 
     def _call(self, name, **content):
         if name == "Navigate":
-            return self._send("browsingContext.navigate", context=self._context, wait="complete", **content)
+            return self._navigate(content["url"])
         if name == "PerformActions":
             return self._send("input.performActions", context=self._context, **content)
         if name == "ExecuteScript":
@@ -182,6 +182,19 @@ class Firefox(Browser):
             return json.loads(found["result"].get("value", "null"))
         method = {"TakeScreenshot": "captureScreenshot", "Print": "print"}[name]
         return self._send(f"browsingContext.{method}", context=self._context)["data"]
+
+    def _navigate(self, url, seconds=120):
+        """Loads a page and waits for it. Firefox can do both in one command, which now and then does not answer."""
+        self._send("browsingContext.navigate", context=self._context, wait="none", url=url)
+        end = time.monotonic() + seconds
+        while True:
+            with contextlib.suppress(SystemExit):  # Between two pages there is none to be asked.
+                address, state = self.run("return [location.href, document.readyState]")
+                if address.split("#")[0] == url.split("#")[0] and state == "complete":
+                    return
+            if time.monotonic() > end:
+                raise SystemExit(f"FAILED waiting for {url}")
+            time.sleep(0.02)
 
     def resize(self, width, height):
         size = {"width": width, "height": height}
