@@ -13,7 +13,7 @@ namespace {
 
 /// Largest relative gain of a pixel where the whole image takes part, unless all pixels must gain more.
 constexpr double largest_gain = 0.5;
-/// Largest relative gain of a pixel from the energy of all outliers around it (docs/lab/2026-12-01-noise-of-features.md).
+/// Largest relative gain of a pixel from the energy of outliers around it (docs/lab/2026-12-01-noise-of-features.md).
 constexpr double most_local_gain = 0.03;
 
 constexpr double below_all_values = 1e-100;  ///< Below every positive value of an image.
