@@ -16,11 +16,12 @@ from pipelines.common.command import Frame
 from pipelines.common.errors import DriverError, ExitCode, run_main
 from pipelines.common.polyrecon_cli import Polyrecon
 from pipelines.common.progress import Progress
-from pipelines.loop import command, shot, shot_report
+from pipelines.loop import command, shot, shot_decision, shot_report
 from pipelines.loop.budget import Budget
 from pipelines.loop.frame import Settings
 from pipelines.loop.journal import HALVES
 from pipelines.loop.reconstruction import Reconstruction
+from pipelines.loop.shot_frame import ShotFrame
 from tests.pipelines.loop.synthetic import SyntheticRenderer
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -92,7 +93,7 @@ class Budgets(Folder):
 
     def test_seconds_are_those_of_all_frames(self):
         budget = 4.0 * len(FRAMES)
-        with unittest.mock.patch.object(shot, "MAX_DECISION_SHARE", 100.0):  # Decisions pay in so few seconds.
+        with unittest.mock.patch.object(shot_decision, "MAX_DECISION_SHARE", 100.0):  # Decisions pay in so few seconds.
             _, result = run(self.folder, Budget(seconds=budget))
         parts = [part.seconds for _, frame in result.frames for part in frame.state.parts]
         # The last pass may begin just before the end. What the result takes is kept in reserve, and more or less.
@@ -102,7 +103,7 @@ class Budgets(Folder):
 
     def test_where_decisions_take_too_long_the_noise_decides(self):
         # Nothing is kept in reserve, so that a busy machine has seconds left after the first pass.
-        with unittest.mock.patch.multiple(shot, MAX_DECISION_SHARE=1e-6, NEIGHBOURS_OVER_ALONE={"draft": 0.0}):
+        with unittest.mock.patch.multiple(shot_decision, MAX_DECISION_SHARE=1e-6, NEIGHBOURS_OVER_ALONE={"draft": 0.0}):
             _, result = run(self.folder, Budget(seconds=10))
         self.assertEqual([frame.state.rounds for _, frame in result.frames], [[], [], []])
         samples = samples_of(result)
@@ -201,7 +202,7 @@ class Resuming(Folder):
 class Noise(Folder):
     def test_the_noise_of_a_frame_is_that_of_its_mean(self):
         _, result = run(self.folder, Budget(samples=8))
-        loop = shot._Frame(None, Polyrecon(), settings_of(self.folder, Budget(samples=8), resume=True)[1], None)
+        loop = ShotFrame(None, Polyrecon(), settings_of(self.folder, Budget(samples=8), resume=True)[1], None)
         loop.audit = result.frames[1][1].audit
         loop.reconstruction = Reconstruction(None, None, loop.folder, loop.state, loop.audit, False)
         a, b = (
