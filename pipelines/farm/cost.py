@@ -13,8 +13,8 @@ if not __package__:  # run as a script from a checkout
 from ..common.arguments import Parser
 from ..common.denoise_defaults import QUALITIES
 from ..common.errors import DriverError, ExitCode, run_main
+from .job_options import positive, size
 from .requirements import Frame, Model, Node, threads_for
-from .submission import positive, size
 
 EXAMPLES = """\
 examples:

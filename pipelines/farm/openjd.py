@@ -17,23 +17,11 @@ from ..common import modules
 from ..common.arguments import Parser
 from ..common.errors import DriverError, ExitCode, run_main
 from ..common.files import write_text
-from ..common.frame_names import parse_ranges, ranges_text
-from ..common.polyrecon_cli import Polyrecon
+from ..common.frame_names import ranges_text
 from ..common.terminal import quiet_or_print
-from .requirements import MIB, Node, chunk_for, threads_for
-from .submission import (
-    add_job_options,
-    check_options,
-    counted,
-    first_frame,
-    limit_of,
-    parse_words,
-    quality_of,
-    request_of,
-    seconds_of,
-    size,
-    task_text,
-)
+from .job_options import add_job_options, parse_words, size
+from .requirements import MIB, Node
+from .submission import counted, quality_of, submission_of
 
 TEMPLATE = pathlib.Path(__file__).with_name("template.yaml")
 MAX_TASKS = 1000
@@ -59,10 +47,12 @@ def range_text(frames):
     return ranges_text(sorted(frames))
 
 
-def template_for(template, request, threads, gpus, options):
+def template_for(template, tasks, options):
     """The template with the requirements of a worker, and with further options of the program."""
     denoise, report = template["steps"]
-    amounts = {"vcpu": threads, "memory": math.ceil(request / MIB), **({"gpu": gpus} if gpus else {})}
+    amounts = {"vcpu": tasks.threads, "memory": math.ceil(tasks.request / MIB)}
+    if tasks.gpus:
+        amounts["gpu"] = tasks.gpus
     denoise["hostRequirements"] = {
         "amounts": [{"name": f"amount.worker.{name}", "min": least} for name, least in amounts.items()]
     }
@@ -90,38 +80,30 @@ def programs_of(options, polyrecon):
 
 
 def write_bundle(options):
-    frames = parse_ranges(options.frames)
-    polyrecon = Polyrecon(options.polyrecon)
-    check_options(polyrecon, options)
-    frame = first_frame(options, frames, polyrecon)
-    request = request_of(options, frame)
     worker = Node(options.worker_cpus, options.worker_memory)
-    threads = options.threads or threads_for(request, [worker] if worker.memory else [])
-    chunk = options.chunk or chunk_for(
-        seconds_of(options, frame, threads), options.task_minutes, len(frames), MAX_TASKS
-    )
+    tasks = submission_of(options, lambda: [worker] if worker.memory else [], lambda: MAX_TASKS)
     yaml, template = load_template()
-    template = template_for(template, request, threads, options.gpus, without_quality(options.options))
+    template = template_for(template, tasks, without_quality(options.options))
     values = {
         "InputFolder": os.path.dirname(os.path.abspath(options.input)),
         "InputName": os.path.basename(options.input),
         "OutputFolder": os.path.dirname(os.path.abspath(options.output)),
         "OutputName": os.path.basename(options.output),
-        "Frames": range_text(frames),
-        "FramesPerTask": chunk,
+        "Frames": range_text(tasks.frames),
+        "FramesPerTask": tasks.chunk,
         "Quality": quality_of(options.options),
-        "Threads": threads,
-        "MaxMemory": str(limit_of(options, request)),
-        **programs_of(options, polyrecon),
+        "Threads": tasks.threads,
+        "MaxMemory": str(tasks.limit),
+        **programs_of(options, tasks.polyrecon),
     }
     folder = pathlib.Path(options.bundle)
     parameters = {"parameterValues": [{"name": name, "value": value} for name, value in values.items()]}
     write_text(folder / "template.yaml", yaml.safe_dump(template, sort_keys=False))
     write_text(folder / "parameter_values.yaml", yaml.safe_dump(parameters, sort_keys=False))
     say = quiet_or_print(options)
-    tasks = f"tasks of up to {counted(chunk, 'frame')}, each with {task_text(threads, request, options.gpus)}"
-    say(f"{folder}: {counted(len(frames), 'frame')} in {tasks}")
-    say(f"checked with {polyrecon.describe()}; workers run {values.get('Polyrecon', 'the one on their PATH')}")
+    chunk = f"tasks of up to {counted(tasks.chunk, 'frame')}, each with {tasks.needs}"
+    say(f"{folder}: {counted(len(tasks.frames), 'frame')} in {chunk}")
+    say(f"checked with {tasks.polyrecon.describe()}; workers run {values.get('Polyrecon', 'the one on their PATH')}")
     if options.verbose:
         say(*(f"{name}: {value}" for name, value in values.items()))
 

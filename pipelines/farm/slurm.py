@@ -2,6 +2,8 @@
 """Denoises a sequence on a Slurm cluster: an array job with a task for each chunk of frames, then a job for the
 report."""
 
+import dataclasses
+import functools
 import itertools
 import json
 import math
@@ -22,23 +24,11 @@ from ..common import process
 from ..common.arguments import Parser
 from ..common.errors import DriverError, ExitCode, run_main
 from ..common.files import write_text
-from ..common.frame_names import parse_ranges
-from ..common.polyrecon_cli import Polyrecon
 from ..common.terminal import quiet_or_print
 from .job import JOB_FILE, REPORT_FILE, Job
-from .requirements import MIB, Node, chunk_for, threads_for
-from .submission import (
-    add_job_options,
-    check_options,
-    counted,
-    first_frame,
-    limit_of,
-    parse_words,
-    positive,
-    request_of,
-    seconds_of,
-    task_text,
-)
+from .job_options import add_job_options, parse_words, positive
+from .requirements import MIB, Node
+from .submission import counted, submission_of
 
 EXAMPLES = """\
 examples:
@@ -98,36 +88,32 @@ def max_tasks():
     return max(1, int(match[1]) - 1) if match else DEFAULT_MAX_TASKS
 
 
-def job_of(options):
-    """The job, the bytes to request for a task (0 if the cluster does not manage memory), and lines about program and
-    cluster. Without Slurm, which a dry run does not need, nothing is known about the nodes."""
-    frames = parse_ranges(options.frames)
-    polyrecon = Polyrecon(options.polyrecon)
-    check_options(polyrecon, options)
-    frame = first_frame(options, frames, polyrecon)
-    request = request_of(options, frame)
+def tasks_of(options):
+    """The Submission, with a request of 0 if the cluster does not manage memory, and lines about program and cluster.
+    Without Slurm, which a dry run does not need, nothing is known about the nodes."""
     known = not options.dry_run or answers()
-    nodes = nodes_of(options.partition) if known else ()
-    threads = options.threads or threads_for(request, nodes)
-    chunk = options.chunk
-    if not chunk:
-        limit = max_tasks() if known else DEFAULT_MAX_TASKS
-        chunk = chunk_for(seconds_of(options, frame, threads), options.task_minutes, len(frames), limit)
-    job = Job(
-        input=os.path.abspath(options.input),
-        output=os.path.abspath(options.output),
-        frames=frames,
-        polyrecon=str(polyrecon.program),
-        options=options.options,
-        chunk=chunk,
-        threads=threads,
-        memory=limit_of(options, request),
-        request=request,
-    )
-    about = [polyrecon.describe()]
+    nodes = functools.cache(lambda: nodes_of(options.partition) if known else ())
+    tasks = submission_of(options, nodes, lambda: max_tasks() if known else DEFAULT_MAX_TASKS)
+    about = [tasks.polyrecon.describe()]
     if not known:
         about.append("no Slurm answers here: threads, memory and tasks are those for nodes that are not known")
-    return job, request if not known or any(node.memory for node in nodes) else 0, about
+    elif not any(node.memory for node in nodes()):
+        tasks = dataclasses.replace(tasks, request=0)
+    return tasks, about
+
+
+def job_of(options, tasks):
+    return Job(
+        input=os.path.abspath(options.input),
+        output=os.path.abspath(options.output),
+        frames=tasks.frames,
+        polyrecon=str(tasks.polyrecon.program),
+        options=options.options,
+        chunk=tasks.chunk,
+        threads=tasks.threads,
+        memory=tasks.limit,
+        request=tasks.request,
+    )
 
 
 def common_words(options, job_name, folder, log):
@@ -139,12 +125,12 @@ def common_words(options, job_name, folder, log):
     return [*words, *options.sbatch]
 
 
-def array_words(options, job, request, name, folder):
+def array_words(options, job, name, folder):
     limit = f"%{options.max_running}" if options.max_running else ""
     words = [*common_words(options, name, folder, "log.%a.txt"), f"--array=0-{len(job.chunks) - 1}{limit}"]
     words += ["--ntasks=1", f"--cpus-per-task={job.threads}"]
-    if request:
-        words.append(f"--mem={math.ceil(request / MIB)}M")
+    if job.request:
+        words.append(f"--mem={math.ceil(job.request / MIB)}M")
     if options.gpus:
         words.append(f"--gres=gpu:{options.gpus}")
     if options.after:
@@ -152,11 +138,11 @@ def array_words(options, job, request, name, folder):
     return [*words, str(folder / "task")]
 
 
-def report_words(options, job, request, name, folder, array):
+def report_words(options, job, name, folder, array):
     words = [*common_words(options, f"{name}-report", folder, REPORT_LOG), f"--dependency=afterany:{array}"]
     words += ["--ntasks=1", f"--cpus-per-task={job.threads}"]
-    if request:
-        words.append(f"--mem={math.ceil(request / MIB)}M")
+    if job.request:
+        words.append(f"--mem={math.ceil(job.request / MIB)}M")
     return [*words, str(folder / "report")]
 
 
@@ -208,30 +194,31 @@ def make_folder(folder, job):
     write_script(folder / "report", "report", [str(folder)])
 
 
-def describe(job, request, gpus):
-    tasks = f"{counted(len(job.chunks), 'task')} of up to {counted(job.chunk, 'frame')}"
-    return f"{counted(len(job.frames), 'frame')}: {tasks}, each with {task_text(job.threads, request, gpus)}"
+def describe(job, tasks):
+    chunks = f"{counted(len(job.chunks), 'task')} of up to {counted(job.chunk, 'frame')}"
+    return f"{counted(len(job.frames), 'frame')}: {chunks}, each with {tasks.needs}"
 
 
 def submit(options):
-    job, request, about = job_of(options)
+    tasks, about = tasks_of(options)
+    job = job_of(options, tasks)
     name = options.name or re.sub(r"\W+", "_", pathlib.Path(options.input).name.split("#")[0].split("%")[0]).strip("_")
     name = name or "polyrecon"
     if "/" in name or name in (".", ".."):
         raise DriverError(ExitCode.USAGE, f"--name {name}: is the name of a folder, too: give one without /")
     folder = job_folder(options, name, job)
     say = quiet_or_print(options)
-    say(*about, describe(job, request, options.gpus))
+    say(*about, describe(job, tasks))
     if options.verbose:
         say(f"a task: {shlex.join(job.words(job.chunks[0]))}")
     if options.verbose or options.dry_run:
-        say(shlex.join(array_words(options, job, request, name, folder)))
-        say(shlex.join(report_words(options, job, request, name, folder, "ARRAY")))
+        say(shlex.join(array_words(options, job, name, folder)))
+        say(shlex.join(report_words(options, job, name, folder, "ARRAY")))
     if options.dry_run:
         return
     make_folder(folder, job)
-    array = slurm(*array_words(options, job, request, name, folder)).strip().split(";")[0]
-    report = slurm(*report_words(options, job, request, name, folder, array)).strip().split(";")[0]
+    array = slurm(*array_words(options, job, name, folder)).strip().split(";")[0]
+    report = slurm(*report_words(options, job, name, folder, array)).strip().split(";")[0]
     say(f"job {array} denoises, job {report} reports; their files are in {folder}")
     if options.wait:
         wait_for(report, folder, say)

@@ -1,81 +1,51 @@
-"""The options of a submission, for every engine, and the memory and seconds of a task that follow from them."""
+"""What a submission consists of, for every engine: its tasks, with the memory and seconds of each."""
 
-import argparse
+import dataclasses
 import json
 import os
-import re
 
-from ..common.arguments import add_program, add_verbosity
 from ..common.denoise_defaults import DEFAULT_FRAME_RADIUS, DEFAULT_QUALITY
 from ..common.errors import DriverError, ExitCode
-from ..common.frame_names import frame_path, is_pattern
-from .requirements import MEMORY_MARGIN, Model, frame_of
+from ..common.frame_names import frame_path, parse_ranges
+from ..common.polyrecon_cli import Polyrecon
+from .requirements import MEMORY_MARGIN, Model, chunk_for, frame_of, threads_for
 
 
-def size(text):
-    """The bytes of a text such as 512M or 4G."""
-    match = re.fullmatch(r"(\d+(?:\.\d+)?)([KMGT]?)", text.strip().upper())
-    if not match:
-        raise argparse.ArgumentTypeError(f"{text}: write it as 512M or 4G")
-    return int(float(match[1]) * 1024 ** (" KMGT".index(match[2] or " ")))
+@dataclasses.dataclass(frozen=True)
+class Submission:
+    polyrecon: Polyrecon  # Has checked the options.
+    frames: list
+    chunk: int  # Frames of a task
+    threads: int  # Of a task
+    request: int  # Bytes that a task needs
+    limit: int  # The program's --max-memory
+    gpus: int
+
+    @property
+    def needs(self):
+        """What a task needs, in words."""
+        words = [counted(self.threads, "thread")]
+        if self.gpus:
+            words.append(counted(self.gpus, "graphics card"))
+        if self.request:
+            words.append(f"{self.request / 1e9:.2f} GB")
+        return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"
 
 
-def positive(text):
-    number = int(text)
-    if number < 1:
-        raise argparse.ArgumentTypeError(f"{text}: must be at least 1")
-    return number
+def submission_of(options, nodes, max_tasks):
+    """The Submission of what add_job_options reads. Raises DriverError where a task would fail.
 
-
-def pattern(text):
-    if not is_pattern(text):
-        raise argparse.ArgumentTypeError(f"{text}: needs #### or %04d for the frame")
-    return text
-
-
-def add_job_options(parser):
-    add = parser.add_argument
-    add(
-        "-i",
-        "--input",
-        required=True,
-        type=pattern,
-        metavar="PATTERN",
-        help="renders, such as shot.####.exr or shot.%%04d.exr",
-    )
-    add("-o", "--output", required=True, type=pattern, metavar="PATTERN", help="results; missing folders are made")
-    add("--frames", required=True, metavar="RANGES", help="frames, such as 1-10,20-40x2")
-    add("--chunk", type=positive, metavar="N", help="frames of a task (default: as many as take --task-minutes)")
-    add("--task-minutes", type=float, default=10, metavar="M", help="minutes that a task takes")
-    add(
-        "--threads",
-        type=positive,
-        metavar="N",
-        help="threads of a task (default: so that the tasks fill a node's memory)",
-    )
-    add("--memory", type=size, metavar="SIZE", help="memory of a task, such as 4G (default: by the measured model)")
-    add(
-        "--gpus",
-        type=positive,
-        default=0,
-        metavar="N",
-        help="graphics cards of a task, which --prior oidn uses (default: none)",
-    )
-    add(
-        "--model",
-        metavar="FILE",
-        help="constants of your nodes, by tests/bench/farm_model.py (default: those of one machine)",
-    )
-    add_program(parser)
-    add_verbosity(parser)
-
-
-def parse_words(parser, words):
-    """Parses the words before `--`. Those after it are options of `polyrecon denoise`."""
-    at = words.index("--") if "--" in words else len(words)
-    options = parser.parse_args(words[:at])
-    options.options = words[at + 1 :]
-    return options
+    nodes, max_tasks: functions without arguments, asked when the options are checked: the kinds of Node, and the
+    largest number of tasks."""
+    frames = parse_ranges(options.frames)
+    polyrecon = Polyrecon(options.polyrecon)
+    check_options(polyrecon, options)
+    frame = first_frame(options, frames, polyrecon)
+    request = request_of(options, frame)
+    threads = options.threads or threads_for(request, nodes())
+    seconds = seconds_of(options, frame, threads)
+    chunk = options.chunk or chunk_for(seconds, options.task_minutes, len(frames), max_tasks())
+    return Submission(polyrecon, frames, chunk, threads, request, limit_of(options, request), options.gpus)
 
 
 def check_options(polyrecon, options):
@@ -141,16 +111,6 @@ def first_frame(options, frames, polyrecon):
 
 def counted(number, thing):
     return f"{number} {thing}{'' if number == 1 else 's'}"
-
-
-def task_text(threads, request, gpus):
-    """What a task needs, in words. request: bytes; 0 where memory is not managed."""
-    words = [counted(threads, "thread")]
-    if gpus:
-        words.append(counted(gpus, "graphics card"))
-    if request:
-        words.append(f"{request / 1e9:.2f} GB")
-    return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"
 
 
 def request_of(options, frame):

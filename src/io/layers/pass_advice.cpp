@@ -13,14 +13,14 @@
 namespace polyrecon {
 namespace {
 
-/// What is worse without a feature, the worst loss first (docs/guide/passes.md has the figures).
-struct MissingFeature {
-  Role role;
+/// What is worse where no pass shows a property of the surfaces, the worst loss first (docs/guide/passes.md has the
+/// figures). Of other features too few renderers have any, or they bring too little.
+struct Loss {
+  Surface unseen;
   const char* without;
 };
-constexpr std::array missing_features{MissingFeature{Role::Albedo, "textures blur"},
-                                      MissingFeature{Role::Normal, "edges soften"},
-                                      MissingFeature{Role::Depth, "outlines run together"}};
+constexpr std::array losses{Loss{Surface::Color, "textures blur"}, Loss{Surface::Direction, "edges soften"},
+                            Loss{Surface::Distance, "outlines run together"}};
 
 std::string letters_of(const std::string& text) {
   std::string out;
@@ -107,9 +107,10 @@ std::vector<PassAdvice> pass_advice(const FrameSource& source, double samples) {
   std::vector<PassAdvice> advice;
   if (source.chosen.empty()) return advice;
   const Renderer* renderer = renderer_of(source);
-  for (const MissingFeature& missing : missing_features)
-    if (!has(source, missing.role))
-      advice.push_back({name_of(missing.role), missing.without, how_to(renderer, missing.role)});
+  for (const Loss& loss : losses)
+    for (const RoleInfo& info : role_table())
+      if (info.surface == loss.unseen && !has(source, info.role))
+        advice.push_back({info.name, loss.without, how_to(renderer, info.role)});
   if (!noise_is_known(source))
     advice.push_back({"variance", "the noise is estimated from the picture",
                       renderer && !renderer->noise_switch.empty()
