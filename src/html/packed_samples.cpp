@@ -15,11 +15,18 @@
 namespace polyrecon {
 namespace {
 
-/// zlib's level, 1 to 9. Noisy halves get hardly smaller at higher levels, which take several times as long.
-constexpr int level = 1;
+/// zlib's level of packing, 1 to 9. Noisy halves get hardly smaller at higher levels, which take several times as long.
+constexpr int packing = 1;
+
+constexpr int stored = 0;  // zlib's level without packing
 
 /// Bytes of a piece that one thread packs.
 constexpr std::size_t piece_bytes = std::size_t{4} << 20;
+
+/// Bytes of the beginning of a piece, and the part of them that must remain after packing, for the piece to be stored
+/// as it is: the lower bytes of noise get hardly smaller, and packing them takes a third of the time of a page.
+constexpr std::size_t tried_bytes = std::size_t{64} << 10;
+constexpr double not_worth_packing = 0.95;
 
 std::uint32_t bits_of(Real value, PageSamples samples) {
   const auto narrow = static_cast<float>(value);
@@ -53,7 +60,7 @@ struct Piece {
   uLong checksum = 0;
 };
 
-Piece pack(const char* bytes, std::size_t count, bool last) {
+Piece pack(const char* bytes, std::size_t count, int level, bool last) {
   z_stream stream{};
   constexpr int raw = -15, memory_level = 9;  // a window of 2^15 bytes, without head and checksum
   if (deflateInit2(&stream, level, Z_DEFLATED, raw, memory_level, Z_DEFAULT_STRATEGY) != Z_OK)
@@ -75,12 +82,21 @@ Piece pack(const char* bytes, std::size_t count, bool last) {
   return piece;
 }
 
+/// The level for a piece, by its beginning.
+int level_for(const char* bytes, std::size_t count) {
+  const std::size_t tried = std::min(count, tried_bytes);
+  const bool pays = static_cast<double>(pack(bytes, tried, packing, true).packed.size()) <
+                    not_worth_packing * static_cast<double>(tried);
+  return pays ? packing : stored;
+}
+
 /// Pieces are packed in parallel and joined; the bytes do not depend on the number of threads.
 std::string zlib_packed(const std::string& bytes) {
   std::vector<Piece> pieces(std::max<std::size_t>((bytes.size() + piece_bytes - 1) / piece_bytes, 1));
   in_parallel(pieces.size(), [&](std::size_t i) {
-    const std::size_t begin = i * piece_bytes;
-    pieces[i] = pack(bytes.data() + begin, std::min(piece_bytes, bytes.size() - begin), i + 1 == pieces.size());
+    const std::size_t begin = i * piece_bytes, count = std::min(piece_bytes, bytes.size() - begin);
+    const char* const piece = bytes.data() + begin;
+    pieces[i] = pack(piece, count, level_for(piece, count), i + 1 == pieces.size());
   });
   std::string out("\x78\x01", 2);  // a window of 2^15 bytes, least effort
   uLong checksum = adler32(0, nullptr, 0);
