@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 #include "core/color_layout.h"
 #include "core/gaussian.h"
 #include "core/halves.h"
 #include "core/mask.h"
 #include "core/parallel.h"
+#include "core/pi.h"
 #include "core/real.h"
 #include "core/spectrum_corner.h"
 
@@ -62,18 +64,44 @@ Image term_weights(const Image& y, const Image& p, double epsilon, const Image& 
   return weights;
 }
 
-/// Adds the terms of numerator and denominator of w of one half, before they are averaged.
-void add_terms(const Image& y, const Image& p, const Image& d, double epsilon, const Image& sampled, Image& terms) {
-  const Image s = term_weights(y, p, epsilon, sampled);
+/// Channels of the terms of w and of the fair w' (mix.h): sums of these are Gaussian means.
+enum Term : std::uint8_t { numerator, denominator, fair_numerator, fair_denominator, fair_square, term_count };
+
+/// Means of the terms, one for each.
+using TermMeans = std::array<double, term_count>;
+
+/// Adds the terms of one half, before they are averaged. y: the samples of the other half; own: those of this one.
+void add_terms(const Image& y, const Image& own, const Image& p, const Image& d, double epsilon, const Image& sampled,
+               Image& terms) {
+  const Image s = term_weights(y, p, epsilon, sampled), fair_s = term_weights(own, d, epsilon, sampled);
   for_rows(terms.height(), [&](int row) {
-    for (int c = 0; c < ColorLayout::primaries; ++c)
-      for (int x = 0; x < terms.width(); ++x) {
-        const double value = p.at(x, row, c), ours = static_cast<double>(d.at(x, row, c)) - value;
-        const double weighted = ours * static_cast<double>(s.at(x, row, c));
-        terms.at(x, row, 0) += storable((static_cast<double>(y.at(x, row, c)) - value) * weighted);
-        terms.at(x, row, 1) += storable(ours * weighted);
+    for (int x = 0; x < terms.width(); ++x) {
+      double fair = 0;
+      for (int c = 0; c < ColorLayout::primaries; ++c) {
+        const double prior = p.at(x, row, c), ours = d.at(x, row, c), step = ours - prior;
+        const double error = static_cast<double>(y.at(x, row, c)) - prior;
+        const double weighted = step * static_cast<double>(s.at(x, row, c));
+        // Where the prior is bright, squares are relative to it.
+        const double relative = (ours * ours + epsilon) / (prior * prior + ours * ours + epsilon);
+        const double fairly = step * relative * static_cast<double>(fair_s.at(x, row, c));
+        terms.at(x, row, numerator) += storable(error * weighted);
+        terms.at(x, row, denominator) += storable(step * weighted);
+        terms.at(x, row, fair_denominator) += storable(step * fairly);
+        fair += error * fairly;
       }
+      terms.at(x, row, fair_numerator) += storable(fair);
+      terms.at(x, row, fair_square) += storable(fair * fair);
+    }
   });
+}
+
+/// w, drawn towards w' as far as w' contradicts it. pixels: how many independent ones the means are of.
+double corrected_share(double w, const TermMeans& means, double pixels) {
+  if (!(means[fair_denominator] > 0)) return w;
+  const double fair = means[fair_numerator] / means[fair_denominator];
+  const double variance = std::max(0.0, means[fair_square] - means[fair_numerator] * means[fair_numerator]) / pixels;
+  const double contradiction = std::abs(fair - w) - std::sqrt(variance) / means[fair_denominator];
+  return contradiction > 0 ? w + std::copysign(contradiction, fair - w) : w;
 }
 
 Image difference(const Image& a, const Image& b) {
@@ -96,22 +124,27 @@ double corner_at(const Image& image, int x, int y, int c) {
 }  // namespace
 
 Image reconstruction_share(const HalfPair& pair, const ValidationHalves& halves) {
-  Image terms(pair.width(), pair.height(), 2);
+  Image terms(pair.width(), pair.height(), term_count);
   for (std::size_t h = 0; h < 2; ++h)
-    add_terms(pair.color[1 - h], halves.prior[h], halves.ours[h], pair.epsilon, pair.sampled, terms);
-  const double numerator = sum_of(terms, 0), denominator = sum_of(terms, 1);
+    add_terms(pair.color[1 - h], pair.color[h], halves.prior[h], halves.ours[h], pair.epsilon, pair.sampled, terms);
+  const auto pixels = static_cast<double>(terms.pixels());
+  TermMeans means{};
+  for (std::size_t t = 0; t < term_count; ++t) means[t] = sum_of(terms, static_cast<int>(t)) / pixels;
   Image share(pair.width(), pair.height(), 1, Real(1));
-  if (!(denominator > 0)) return share;  // both pictures are the same
-  const double everywhere = std::clamp(numerator / denominator, 0.0, 1.0);
-  const double weight = denominator / static_cast<double>(terms.pixels());
+  const double weight = means[denominator];
+  if (!(weight > 0)) return share;  // both pictures are the same
+  const double everywhere = std::clamp(corrected_share(means[numerator] / weight, means, pixels), 0.0, 1.0);
   share = Image(pair.width(), pair.height(), 1);
   for (const double sigma : share_sigmas) {
-    const Image mean = gaussian_blur(terms, sigma, pair.sampled);
+    const Image around = gaussian_blur(terms, sigma, pair.sampled);
+    const double independent = std::min(4 * pi * sigma * sigma, pixels);  // 1 / sum of the squared weights
     for_rows(share.height(), [&](int y) {
       for (int x = 0; x < share.width(); ++x) {
-        const double w = (static_cast<double>(mean.at(x, y, 0)) + weight * everywhere) /
-                         (static_cast<double>(mean.at(x, y, 1)) + weight);
-        share.at(x, y, 0) += static_cast<Real>(w / share_sigmas.size());
+        TermMeans here{};
+        for (std::size_t t = 0; t < term_count; ++t)
+          here[t] = static_cast<double>(around.at(x, y, static_cast<int>(t)));
+        const double w = (here[numerator] + weight * everywhere) / (here[denominator] + weight);
+        share.at(x, y, 0) += static_cast<Real>(corrected_share(w, here, independent) / share_sigmas.size());
       }
     });
   }

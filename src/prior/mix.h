@@ -26,11 +26,17 @@ struct ValidationHalves {
 /// of 6, 12 and 24 pixels, whose three w are averaged. Each is regularised towards the w of the whole frame where (D -
 /// P)^2 is less than on average. s = 1 / (P_h^2 + epsilon) / (v + mean(v) / 10 + 0.003), with v the smoothed relative
 /// (y_o - P_h)^2, lets noisy pixels weigh less. pair: the samples, the first 3 channels of color.
+///
+/// s depends on y_o, so w is drawn to a dark prior where noise comes in spikes: there most samples are below the truth,
+/// and the few far above it weigh little. A fair w' has weights that are made without y_o,
+///     s' = 1 / (P_h^2 + D_h^2 + epsilon) / (v' + mean(v') / 10 + 0.003),   v' from (y_h - D_h)^2 / (D_h^2 + epsilon),
+/// and is less certain. Where it differs from w by more than its standard error, the rest of the difference is added to
+/// w: for the whole frame, and then in each Gaussian.
 Image reconstruction_share(const HalfPair& pair, const ValidationHalves& halves);
 
 /// Channels that reconstruction_share or unvalidated_share holds in addition to its arguments.
 constexpr std::size_t share_channels =
-    2 /* terms */ + 3 * ColorLayout::primaries /* weights, differences of two pictures */ + 1 /* share */;
+    5 /* terms */ + 2 * ColorLayout::primaries /* weights, or differences of two pictures */ + 1 /* share */;
 
 /// The same where nothing validates the prior, since the halves were split from one picture and their noise may have
 /// been estimated wrong: a quarter, less what the reconstruction f has kept of the noise y - P,

@@ -53,6 +53,19 @@ TEST(ReconstructionShare, ANoisyPriorThatCopiesItsHalfIsLeftOut) {
   EXPECT_GT(mean(reconstruction_share(pair, halves)), 0.93);
 }
 
+TEST(ReconstructionShare, ADarkPriorIsLeftOutThoughMostSamplesAreDarker) {
+  // One sample in ten hits a light: it is ten times too bright, the others are black.
+  test::Random random(7);
+  const auto half = [&](int x, int y, int) { return random.uniform() < 0.1 ? 10 * truth(x, y) : 0.0; };
+  HalfPair pair = noisy_pair(8);
+  pair.color = {image_of(size, size, 3, half), image_of(size, size, 3, half)};
+  const std::array<Image, 2> ours{with_error(0.2, 1), with_error(0.2, 2)};
+  EXPECT_GT(mean(reconstruction_share(pair, {pair.color, ours})), 0.9) << "the samples themselves";
+  const auto dark = [](int x, int y, int) { return 0.3 * truth(x, y); };
+  const std::array<Image, 2> priors{image_of(size, size, 3, dark), image_of(size, size, 3, dark)};
+  EXPECT_GT(mean(reconstruction_share(pair, {priors, ours})), 0.9) << "a dark picture";
+}
+
 TEST(ReconstructionShare, FollowsThePlace) {
   ValidationHalves halves{{with_error(0.02, 1), with_error(0.02, 2)}, {with_error(0.02, 3), with_error(0.02, 4)}};
   for (std::size_t h = 0; h < 2; ++h)
