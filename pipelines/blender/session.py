@@ -12,7 +12,7 @@ import sys
 import tempfile
 import threading
 
-from ..common import confine, process
+from ..common import confine, modules, process
 from ..common.errors import DriverError, ExitCode
 from ..common.work_folder import WorkFolder
 
@@ -27,6 +27,8 @@ def find_blender(given=None):
     `bpy` stands for the module of this Python."""
     named = given or os.environ.get("BLENDER") or "blender"
     if named == "bpy":
+        if not modules.is_there("bpy"):
+            raise DriverError(ExitCode.MISSING, modules.advice(["bpy"]))
         return [sys.executable, "-B", SCRIPT]
     program = shutil.which(named)
     if not program:

@@ -13,11 +13,14 @@ import os
 import struct
 import sys
 
-import bpy
-
 sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 if not sys.dont_write_bytecode:  # A checkout stays as it is.
     sys.dont_write_bytecode = True
+
+from common.modules import required
+
+with required("blender_comp.py", ["bpy"]):
+    import bpy
 
 from common.terminal import print_lines, printable
 from common.work_folder import WorkFolder

@@ -10,8 +10,11 @@ if not __package__:  # run as a script from a checkout
     sys.dont_write_bytecode = True  # A checkout stays as it is.
     __package__ = "pipelines.farm"
 
-from ..common.arguments import Parser
-from . import cost, openjd, report, slurm
+from ..common.modules import required
+
+with required("polyrecon-farm", ()):
+    from ..common.arguments import Parser
+    from . import cost, openjd, report, slurm
 
 COMMANDS = {"slurm": slurm, "openjd": openjd, "report": report, "cost": cost}
 

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import dataclasses
+import os
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from ._library import Error
-
-USAGE = 2
+from ._library import USAGE, Error
 
 
 class Images(dict):  # type: ignore[type-arg]
@@ -56,15 +55,23 @@ class Result:
 
 def as_image(name: str, array: npt.ArrayLike) -> np.ndarray:
     """The array with three dimensions and a type that the library reads; copied only where it must be."""
-    image = np.asarray(array)
+    if array is None or isinstance(array, (str, bytes, os.PathLike)):
+        given = "is None" if array is None else f"is the text {os.fsdecode(array)!r}"
+        raise Error(f"image '{name}': {given}, an array is needed; polyrecon.read makes arrays of a file", USAGE)
+    if isinstance(array, np.ma.MaskedArray):
+        raise Error(f"image '{name}': has a mask, which is not used; give its .filled(nan) or its .data", USAGE)
+    try:
+        image = np.asarray(array)
+    except ValueError as error:  # lists of different lengths
+        raise Error(f"image '{name}': {error}", USAGE) from None
     if image.ndim == 2:
         image = image[:, :, np.newaxis]
     if image.ndim != 3:
         raise Error(f"image '{name}': has {image.ndim} dimensions, (height, width, channels) are needed", USAGE)
+    if name == "sample-count" and np.issubdtype(image.dtype, np.integer):
+        image = image.astype(np.float32)
     if not np.issubdtype(image.dtype, np.floating):
-        raise Error(
-            f"image '{name}': has samples of type {image.dtype}; float16 or float32 of linear radiance is needed", USAGE
-        )
+        raise Error(f"image '{name}': has samples of type {image.dtype}; float16, float32 or float64 is needed", USAGE)
     if image.dtype not in (np.float16, np.float32):
         image = image.astype(np.float32)
     # The library takes strides of 0 for "no padding".

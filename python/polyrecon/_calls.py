@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import pathlib
+import re
 import tempfile
 from collections.abc import Mapping, Sequence
 from typing import Union
@@ -78,9 +79,12 @@ def denoise(
     for name, array in _by_pass(variance).items():
         images[f"{name} variance"] = array
     for name, pair in _by_pass(halves).items():
-        if len(pair) != 2:
-            raise Error(f"halves of '{name}': (A, B) are needed, {len(pair)} were given", USAGE)
-        images[f"{name} A"], images[f"{name} B"] = pair
+        try:
+            images[f"{name} A"], images[f"{name} B"] = pair
+        except (TypeError, ValueError):
+            raise Error(f"halves of '{name}': (A, B), a pair of arrays, are needed", USAGE) from None
+    if not isinstance(aovs or {}, Mapping):
+        raise Error("aovs: arrays by name are needed, {'Diffuse': ...}", USAGE)
     for name, array in (aovs or {}).items():
         images[f"aov {name}"] = array
     work = Filter("denoise")
@@ -140,6 +144,9 @@ def merge(
     samples: samples per pixel of each render, where the files do not say it, or say it wrong.
     half_b: files of half B; all of `renders` are then half A.
     """
+    is_image = isinstance(renders, np.ndarray) and renders.ndim < 4
+    if is_image or isinstance(renders, (str, bytes, os.PathLike, Mapping)):
+        raise Error("renders: several are needed, [first, second, ...]", USAGE)
     with tempfile.TemporaryDirectory() as folder:
         work = Filter("merge")
         for index, render in enumerate(renders):
@@ -148,7 +155,11 @@ def merge(
         target = pathlib.Path(folder) / "merged.exr" if output is None else output
         work.set("output", target)
         work.set("samples", samples)
-        work.execute()
+        try:
+            work.execute()
+        except Error as error:
+            message = re.sub(rf"{re.escape(folder)}/(\d+)\.exr", r"renders[\1]", str(error))
+            raise Error(message, error.exit_code) from None
         merged = read(target)
         merged.report["merge"] = work.report()
         return merged
@@ -178,6 +189,8 @@ def sample_map(
     cost: (height, width), seconds per sample up to a common factor; the budget then counts samples of mean cost.
     max_samples: most extra samples of a pixel; 1024 unless given.
     """
+    if not isinstance(result, Result):
+        raise Error("sample_map takes the result of denoise", USAGE)
     work = Filter("sample map")
     for name in ("relmse", "relvariance", "relnoise"):
         work.set_image(name, as_image(name, getattr(result, name)))
@@ -210,6 +223,8 @@ def read(
     view_layer, view: which picture of the file, if it has several; the first without them.
     samples: samples per pixel, where the file does not say it.
     """
+    if path is None:
+        raise Error("read: the path of a file is needed", USAGE)
     work = Filter("read")
     work.set("input", path)
     work.set("aov", list(aovs))

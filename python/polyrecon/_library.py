@@ -13,6 +13,8 @@ import numpy as np
 Progress = Callable[[str, float], Optional[bool]]
 
 FILE = "libpolyrecon.so.1"
+USAGE = 2
+OUT_OF_MEMORY = 33
 INTERRUPTED = 130
 
 
@@ -93,8 +95,11 @@ def version() -> str:
     return str(_LIBRARY.polyrecon_version().decode())
 
 
-def _encoded(text: str) -> bytes:
-    return os.fsencode(text)
+def _encoded(text: str | bytes) -> bytes:
+    encoded = os.fsencode(text)
+    if b"\0" in encoded:  # the library would take the text for one that ends there
+        raise Error(f"{os.fsdecode(encoded)!r} contains a null character", USAGE)
+    return encoded
 
 
 def _described(array: np.ndarray) -> _Image:
@@ -106,14 +111,36 @@ def _described(array: np.ndarray) -> _Image:
     )  # fmt: skip
 
 
+def _start(function: Callable[[], None]) -> None:
+    try:
+        threading.Thread(target=function).start()
+    except RuntimeError as error:
+        raise Error(f"{error}: allow more threads (ulimit -u)", OUT_OF_MEMORY) from None
+
+
+def _wait(finished: threading.Event, stop: threading.Event) -> None:
+    """Waits for the end of the work. What interrupts it, however often, stops the work and is raised at its end.
+
+    Thread.join would not do: before Python 3.13, a call that a KeyboardInterrupt has left makes the next one return at
+    once.
+    """
+    try:
+        finished.wait()
+    except BaseException:
+        stop.set()
+        _wait(finished, stop)
+        raise
+
+
 class Filter:
     """A piece of work. The arrays of its images stay referenced until it is gone."""
 
     def __init__(self, kind: str) -> None:
         self._handle = ctypes.c_void_p(_LIBRARY.polyrecon_new_filter(kind.encode()))
         if not self._handle:
-            raise Error(f"libpolyrecon {version()} has no filter '{kind}'", 2)
+            raise Error(f"libpolyrecon {version()} has no filter '{kind}'", USAGE)
         self._arrays: dict[str, np.ndarray] = {}
+        self._progress: Any = None
 
     def __del__(self) -> None:
         if handle := getattr(self, "_handle", None):
@@ -139,14 +166,18 @@ class Filter:
         if isinstance(value, (list, tuple)):
             for one in value:
                 self.set(name, one)
-        elif isinstance(value, (str, os.PathLike)):
+        elif isinstance(value, (str, bytes, os.PathLike)):
             self._check(_LIBRARY.polyrecon_set_text(self._handle, _encoded(name), _encoded(os.fspath(value))))
         else:
-            self._check(_LIBRARY.polyrecon_set_number(self._handle, _encoded(name), float(value)))
+            try:
+                number = float(value)
+            except (TypeError, ValueError, OverflowError) as error:
+                raise Error(f"parameter '{name}': {error}", USAGE) from None
+            self._check(_LIBRARY.polyrecon_set_number(self._handle, _encoded(name), number))
 
     def execute(self, progress: Progress | None = None) -> None:
         """Does the work in a thread of its own, so that this one can be interrupted from the keyboard."""
-        stop = threading.Event()
+        stop, finished = threading.Event(), threading.Event()
         raised: list[BaseException] = []
 
         def report(_user: Any, phase: bytes, done: float) -> int:
@@ -159,17 +190,19 @@ class Filter:
                     stop.set()
             return 0 if stop.is_set() else 1
 
-        callback = _PROGRESS(report)
-        self._check(_LIBRARY.polyrecon_set_progress(self._handle, callback, None))
+        self._progress = _PROGRESS(report)
+        self._check(_LIBRARY.polyrecon_set_progress(self._handle, self._progress, None))
         codes: list[int] = []
-        worker = threading.Thread(target=lambda: codes.append(_LIBRARY.polyrecon_execute(self._handle)), daemon=True)
-        worker.start()
-        try:
-            worker.join()
-        except BaseException:  # KeyboardInterrupt
-            stop.set()
-            worker.join()
-            raise
+
+        def work() -> None:
+            # The thread refers to self, so filter, arrays and progress function exist until the library has returned.
+            try:
+                codes.append(_LIBRARY.polyrecon_execute(self._handle))
+            finally:
+                finished.set()
+
+        _start(work)
+        _wait(finished, stop)
         if raised:
             raise raised[0]
         self._check(codes[0])

@@ -103,7 +103,7 @@ struct polyrecon_filter {  // NOLINT(readability-identifier-naming): a name of C
   polyrecon_error fail(ExitCode code, std::string_view text) noexcept {
     error = static_cast<polyrecon_error>(code);
     try {
-      message = polyrecon::first_line(std::string(text));
+      message = work->in_parameters(polyrecon::first_line(std::string(text)));
     } catch (...) {
       message.clear();
     }

@@ -110,9 +110,34 @@ void Filter::execute(Progress& progress) {
   images_.clear();
   report_.clear();
   Made made = run(progress);
+  name_parameters(made.report);
   // Names of layers may be no UTF-8; the JSON has to be.
   report_ = made.report.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
   images_ = std::move(made.images);
+}
+
+std::string Filter::in_parameters(const std::string& message) const {
+  std::string text;
+  std::size_t done = 0;
+  for (std::size_t option = message.find("--"); option != std::string::npos; option = message.find("--", option + 2)) {
+    const std::size_t end =
+        std::min(message.find_first_not_of("abcdefghijklmnopqrstuvwxyz-", option + 2), message.size());
+    std::string name = message.substr(option + 2, end - option - 2);
+    std::replace(name.begin(), name.end(), '-', ' ');
+    const bool begins_word = option == 0 || message[option - 1] == ' ';
+    if (!begins_word || parameters_.count(name) == 0) continue;
+    text += message.substr(done, option - done) + "'" + name + "'";
+    done = end;
+  }
+  return text + message.substr(done);
+}
+
+void Filter::name_parameters(nlohmann::ordered_json& report) const {
+  const auto name_in = [&](nlohmann::ordered_json& text) { text = in_parameters(text.get<std::string>()); };
+  if (report.contains("notes"))
+    for (nlohmann::ordered_json& note : report["notes"]) name_in(note);
+  if (report.contains("decisions"))
+    for (nlohmann::ordered_json& decision : report["decisions"]) name_in(decision["reason"]);
 }
 
 const Image& Filter::image(const std::string& name) const {

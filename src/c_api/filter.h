@@ -54,6 +54,10 @@ class Filter {
   const Image& image(const std::string& name) const;
   const std::string& report() const { return report_; }
 
+  /// A message with the names of parameters in place of those of the program's options: "--max-memory 2G" becomes
+  /// "'max memory' 2G".
+  std::string in_parameters(const std::string& message) const;
+
  protected:
   Filter();
 
@@ -80,6 +84,8 @@ class Filter {
 
  private:
   Parameter& parameter(const std::string& name);
+  /// The same for the notes and reasons of a report.
+  void name_parameters(nlohmann::ordered_json& report) const;
 
   std::map<std::string, Parameter> parameters_;
   std::map<std::string, std::vector<std::string>> defaults_;  ///< For those that the result depends on.

@@ -173,7 +173,8 @@ ImagePlace place_of(const std::string& name) {
   for (auto part = parts.rbegin(); part != parts.rend(); ++part) {
     if (!ends_with(name, part->suffix)) continue;
     const std::string stem = name.substr(0, name.size() - std::string(part->suffix).size());
-    if (stem.rfind(aov_prefix, 0) == 0) return {Role::Color, stem.substr(std::string(aov_prefix).size()), part->part};
+    if (stem.rfind(aov_prefix, 0) == 0 && stem != aov_prefix)
+      return {Role::Color, stem.substr(std::string(aov_prefix).size()), part->part};
     const auto role = role_from(stem);
     if (!role || !is_taken(info_of(*role)) || (part->part != Part::Mean && !has_noise(*role))) refuse_name(name);
     return {*role, {}, part->part};

@@ -31,6 +31,7 @@
 namespace {
 
 using testing::HasSubstr;
+using testing::StartsWith;
 
 const std::string sample = std::string(POLYRECON_SAMPLES) + "/study_small_0.exr";
 
@@ -329,7 +330,8 @@ TEST_F(CApiTest, MistakesHaveACodeAndALineThatSaysWhat) {
       {with_text("input", "render.exr"), POLYRECON_USAGE, "take one of them away"},
       {with_text("output", "clean.exr"), POLYRECON_USAGE, "the filter 'write'"},
       {with_text("prior", "magic"), POLYRECON_USAGE, "no denoiser 'magic'"},
-      {with_number("max memory", 1e6), POLYRECON_OUT_OF_MEMORY, ""},
+      {with_image("aov ", beauty.image()), POLYRECON_USAGE, "no image 'aov '"},
+      {with_number("max memory", 1e6), POLYRECON_OUT_OF_MEMORY, "needs 'max memory' "},
   };
   for (const Mistake& mistake : mistakes) {
     const Filter filter = denoiser_of(images);
@@ -341,6 +343,21 @@ TEST_F(CApiTest, MistakesHaveACodeAndALineThatSaysWhat) {
     EXPECT_EQ(message.find('\n'), std::string::npos);
     EXPECT_EQ(polyrecon_image_count(filter.get()), 0) << message;
   }
+}
+
+TEST_F(CApiTest, MessagesNameParametersWhereThoseOfTheProgramNameOptions) {
+  const Filter read = filter_of("read");
+  polyrecon_set_text(read.get(), "input", sample.c_str());
+  polyrecon_set_text(read.get(), "map", "colour=Layer");
+  EXPECT_EQ(polyrecon_execute(read.get()), POLYRECON_USAGE);
+  EXPECT_THAT(message_of(read), StartsWith("'map' colour=Layer: expected ROLE=LAYER"));
+
+  std::vector<float> grey(16 * 16 * 3, 0.5F);
+  const Filter denoise = filter_of("denoise");
+  const polyrecon_image beauty{grey.data(), POLYRECON_FLOAT, 16, 16, 3, 0, 0, 0};
+  polyrecon_set_image(denoise.get(), "beauty", &beauty);
+  EXPECT_EQ(polyrecon_execute(denoise.get()), POLYRECON_OK);
+  EXPECT_THAT(polyrecon_get_report(denoise.get()), HasSubstr("give 'samples'"));
 }
 
 TEST_F(CApiTest, FilesThatAreMissingOrDamagedAreRefused) {

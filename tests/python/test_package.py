@@ -4,6 +4,7 @@ import _thread
 import os
 import pathlib
 import subprocess
+import sys
 import tempfile
 import threading
 import time
@@ -117,6 +118,8 @@ class Denoise(Folder):
         alone = polyrecon.sample_map(within, budget=16, sample_count=self.render.get("sample-count"))
         np.testing.assert_array_equal(alone, within.samples)
         self.assertAlmostEqual(float(alone.mean()), 16, places=2)
+        counts = self.render["sample-count"].astype(int)
+        np.testing.assert_array_equal(polyrecon.sample_map(within, budget=16, sample_count=counts), alone)
         cost = np.ones_like(alone)
         cost[: len(cost) // 2] = 4
         dear = polyrecon.sample_map(within, budget=16, cost=cost)
@@ -125,13 +128,20 @@ class Denoise(Folder):
 
     def test_mistakes(self):
         beauty = self.render["beauty"]
-        self.assert_error(2, "float16 or float32", polyrecon.denoise, (beauty * 255).astype(np.uint8))
+        self.assert_error(2, "type uint8; float16", polyrecon.denoise, (beauty * 255).astype(np.uint8))
+        self.assert_error(2, "polyrecon.read", polyrecon.denoise, SMALL)
+        self.assert_error(2, "is None", polyrecon.denoise, beauty, halves=(beauty, None))
+        self.assert_error(2, "has a mask", polyrecon.denoise, np.ma.array(beauty))
         self.assert_error(2, "dimensions", polyrecon.denoise, beauty[0, 0])
         self.assert_error(2, "the beauty has", polyrecon.denoise, beauty, beauty[:10])
         self.assert_error(2, "quality 'superb'", polyrecon.denoise, beauty, quality="superb")
         self.assert_error(2, "no image 'beauty'", polyrecon.denoise, {"albedo": beauty})
-        self.assert_error(2, "(A, B)", polyrecon.denoise, beauty, halves=(beauty,))
-        self.assert_error(2, "'threads'", polyrecon.denoise, beauty, threads=-1)
+        for halves in ((beauty,), beauty, 1):
+            self.assert_error(2, "(A, B)", polyrecon.denoise, beauty, halves=halves)
+        self.assert_error(2, "by name", polyrecon.denoise, beauty, aovs=[beauty])
+        self.assert_error(2, "null character", polyrecon.denoise, beauty, aovs={"Dif\0fuse": beauty})
+        for threads in (-1, 10**400, 1j):
+            self.assert_error(2, "'threads'", polyrecon.denoise, beauty, threads=threads)
         self.assert_error(6, "no pixel is finite", polyrecon.denoise, np.full_like(beauty, np.nan))
         self.assert_error(33, "", polyrecon.denoise, beauty, max_memory=1000)
         self.assert_error(4, "missing.exr", polyrecon.read, self.folder / "missing.exr")
@@ -139,7 +149,12 @@ class Denoise(Folder):
         self.assert_error(5, "/dev/null", polyrecon.write, "/dev/null/x.exr", beauty)
         self.assert_error(2, ".exr", polyrecon.write, self.folder / "x.png", beauty)
         self.assert_error(2, "pixels", polyrecon.write, self.folder / "x.exr", beauty[:9], like=SMALL)
-        self.assert_error(2, "", polyrecon.sample_map, self.draft)
+        self.assert_error(2, "budget", polyrecon.sample_map, self.draft)
+        self.assert_error(2, "the result", polyrecon.sample_map, beauty, 4)
+        self.assert_error(2, "path", polyrecon.read, None)
+        for renders in (beauty, SMALL, str(SMALL), self.render):
+            self.assert_error(2, "several are needed", polyrecon.merge, renders)
+        self.assert_error(3, "renders[1]: does not fit renders[0]", polyrecon.merge, [beauty, beauty[:9]])
         self.assertEqual(list(self.folder.iterdir()), [])
 
 
@@ -171,6 +186,27 @@ class Progress(Folder):
 
         with self.assertRaises(KeyboardInterrupt):
             polyrecon.denoise(self.render, quality="best", progress=interrupt)
+
+    def test_after_ctrl_c_the_library_has_stopped(self):
+        """One that works on would use memory that Python has freed. The third interrupt arrives while it stops."""
+        script = """if True:
+            import os, signal, sys, time, polyrecon
+            render = polyrecon.read(sys.argv[1])
+
+            def interrupt(phase, done):
+                if phase == "polynomials":
+                    for _ in range(3):
+                        os.kill(os.getpid(), signal.SIGINT)
+                        time.sleep(0.01)
+
+            try:
+                polyrecon.denoise(render, quality="best", progress=interrupt)
+            except KeyboardInterrupt:
+                time.sleep(1)
+                print("interrupted")
+        """
+        done = subprocess.run([sys.executable, "-c", script, SMALL], capture_output=True, text=True)
+        self.assertEqual((done.returncode, done.stdout), (0, "interrupted\n"), done.stderr)
 
     def test_other_threads_go_on(self):
         """With the interpreter's lock held, the counter would stand still for the whole time."""

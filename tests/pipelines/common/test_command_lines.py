@@ -9,6 +9,7 @@ import tempfile
 import unittest
 from pathlib import Path
 
+from pipelines.common import modules
 from pipelines.common.version import VERSION
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -140,6 +141,37 @@ class MissingModules(unittest.TestCase):
             self.assertIn(f"{sys.executable} -m pip install numpy OpenImageIO jinja2 rich", done.stderr)
         done = run("polyrecon-farm openjd", "--help", python=(sys.executable, "-I", "-S", "-B"))
         self.assertEqual(done.returncode, 0, done.stderr)  # It needs none of them.
+
+    def test_a_module_that_cannot_be_imported_is_named_with_the_reason(self):
+        """As numpy is where it was compiled for another Python. Its message has several lines."""
+        with tempfile.TemporaryDirectory() as folder:
+            Path(folder, "jinja2.py").write_text("raise ImportError('\\nno symbol x\\n\\nread this')\n")
+            done = run("polyrecon-povray", "--help", PYTHONPATH=folder)
+        self.assertEqual(done.returncode, 4, done.stderr)
+        advice = f"{sys.executable} -m pip install --force-reinstall jinja2"
+        told = "polyrecon-povray: the module jinja2 of this Python cannot be imported (no symbol x): "
+        self.assertEqual(done.stderr, told + advice + "\n")
+
+    def test_faults_of_our_modules_are_not_blamed_on_others(self):
+        with self.assertRaisesRegex(ImportError, "cannot import name 'nothing'"), modules.required("x", ["json"]):
+            from pipelines.common.version import nothing  # noqa: F401
+
+    def test_a_python_that_is_too_old_is_named(self):
+        self.assertEqual(modules.too_old((3, 9, 0)), "")
+        self.assertEqual(modules.too_old((3, 8, 18)), f"Python 3.9 or later is needed; {sys.executable} is 3.8")
+
+    def test_blender_as_a_module_is_missing_in_one_line(self):
+        """The system's Python has what drivers need, but no bpy."""
+        with tempfile.TemporaryDirectory() as folder:
+            scene = Path(folder, "a.blend")
+            scene.touch()
+            words = ("--bpy", scene, "-o", Path(folder, "x.exr"), "--budget-spp", "8")
+            done = run("polyrecon-blender", *words, python=("/usr/bin/python3", "-B"))
+        told = "this Python lacks the module bpy: /usr/bin/python3 -m pip install bpy (for Python 3.11 or 3.13)\n"
+        self.assertEqual((done.returncode, done.stderr), (4, "polyrecon-blender: " + told))
+        script = ROOT / "pipelines" / "compositing" / "blender_comp.py"
+        done = subprocess.run(["/usr/bin/python3", "-B", script, "x.exr", "--list"], capture_output=True, text=True)
+        self.assertEqual((done.returncode, done.stderr), (4, "blender_comp.py: " + told))
 
 
 if __name__ == "__main__":
