@@ -142,6 +142,19 @@ std::optional<MapScale> scale_of(const Layer& layer, const Image& values) {
   return MapScale{range.high > range.low ? range.low : range.high / 10, range.high, true};
 }
 
+/// Whether values of a layer of whole numbers are too large for floats, as identifiers often are.
+bool are_rounded(const PartInfo& part, const std::vector<std::string>& channels, const Image& values) {
+  constexpr Real largest_exact = 16777216;  // 2^24
+  for (std::size_t c = 0; c < channels.size(); ++c) {
+    const Real* const plane = values.plane(static_cast<int>(c));
+    const bool whole = std::any_of(part.channels.begin(), part.channels.end(), [&](const ChannelInfo& channel) {
+      return channel.name == channels[c] && channel.type == SampleType::Uint;
+    });
+    if (whole && std::any_of(plane, plane + values.pixels(), [](Real v) { return v >= largest_exact; })) return true;
+  }
+  return false;
+}
+
 bool are_halves(const PartInfo& part, const std::vector<std::string>& channels) {
   return std::all_of(channels.begin(), channels.end(), [&](const std::string& name) {
     return std::any_of(part.channels.begin(), part.channels.end(), [&](const ChannelInfo& channel) {
@@ -210,11 +223,15 @@ class FileReader {
     return left_out;
   }
 
+  /// Layers whose values the page cannot hold exactly.
+  const std::vector<std::string>& rounded() const { return rounded_; }
+
  private:
   ViewerPage& page_;
   const ViewedFile& viewed_;
   const LayeredFile& file_;
   const ViewSelection& selection_;
+  std::vector<std::string> rounded_;
 
   std::size_t add_batch(const std::vector<Wanted>& layers, const Image& values, const Rect& window) {
     int first = 0;
@@ -235,6 +252,7 @@ class FileReader {
         continue;
       }
       const PartInfo& part = file_.info.parts[static_cast<std::size_t>(wanted.layer->part)];
+      if (are_rounded(part, wanted.layer->channels, placed.image)) rounded_.push_back(wanted.layer->name);
       const bool halves = !in_xyz && selection_.scale == 1 && are_halves(part, wanted.layer->channels);
       if (!page_.add_layer(viewed_.image, viewed_.frames, viewed_layer(file_, wanted, placed), placed.image, halves))
         ++left_out;
@@ -257,7 +275,10 @@ std::vector<std::string> add_files(ViewerPage& page, const std::vector<ViewedFil
       for (const Wanted& wanted : wanted_layers(file, selection.layers))
         if (wanted.importance == importance) layers.push_back(wanted);
       if (layers.empty()) continue;
-      const std::size_t missing = FileReader(page, viewed, file, selection).add(layers);
+      FileReader reader(page, viewed, file, selection);
+      const std::size_t missing = reader.add(layers);
+      for (const std::string& name : reader.rounded())
+        notes.push_back(fmt::format("{}: {}: whole numbers above 16777216 are rounded to floats", viewed.path, name));
       if (missing == 0) continue;
       if (importance == Importance::First)
         throw Error(

@@ -35,18 +35,28 @@ async function loadTransform() {
   changed();
 }
 
-/** Zooms by a factor; the place of the image at this place of the canvas stays there. */
-function zoomBy(factor, canvasX, canvasY) {
+/** Zooms; the place of the image at this place of the canvas stays there. */
+function zoomAt(wanted, canvasX, canvasY) {
   const { cell, x, y } = hit(canvasX, canvasY);
-  const old = geometryOf(cell).zoom;
-  let zoom = old * factor;
-  if (zoom > 1) zoom = factor > 1 ? Math.max(Math.round(zoom), Math.floor(old) + 1) : Math.min(Math.round(zoom), Math.ceil(old) - 1);
-  zoom = Math.min(Math.max(zoom, Math.min(fittingZoom(), 1) / 4), maxZoom);
+  const zoom = Math.min(Math.max(wanted, Math.min(fittingZoom(), 1) / 4), maxZoom);
   set({
     zoom,
     x: x + (cell.x + cell.width / 2 - canvasX) / zoom,
     y: y + (cell.y + cell.height / 2 - canvasY) / zoom,
   });
+}
+
+/** Zooms by a factor, to whole pixels of the screen where they are larger than one. */
+function zoomBy(factor, canvasX, canvasY) {
+  const old = geometryOf(hit(canvasX, canvasY).cell).zoom;
+  let zoom = old * factor;
+  if (zoom > 1) zoom = factor > 1 ? Math.max(Math.round(zoom), Math.floor(old) + 1) : Math.min(Math.round(zoom), Math.ceil(old) - 1);
+  zoomAt(zoom, canvasX, canvasY);
+}
+
+/** Moves the picture by pixels of the canvas. cell, zoom, originX, originY: where it was. */
+function moveBy(x, y, cell, { zoom, originX, originY }) {
+  set({ zoom, x: originX + (cell.width / 2 - x) / zoom, y: originY + (cell.height / 2 - y) / zoom });
 }
 
 function zoomInTheMiddle(factor) {

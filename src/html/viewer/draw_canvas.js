@@ -75,6 +75,7 @@ class CanvasPainter {
 
   #marked(mark, color) {
     if (mark === Mark.NaN) return [1, 0, 1];
+    if (mark === Mark.NegativeInfinite) return [0, 0.8, 0.2];
     return mark ? [0, 1, 1] : color;
   }
 }

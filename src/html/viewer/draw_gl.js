@@ -31,7 +31,7 @@ uniform bool marked;
 uniform float relativeFloor;
 out vec4 result;
 
-const vec3 nanColor = vec3(1.0, 0.0, 1.0), infiniteColor = vec3(0.0, 1.0, 1.0);
+const vec3 nanColor = vec3(1.0, 0.0, 1.0), infiniteColor = vec3(0.0, 1.0, 1.0), negativeInfiniteColor = vec3(0.0, 0.8, 0.2);
 const vec3 negativeColor = vec3(0.1, 0.45, 1.0), clippedColor = vec3(1.0, 0.85, 0.0);
 
 struct Found {
@@ -123,7 +123,8 @@ void main() {
       color = rampColor(value, rangeA, rampRows.x);
     }
   }
-  if (mark > 1.5) color = infiniteColor;
+  if (mark > 2.5) color = negativeInfiniteColor;
+  else if (mark > 1.5) color = infiniteColor;
   else if (mark > 0.5) color = nanColor;
   result = vec4(color, 1.0);
 }`;
@@ -273,8 +274,8 @@ function withoutMarked(layer, plane) {
   return out;
 }
 
-/** The halves 0, 1 and 2. */
+/** The halves 0 to 3. */
 function halfMark(out, mark, i) {
-  out[i] = [0, 0x3c00, 0x4000][mark];
+  out[i] = [0, 0x3c00, 0x4000, 0x4200][mark];
   return out;
 }

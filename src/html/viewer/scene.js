@@ -23,7 +23,7 @@ const halfValues = (() => {
 })();
 
 /** What Layer.marks says of a pixel. */
-const Mark = { NaN: 1, Infinite: 2 };
+const Mark = { NaN: 1, Infinite: 2, NegativeInfinite: 3 };
 
 /**
  * One layer of one image in one frame, unpacked. Halves stay halves; a sample's place in its plane is

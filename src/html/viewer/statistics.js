@@ -30,7 +30,7 @@ class Statistics {
     if (layer.marks)
       for (const mark of layer.marks) {
         if (mark === Mark.NaN) ++this.nan;
-        else if (mark === Mark.Infinite) ++this.infinite;
+        else if (mark) ++this.infinite;
       }
   }
 

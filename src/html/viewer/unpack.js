@@ -42,7 +42,7 @@ function unpacker() {
     for (let i = 0, value = 0; i < pixels; ++i) {
       value = (value + (bytes[at + i] << 8) + bytes[low + i]) & 65535;
       out[i] = value;
-      if ((value & 31744) === 31744) mark(i, value & 1023);
+      if ((value & 31744) === 31744) mark(i, value & 1023, value & 32768);
     }
     return out;
   }
@@ -54,7 +54,7 @@ function unpacker() {
     for (let i = 0, value = 0; i < pixels; ++i) {
       value = (value + (bytes[at + i] << 24) + (bytes[second + i] << 16) + (bytes[third + i] << 8) + bytes[fourth + i]) | 0;
       bits[i] = value;
-      if ((value & 0x7f800000) === 0x7f800000) mark(i, value & 0x7fffff);
+      if ((value & 0x7f800000) === 0x7f800000) mark(i, value & 0x7fffff, value < 0);
     }
     return out;
   }
@@ -64,9 +64,10 @@ function unpacker() {
     const size = half ? 2 : 4;
     const bytes = await inflated(text, channels * pixels * size);
     let marks = null;
-    const mark = (i, fraction) => {
+    const mark = (i, fraction, negative) => {
       marks ??= new Uint8Array(pixels);
-      marks[i] = fraction || marks[i] === 1 ? 1 : 2;
+      const found = fraction ? 1 : negative ? 3 : 2;
+      marks[i] = marks[i] ? Math.min(marks[i], found) : found; // of several channels NaN is shown first
     };
     const planes = [];
     for (let c = 0; c < channels; ++c) planes.push((half ? halves : floats)(bytes, c * size * pixels, pixels, mark));
