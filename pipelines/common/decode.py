@@ -42,6 +42,8 @@ def decode(kind, value, place="", lowest=0):
         if type(value) not in accepted or not lowest <= value < NUMBER_LIMIT:  # NaN fails the comparison.
             raise InvalidFileError(f"{place} is not {'a whole' if kind is int else 'a finite'} number >= {lowest}")
         return kind(value)
+    if kind is str and isinstance(value, str) and "\0" in value:
+        raise InvalidFileError(f"{place} holds a zero, which no path and no option can hold")
     if kind is Any or type(value) is kind:
         return value
     raise InvalidFileError(f"{place} is not of the type {(origin or kind).__name__}")

@@ -50,7 +50,8 @@ def _parse_range(text, piece):
 
 
 def _number(text, word):
-    number = int(word)
+    digits = word.lstrip("-0") or "0"  # Python refuses to convert thousands of digits.
+    number = int(digits[:20]) * (-1 if word.startswith("-") else 1)
     if not _INT_MIN <= number <= _INT_MAX:
         raise _bad_ranges(text, f"{word} is too large")
     return number

@@ -3,6 +3,7 @@
 model."""
 
 import pathlib
+import re
 import sys
 
 if not __package__:  # run as a script from a checkout
@@ -10,6 +11,7 @@ if not __package__:  # run as a script from a checkout
     sys.dont_write_bytecode = True  # A checkout stays as it is.
     __package__ = "pipelines.farm"
 
+from ..common import arguments
 from ..common.arguments import Parser
 from ..common.denoise_defaults import QUALITIES
 from ..common.errors import DriverError, ExitCode, run_main
@@ -29,10 +31,10 @@ def row(*cells):
 
 def print_table(options):
     model = Model(options.model) if options.model else Model()
-    try:
-        width, height = (int(word) for word in options.size.lower().split("x"))
-    except ValueError:
-        raise DriverError(ExitCode.USAGE, f"--size {options.size}: write it as 3840x2160") from None
+    found = re.fullmatch("([0-9]{1,9})x([0-9]{1,9})", options.size.lower())
+    if not found:
+        raise DriverError(ExitCode.USAGE, f"--size {options.size}: write it as 3840x2160")
+    width, height = map(int, found.groups())
     frame = Frame(width, height, options.channels, options.fit_channels)
     node = Node(options.node_cpus, options.node_memory)
     row(
@@ -66,7 +68,7 @@ def print_table(options):
         )
 
 
-def arguments(words):
+def options_of(words):
     parser = Parser("polyrecon-farm cost", description=__doc__, epilog=EXAMPLES)
     add = parser.add_argument
     add("--size", default="3840x2160", metavar="WxH", help="size of a frame")
@@ -79,7 +81,7 @@ def arguments(words):
     add("--price", type=float, default=0.04, metavar="P", help="price of a core-hour")
     add(
         "--speed",
-        type=float,
+        type=arguments.positive,
         default=1,
         metavar="F",
         help="speed of a node's core, relative to the measured machine",
@@ -94,7 +96,7 @@ def arguments(words):
 
 def main(words=None):
     return run_main(
-        "polyrecon-farm", lambda words: print_table(arguments(sys.argv[1:] if words is None else words)), words
+        "polyrecon-farm", lambda words: print_table(options_of(sys.argv[1:] if words is None else words)), words
     )
 
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from ..common.decode import InvalidFileError, decode, read_json
 from ..common.errors import DriverError, ExitCode
 from ..common.files import write_text
-from ..common.frame_names import ranges_text
+from ..common.frame_names import is_pattern, ranges_text
 
 JOB_FILE = "job.json"
 RECORDS = "records"
@@ -60,6 +60,8 @@ class Job:
             raise DriverError(ExitCode.MISSING, f"{path}: {os.strerror(errno.ENOENT)}")
         try:
             job = decode(cls, read_json(path), lowest=-(2**31))
+            if not is_pattern(job.input) or not is_pattern(job.output):
+                raise InvalidFileError("a name has no place for the frame's number")
             if not job.frames or job.chunk < 1 or min(job.threads, job.memory, job.request) < 0:
                 raise InvalidFileError("a number is out of range")
         except InvalidFileError as error:

@@ -3,7 +3,9 @@
 import argparse
 import re
 
+from ..common import arguments
 from ..common.arguments import add_program, add_verbosity
+from ..common.decode import NUMBER_LIMIT
 from ..common.frame_names import is_pattern
 
 
@@ -12,13 +14,16 @@ def size(text):
     match = re.fullmatch(r"(\d+(?:\.\d+)?)([KMGT]?)", text.strip().upper())
     if not match:
         raise argparse.ArgumentTypeError(f"{text}: write it as 512M or 4G")
-    return int(float(match[1]) * 1024 ** (" KMGT".index(match[2] or " ")))
+    number = float(match[1]) * 1024 ** (" KMGT".index(match[2] or " "))
+    if number >= NUMBER_LIMIT:
+        raise argparse.ArgumentTypeError(f"{text}: is too large")
+    return int(number)
 
 
 def positive(text):
     number = int(text)
-    if number < 1:
-        raise argparse.ArgumentTypeError(f"{text}: must be at least 1")
+    if not 1 <= number < NUMBER_LIMIT:
+        raise argparse.ArgumentTypeError(f"{text}: must be at least 1, and below 2^63")
     return number
 
 
@@ -41,7 +46,7 @@ def add_job_options(parser):
     add("-o", "--output", required=True, type=pattern, metavar="PATTERN", help="results; missing folders are made")
     add("--frames", required=True, metavar="RANGES", help="frames, such as 1-10,20-40x2")
     add("--chunk", type=positive, metavar="N", help="frames of a task (default: as many as take --task-minutes)")
-    add("--task-minutes", type=float, default=10, metavar="M", help="minutes that a task takes")
+    add("--task-minutes", type=arguments.positive, default=10, metavar="M", help="minutes that a task takes")
     add(
         "--threads",
         type=positive,

@@ -27,6 +27,7 @@ from ..common.polyrecon_cli import Polyrecon, find_polyrecon
 from ..common.terminal import print_lines, printable, quiet_or_print
 from ..common.work_folder import WorkFolder
 from .job import FRAME_ERROR, RECORDS, REPORT_FILE, Job, chunks, write_json
+from .job_options import pattern
 from .submission import counted
 
 EXAMPLES = """\
@@ -226,9 +227,13 @@ def arguments(words):
     parser = Parser("polyrecon-farm report", description=__doc__, epilog=EXAMPLES)
     parser.add_argument("folder", nargs="?", help="folder of a submitted job")
     parser.add_argument(
-        "-i", "--input", metavar="PATTERN", help="the renders, such as shot.####.exr, if there is no folder of a job"
+        "-i",
+        "--input",
+        type=pattern,
+        metavar="PATTERN",
+        help="the renders, such as shot.####.exr, if there is no folder of a job",
     )
-    parser.add_argument("-o", "--output", metavar="PATTERN", help="the results")
+    parser.add_argument("-o", "--output", type=pattern, metavar="PATTERN", help="the results")
     parser.add_argument("--frames", metavar="RANGES", help="frames, such as 1-10,20-40x2")
     parser.add_argument(
         "--processes", type=int, default=1, metavar="N", help="processes that check frames concurrently"

@@ -3,12 +3,15 @@
 The constants are in model.json; tests/bench/farm_model.py measures them.
 """
 
-import json
+import errno
 import math
+import os
 import pathlib
 from dataclasses import dataclass
+from typing import Any
 
-from ..common.denoise_defaults import DEFAULT_FRAME_RADIUS
+from ..common.decode import InvalidFileError, decode, read_json
+from ..common.denoise_defaults import DEFAULT_FRAME_RADIUS, QUALITIES
 from ..common.errors import DriverError, ExitCode
 
 MODEL_FILE = pathlib.Path(__file__).with_name("model.json")
@@ -49,16 +52,31 @@ def frame_of(inspection):
     return Frame(window["width"], window["height"], sum(len(part["channels"]) for part in parts), fit, aovs)
 
 
+@dataclass(frozen=True)
+class Constants:
+    """What farm_model.py writes."""
+
+    made_by: str
+    memory: dict[str, Any]  # "per_pixel" has a number for each quality, the others are numbers.
+    seconds: dict[str, Any]
+    neighbour: dict[str, float]
+    parallel_part: float
+
+
 class Model:
     def __init__(self, path=MODEL_FILE):
+        if not os.path.exists(path):
+            raise DriverError(ExitCode.MISSING, f"{path}: {os.strerror(errno.ENOENT)}")
         try:
-            constants = json.loads(pathlib.Path(path).read_text())
-            self.memory, self.seconds = constants["memory"], constants["seconds"]
-            self.neighbour = constants["neighbour"]
-            self.parallel_part = constants["parallel_part"]
-        except OSError as error:
-            raise DriverError(ExitCode.MISSING, f"{path}: {error.strerror}") from error
-        except (ValueError, KeyError) as error:
+            constants = decode(Constants, read_json(path))
+            self.memory = _numbers(constants.memory, ("base", "per_fit_channel", "per_channel"))
+            self.seconds = _numbers(constants.seconds, ("start", "per_channel"))
+            self.neighbour, self.parallel_part = constants.neighbour, constants.parallel_part
+            if not self.memory["base"] > 0 or not self.seconds["start"] > 0:
+                raise InvalidFileError("base or start is not above 0")
+            if self.neighbour.keys() != {"bytes", "bytes_per_aov", "seconds"} or self.parallel_part > 1:
+                raise InvalidFileError("neighbour has other keys, or parallel_part is above 1")
+        except InvalidFileError as error:
             raise DriverError(
                 ExitCode.BAD_INPUT, f"{path}: is not a file that farm_model.py writes ({error})"
             ) from error
@@ -86,6 +104,16 @@ class Model:
         return self.cpu_seconds(frame, quality, radius) * (1 - self.parallel_part + self.parallel_part / threads)
 
 
+def _numbers(values, names):
+    """The values, checked: a number of each name, and one for each quality."""
+    if values.keys() != {"per_pixel", *names}:
+        raise InvalidFileError(f"there are {', '.join(values)} in place of per_pixel, {', '.join(names)}")
+    decode(dict[str, float], {name: values[name] for name in names})
+    if decode(dict[str, float], values["per_pixel"], "per_pixel").keys() != set(QUALITIES):
+        raise InvalidFileError("per_pixel is not of all qualities")
+    return values
+
+
 def threads_for(memory, nodes):
     """Threads of a task of so many bytes, so that the tasks that fill a node's memory use all its processors.
 
@@ -105,5 +133,5 @@ def threads_for(memory, nodes):
 
 def chunk_for(seconds_a_frame, task_minutes, frames, max_tasks):
     """Frames of a task: about task_minutes of work, and as many as make max_tasks tasks at most."""
-    by_time = int(60 * task_minutes / max(seconds_a_frame, 1e-3))
-    return max(1, min(by_time, frames), math.ceil(frames / max_tasks))
+    by_time = 60 * task_minutes / max(seconds_a_frame, 1e-3)
+    return max(1, int(min(by_time, frames)), math.ceil(frames / max_tasks))

@@ -5,7 +5,6 @@ report."""
 import dataclasses
 import functools
 import itertools
-import json
 import math
 import os
 import pathlib
@@ -22,8 +21,9 @@ if not __package__:  # run as a script from a checkout
 
 from ..common import process
 from ..common.arguments import Parser
+from ..common.decode import InvalidFileError, decode, read_json
 from ..common.errors import DriverError, ExitCode, run_main
-from ..common.files import write_text
+from ..common.files import open_regular, write_text
 from ..common.terminal import quiet_or_print
 from .job import JOB_FILE, REPORT_FILE, Job
 from .job_options import add_job_options, parse_words, positive
@@ -242,11 +242,21 @@ def wait_for(job, folder, say):
         if unanswered == MAX_UNANSWERED:
             raise DriverError(ExitCode.INTERNAL, f"squeue does not answer; job {job} continues, see {folder}")
         time.sleep(POLL_SECONDS)
-    log, found = folder / REPORT_LOG, folder / REPORT_FILE
-    if not found.exists():
-        raise DriverError(ExitCode.INTERNAL, f"job {job} ended without a report, see {log}")
-    say(*log.read_text(errors="surrogateescape").splitlines())
-    if unfinished := json.loads(found.read_text())["unfinished"]:
+    say_report(folder, job, say)
+
+
+def say_report(folder, job, say):
+    """Says the report that the job has left in the folder. Unfinished frames are an error."""
+    log = folder / REPORT_LOG
+    try:
+        found = read_json(folder / REPORT_FILE)
+        unfinished = decode(str, found.get("unfinished") if isinstance(found, dict) else None, "unfinished")
+        with open_regular(log) as file:
+            text = process.decoded(file.read())
+    except (InvalidFileError, OSError) as error:
+        raise DriverError(ExitCode.INTERNAL, f"job {job} ended without a report ({error}), see {log}") from error
+    say(*process.lines_of(text))
+    if unfinished:
         raise DriverError(ExitCode.MISSING, f"not finished: {unfinished}")
 
 

@@ -3,6 +3,7 @@
 
 import os
 import pathlib
+import re
 import socket
 import subprocess
 import sys
@@ -102,13 +103,11 @@ def main(words=None):
     def work(words):
         parser = Parser("polyrecon-farm task", description=__doc__)
         parser.add_argument("folder", help="folder of the job")
-        parser.add_argument(
-            "index", type=int, nargs="?", help="number of the chunk, from 0 (default: $SLURM_ARRAY_TASK_ID)"
-        )
+        parser.add_argument("index", nargs="?", help="number of the chunk, from 0 (default: $SLURM_ARRAY_TASK_ID)")
         options = parser.parse_args(words)
-        index = options.index if options.index is not None else os.environ.get("SLURM_ARRAY_TASK_ID")
-        if index is None:
-            parser.error("the number of the chunk is missing")
+        index = options.index if options.index is not None else os.environ.get("SLURM_ARRAY_TASK_ID", "")
+        if not re.fullmatch("[0-9]{1,9}", str(index)):
+            parser.error("the number of the chunk is missing, or is none")
         run_chunk(options.folder, int(index))
 
     return run_main("polyrecon-farm", work, words)

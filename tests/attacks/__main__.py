@@ -25,6 +25,9 @@ def main():
     parser.add_argument(
         "--seeds", nargs="*", default=[], metavar="FOLDER", help="folders of further EXR files to begin with"
     )
+    parser.add_argument(
+        "--server", metavar="FILE", help="build/dev/src/attack_server: many runs a second (target attack_server)"
+    )
     parser.add_argument("--keep", metavar="FOLDER", help="where inputs that got through are kept")
     options = parser.parse_args()
     print("| attack | inputs | runs | got through | exit codes |\n|---|---:|---:|---:|---|", flush=True)
@@ -33,9 +36,9 @@ def main():
         with tempfile.TemporaryDirectory(prefix="polyrecon_attacks_") as folder:
             tally = Tally(kind, options.keep, options.seconds)
             tally.seed, tally.memory, tally.commands = options.seed, FRAME_MEMORY, options.commands
-            importlib.import_module(f"tests.attacks.{kind}").attack(
-                Program(options.program, folder), tally, options.count, options.seeds
-            )
+            program = Program(options.program, folder, options.server)
+            importlib.import_module(f"tests.attacks.{kind}").attack(program, tally, options.count, options.seeds)
+            program.close()
             print(tally.row(), flush=True)
             through += tally.through
     return 1 if through else 0

@@ -62,15 +62,27 @@ class Outcome:
 
 
 class Program:
-    """The program, run in a folder of its own."""
+    """The program, run in a folder of its own. Plain runs go to `server` where it is given: server.cpp, built."""
 
-    def __init__(self, path, folder):
+    def __init__(self, path, folder, server=None):
         self.path, self.folder = os.path.abspath(path), pathlib.Path(folder)
+        self.server = server and subprocess.Popen(
+            [os.path.abspath(server)], stdin=subprocess.PIPE, stdout=subprocess.PIPE
+        )
+        self.texts = tempfile.TemporaryDirectory(prefix="polyrecon_attacks_")
+
+    def close(self):
+        """Ends the server."""
+        if self.server:
+            self.server.communicate()
+        self.texts.cleanup()
 
     def run(self, arguments, before=None, meanwhile=None, limits=()):
         """Runs the program; before() runs in the child, meanwhile(process) while it works, `limits` are pairs for
         setrlimit."""
         command = [self.path, *(os.fspath(argument) for argument in arguments)]
+        if self.server and not (before or meanwhile or limits):
+            return self._served(command)
 
         def prepare():
             os.setpgid(0, 0)
@@ -94,6 +106,15 @@ class Program:
                 file.seek(0)
                 texts.append(file.read())
         return Outcome(command, status, *texts, usage.ru_maxrss * 1024)
+
+    def _served(self, command):
+        texts = [pathlib.Path(self.texts.name) / name for name in ("out", "err")]
+        request = b"".join(os.fsencode(text) + b"\0" for text in (self.folder, *texts, *command[1:]))
+        self.server.stdin.write(b"%d\n" % len(request) + request)
+        self.server.stdin.flush()
+        status, kilobytes = map(int, self.server.stdout.readline().split())
+        out, err = (text.read_bytes() for text in texts)
+        return Outcome(command, os.waitstatus_to_exitcode(status), out, err, kilobytes * 1024)
 
     def clear(self):
         """Empties the folder."""

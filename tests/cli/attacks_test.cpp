@@ -359,6 +359,51 @@ TEST_F(Attacks, TiffsOfOddKindsAreRefused) {
   EXPECT_EQ(run({"inspect", "x.tif"}).code, 3);
 }
 
+TEST_F(Attacks, DamagedTiffsAreRefused) {
+  OIIO::ImageSpec spec(64, 64, 3, OIIO::TypeDesc::FLOAT);
+  for (const std::string compression : {"none", "zip", "lzw", "packbits"}) {
+    spec.attribute("compression", compression);
+    OIIO::ImageBuf image(spec);
+    for (int y = 0; y < spec.height; ++y)
+      for (int x = 0; x < spec.width; ++x) {
+        const float pixel[] = {static_cast<float>(x) / 64, static_cast<float>(y) / 64, 0.5F};
+        image.setpixel(x, y, pixel);
+      }
+    ASSERT_TRUE(image.write(path("x.tif"))) << image.geterror();
+    EXPECT_EQ(run({"inspect", "x.tif"}).code, 0) << compression;
+    const std::string whole = read_text(path("x.tif"));
+    std::ofstream(path("cut.tif"), std::ios::binary) << whole.substr(0, whole.size() / 2);
+    std::string zeroed = whole;
+    std::fill_n(zeroed.begin() + static_cast<std::ptrdiff_t>(whole.size() / 4), whole.size() / 2, '\0');
+    std::ofstream(path("zeroed.tif"), std::ios::binary) << zeroed;
+    for (const std::string name : {"cut.tif", "zeroed.tif"}) {
+      if (name == "zeroed.tif" && compression == "none") continue;  // zeros are pixels there
+      const Outcome o = denoise(name, "o.exr");
+      EXPECT_EQ(o.code, 3) << compression << " " << name;
+      EXPECT_TRUE(is_one_error_line(o.err)) << compression << " " << name << o.err;
+    }
+  }
+}
+
+/// A damaged JPEG or WebP in a TIFF is what the decoder's memory held before.
+TEST_F(Attacks, TiffsOfOddCompressionsAreRefused) {
+  OIIO::ImageBuf image(OIIO::ImageSpec(16, 16, 3, OIIO::TypeDesc::UINT8));
+  ASSERT_TRUE(image.write(path("x.tif")));
+  const std::string whole = read_text(path("x.tif"));
+  const std::string tag("\x03\x01\x03\x00\x01\x00\x00\x00", 8);  // compression, of one short
+  const std::size_t place = whole.find(tag);
+  ASSERT_NE(place, std::string::npos);
+  for (const int compression : {2, 3, 4, 6, 7, 32809, 32909, 34661, 34676, 34925, 50001}) {
+    std::string odd = whole;
+    odd[place + tag.size()] = static_cast<char>(compression & 0xFF);
+    odd[place + tag.size() + 1] = static_cast<char>(compression >> 8);
+    std::ofstream(path("odd.tif"), std::ios::binary) << odd;
+    const Outcome o = run({"inspect", "odd.tif"});
+    EXPECT_EQ(o.code, 3) << compression << o.out;
+    EXPECT_TRUE(is_one_error_line(o.err)) << compression << o.err;
+  }
+}
+
 TEST_F(Attacks, AnInputThatChangesWhileItIsDenoisedGivesNoResult) {
   constexpr int large = 300;
   write_render(path("in.exr"), large, large, 1);

@@ -35,6 +35,11 @@ void require_plain_tiff(const FileInfo& file, const OIIO::ImageSpec& spec) {
   const int bits = spec.get_int_attribute("oiio:BitsPerSample", static_cast<int>(8 * spec.format.size()));
   if (bits % 8 != 0 || bits != static_cast<int>(8 * spec.format.size()))
     refuse_file(file.path, fmt::format("a TIFF of {} bits per sample; save 32-bit floats", bits));
+  // The decoders of other compressions return memory that was never written where their data are damaged.
+  const std::string compression = spec.get_string_attribute("compression", "none");
+  for (const char* known : {"none", "zip", "lzw", "packbits"})
+    if (compression == known) return;
+  refuse_file(file.path, fmt::format("a TIFF with {} compression; save it with zip or none", compression));
 }
 
 SampleType to_sample_type(const OIIO::TypeDesc& type) {
@@ -76,7 +81,8 @@ Image read_plain_image(const FileInfo& file, const std::vector<std::string>& cha
       spec.height != part.data_window.height())
     refuse_file(file.path, "was changed while it was read; run again");
   if (file.format == "tiff") require_plain_tiff(file, spec);
-  if (!input->read_image(0, 0, 0, static_cast<int>(stride), OIIO::TypeDesc::FLOAT, pixels.data()))
+  // The TIFF reader of some versions answers true after an error.
+  if (!input->read_image(0, 0, 0, static_cast<int>(stride), OIIO::TypeDesc::FLOAT, pixels.data()) || input->has_error())
     refuse_file(file.path, fmt::format("incomplete or damaged ({})", first_line(input->geterror())));
   Image image(part.data_window.width(), part.data_window.height(), static_cast<int>(channels.size()));
   for (std::size_t c = 0; c < channels.size(); ++c) {

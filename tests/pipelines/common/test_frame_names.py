@@ -58,6 +58,12 @@ class Ranges(unittest.TestCase):
                 parse_ranges(text)
             self.assertEqual(caught.exception.code, ExitCode.USAGE)
 
+    def test_numbers_of_thousands_of_digits(self):
+        for text in ("9" * 5000, "-" + "9" * 5000, "1-" + "9" * 5000, "1-2x" + "9" * 5000):
+            with self.assertRaisesRegex(DriverError, "is too large"):
+                parse_ranges(text)
+        self.assertEqual(parse_ranges("0" * 5000 + "7"), [7])
+
     def test_as_many_frames_as_are_taken(self):
         self.assertEqual(len(parse_ranges("1-1000000")), 1_000_000)
         with self.assertRaisesRegex(DriverError, "more than 1000000 frames"):

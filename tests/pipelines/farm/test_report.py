@@ -13,8 +13,8 @@ from pathlib import Path
 
 from pipelines.common.errors import DriverError, ExitCode
 from pipelines.common.terminal import print_lines
-from pipelines.farm import report
-from pipelines.farm.job import JOB_FILE, RECORDS, Job
+from pipelines.farm import report, slurm, task
+from pipelines.farm.job import JOB_FILE, RECORDS, REPORT_FILE, Job
 
 from .shot import make_shot
 
@@ -112,6 +112,10 @@ class Reports(unittest.TestCase):
             ("threads", -1),
             ("memory", 1e99),
             ("options", [1]),
+            ("options", ["--aov", "a\0b"]),
+            ("input", "in\0.####.exr"),
+            ("input", "in.exr"),
+            ("output", "out.exr"),
             ("more", 1),
         ):
             (self.folder / JOB_FILE).write_text(json.dumps({**content, name: value}))
@@ -122,6 +126,30 @@ class Reports(unittest.TestCase):
         with self.assertRaisesRegex(DriverError, "job.json: No such file") as caught:
             Job.load(self.folder)
         self.assertEqual(caught.exception.code, ExitCode.MISSING)
+
+    def test_the_report_of_a_job_that_is_none(self):
+        """After --wait, report and log are those of a folder into which others can write."""
+        log, said = self.folder / slurm.REPORT_LOG, []
+        log.write_bytes(b"a \xff line\nand one more\n")
+        for content in (b"", b"[]", b"{}", b'{"unfinished": 1}', b'{"unfinished": "\\u0000"}', b"\xff", b"[" * 100000):
+            (self.folder / REPORT_FILE).write_bytes(content)
+            with self.assertRaisesRegex(DriverError, "job 7 ended without a report"):
+                slurm.say_report(self.folder, "7", lambda *lines: said.extend(lines))
+        (self.folder / REPORT_FILE).write_text('{"unfinished": "1-2"}')
+        with self.assertRaisesRegex(DriverError, "not finished: 1-2"):
+            slurm.say_report(self.folder, "7", lambda *lines: said.extend(lines))
+        self.assertEqual(said, ["a \ufffd line", "and one more"])
+        log.unlink()
+        os.mkfifo(log)
+        with self.assertRaisesRegex(DriverError, "is not a regular file"):
+            slurm.say_report(self.folder, "7", print)
+
+    def test_numbers_of_chunks_that_are_none(self):
+        self.job.save(self.folder)
+        for index in ("x", "", "-1", "1.5", "9" * 5000, "7"):
+            with contextlib.redirect_stderr(io.StringIO()) as stderr, contextlib.suppress(SystemExit):
+                self.assertEqual(task.main([str(self.folder), f"{index}"]), ExitCode.USAGE)
+            self.assertEqual(len(stderr.getvalue().splitlines()), 1, index)
 
     def test_a_frame_of_a_stranger(self):
         """The program's message about a broken frame holds the frame's path."""

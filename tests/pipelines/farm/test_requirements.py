@@ -10,7 +10,7 @@ from pathlib import Path
 from pipelines.common.denoise_defaults import QUALITIES
 from pipelines.common.errors import DriverError, ExitCode
 from pipelines.common.polyrecon_cli import Polyrecon
-from pipelines.farm.requirements import Frame, Model, Node, chunk_for, frame_of, threads_for
+from pipelines.farm.requirements import MODEL_FILE, Frame, Model, Node, chunk_for, frame_of, threads_for
 from pipelines.farm.submission import first_frame, request_of
 
 from .shot import make_shot
@@ -110,6 +110,54 @@ class Commands(unittest.TestCase):
             self.assertAlmostEqual(b / a, 2, places=2)
         for a, b in zip(once, cost("--frames", "1000", "--price", "20")):
             self.assertAlmostEqual(b / a, 2, places=2)
+
+    def test_hostile_options_end_with_one_line(self):
+        for command, option, value in (
+            ("cost", "--speed", "0"),
+            ("cost", "--speed", "nan"),
+            ("cost", "--size", "0x"),
+            ("cost", "--size", "9" * 5000 + "x1"),
+            ("cost", "--node-memory", "9" * 400 + "T"),
+            ("cost", "--node-cpus", "9" * 30),
+            ("cost", "--frames", "9" * 5000),
+            ("slurm submit", "--memory", "9" * 400),
+            ("slurm submit", "--task-minutes", "inf"),
+            ("openjd", "--worker-memory", "9" * 400),
+            ("report", "--input", "no_place.exr"),
+        ):
+            done = self.farm(*command.split(), option, value)
+            self.assertEqual((done.returncode, len(done.stderr.splitlines())), (2, 1), (option, done.stderr[-300:]))
+            self.assertIn(option, done.stderr)
+
+    def test_models_that_are_none_are_refused(self):
+        whole = json.loads(MODEL_FILE.read_text())
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "model.json"
+            for keys, value in (
+                (("memory",), 7),
+                (("memory", "base"), 0),
+                (("memory", "base"), "155"),
+                (("memory", "per_pixel"), 1.0),
+                (("memory", "per_pixel", "best"), None),
+                (("memory", "per_pixel", "more"), 1.0),
+                (("seconds", "start"), 0),
+                (("seconds", "per_channel"), float("nan")),
+                (("neighbour", "bytes"), []),
+                (("parallel_part",), 2),
+                (("more",), 1),
+            ):
+                *parents, last = keys
+                document = owner = json.loads(json.dumps(whole))
+                for key in parents:
+                    owner = owner[key]
+                owner[last] = value
+                path.write_text(json.dumps(document))
+                with self.assertRaisesRegex(DriverError, "is not a file that farm_model.py writes"):
+                    Model(path)
+            path.unlink()
+            os.mkfifo(path)
+            with self.assertRaisesRegex(DriverError, "is not a regular file"):
+                Model(path)
 
     def test_report_without_a_job(self):
         with tempfile.TemporaryDirectory() as folder:
