@@ -46,9 +46,10 @@ def claimed(folder, sign=LOCK):
                 f"{folder}: is not empty and holds no passes of a driver: choose another --passes-dir",
             )
         descriptor = os.open(folder / LOCK, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW, 0o666)
-        if not stat.S_ISREG(os.fstat(descriptor).st_mode):
+        status = os.fstat(descriptor)
+        if not stat.S_ISREG(status.st_mode) or status.st_nlink > 1:  # Locking empties the file, under all its names.
             os.close(descriptor)
-            raise OSError(errno.EINVAL, "is not a regular file", str(folder / LOCK))
+            raise OSError(errno.EINVAL, "is not a regular file with one name", str(folder / LOCK))
     except OSError as error:
         raise DriverError(ExitCode.OUTPUT, f"{error.filename or folder}: {error.strerror}") from error
     try:

@@ -11,6 +11,7 @@ import pathlib
 import re
 import shlex
 import shutil
+import stat
 import sys
 import time
 
@@ -184,8 +185,9 @@ def make_folder(folder, job):
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise DriverError(ExitCode.OUTPUT, f"{folder}: {error.strerror}") from error
-    for entry in list(os.scandir(folder)):  # Slurm follows links at the names of logs.
-        if entry.is_symlink():
+    for entry in list(os.scandir(folder)):  # Slurm appends to what has the name of a log.
+        status = entry.stat(follow_symlinks=False)
+        if stat.S_ISLNK(status.st_mode) or (stat.S_ISREG(status.st_mode) and status.st_nlink > 1):
             raise DriverError(ExitCode.OUTPUT, f"{entry.path}: is a link: remove it, or name another --folder")
     for old in (REPORT_LOG, REPORT_FILE):
         (folder / old).unlink(missing_ok=True)

@@ -81,10 +81,12 @@ def channel_list(channels):
 
 
 def channels_of(data):
-    """The channels of a channel list."""
+    """The channels of a channel list, as far as it is whole."""
     found, at = [], 0
     while at < len(data) and data[at]:
-        end = data.index(b"\0", at)
+        end = data.find(b"\0", at)
+        if end < 0 or end + 17 > len(data):
+            break
         kind, _, xs, ys = struct.unpack_from("<iB3xii", data, end + 1)
         found.append((data[at:end], kind, xs, ys))
         at = end + 17

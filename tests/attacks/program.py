@@ -7,6 +7,7 @@ import resource
 import shutil
 import signal
 import subprocess
+import sys
 import tempfile
 import time
 
@@ -156,6 +157,8 @@ class Tally:
     def count(self, outcome, wrong, label, files=()):
         self.runs += 1
         self.codes[outcome.code] = self.codes.get(outcome.code, 0) + 1
+        if self.runs % 1000 == 0:
+            print(f"{self.name}: {self.runs} runs so far", file=sys.stderr, flush=True)
         if not wrong:
             return
         self.through += 1

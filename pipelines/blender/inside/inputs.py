@@ -7,6 +7,8 @@ import re
 import bpy
 import caches
 
+CACHE_FILE = re.compile(r".+\.bphys|(?:disp|foam|normal|spray|spray_inverse)_\d+\.exr")  # of points, of an ocean
+
 
 def version_of(path):
     """The version of Blender that saved a file which this Blender may not be able to open; None if it is unknown."""
@@ -38,8 +40,12 @@ def used():
 
 
 def _parts(path):
-    """The file itself, or the folders of a fluid's cache."""
-    return [os.path.join(path, name) for name in caches.FLUID_FOLDERS] if os.path.isdir(path) else [path]
+    """The file itself, or the files and folders of the caches in a folder: of an ocean, of points, of a fluid. Other
+    files in it, such as results, are none of the scene's."""
+    if not os.path.isdir(path):
+        return [path]
+    files = sorted(entry.path for entry in os.scandir(path) if CACHE_FILE.fullmatch(entry.name))
+    return files + [os.path.join(path, name) for name in caches.FLUID_FOLDERS]
 
 
 def _names_in_nodes():

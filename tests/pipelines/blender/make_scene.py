@@ -184,6 +184,19 @@ def linking(scene):
         file.write("shader nothing() {}")
 
 
+def caching(scene):
+    """Reads the cache of an ocean from one folder, and that of points from another."""
+    folder = os.path.dirname(os.path.abspath(sys.argv[-2]))
+    object_ = next(one for one in scene.objects if one.type == "MESH")
+    for name, file in (("ocean", "disp_0001.exr"), ("points", "cloth_000001_00.bphys")):
+        os.makedirs(os.path.join(folder, name), exist_ok=True)
+        with open(os.path.join(folder, name, file), "wb") as cache:
+            cache.write(b"cached")
+    object_.modifiers.new("ocean", "OCEAN").filepath = os.path.join(folder, "ocean")
+    points = object_.modifiers.new("cloth", "CLOTH").point_cache
+    points.use_external, points.filepath = True, os.path.join(folder, "points", "")
+
+
 def write_image(path, value):
     image = bpy.data.images.new("made", 2, 2)
     image.pixels = [value, value, value, 1] * 4
@@ -277,6 +290,7 @@ MADE = (
     switched_on,
     hostile,
     linking,
+    caching,
     forging,
     escapes,
     simulating,

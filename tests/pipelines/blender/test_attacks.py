@@ -107,6 +107,21 @@ class Attacks(SceneTest):
         self.assertNotEqual(renderer.begin(None).inputs, before)
         self.assertGreaterEqual(len(before), 8)
 
+    def test_caches_in_folders_are_compared(self):
+        """Caches of oceans and points are files in a folder; results next to them are none of the scene's."""
+        renderer = BlenderRenderer(self.scene("caching"), "bpy")
+        self.addCleanup(renderer.close)
+        before = renderer.begin(None).inputs
+        for name in ("ocean/disp_0001.exr", "points/cloth_000001_00.bphys"):
+            content = (self.folder / name).read_bytes()
+            swap(self.folder / name)
+            after = renderer.begin(None).inputs
+            changed = [path for path in before if before[path] != after.get(path)]
+            self.assertEqual([Path(path).name for path in changed], [Path(name).parent.name], name)
+            (self.folder / name).write_bytes(content)
+        (self.folder / "points" / "o.exr").write_bytes(b"result")
+        self.assertEqual(renderer.begin(None).inputs, before)
+
     def test_a_file_that_changes_while_it_is_rendered(self):
         scene, part = self.scene("linking"), self.folder / "part.exr"
         renderer = BlenderRenderer(scene, "bpy")

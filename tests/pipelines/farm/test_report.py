@@ -144,6 +144,18 @@ class Reports(unittest.TestCase):
         with self.assertRaisesRegex(DriverError, "is not a regular file"):
             slurm.say_report(self.folder, "7", print)
 
+    def test_links_at_the_names_of_logs_are_refused(self):
+        victim, folder = self.folder / "victim", self.folder / "job"
+        victim.write_text("precious")
+        slurm.make_folder(folder, self.job)
+        for plant in (os.symlink, os.link):
+            plant(victim, folder / "log.0.txt")
+            with self.assertRaisesRegex(DriverError, "log.0.txt: is a link"):
+                slurm.make_folder(folder, self.job)
+            (folder / "log.0.txt").unlink()
+        slurm.make_folder(folder, self.job)
+        self.assertEqual(victim.read_text(), "precious")
+
     def test_numbers_of_chunks_that_are_none(self):
         self.job.save(self.folder)
         for index in ("x", "", "-1", "1.5", "9" * 5000, "7"):
