@@ -13,6 +13,7 @@ import numpy as np
 from pipelines.common import exr
 from pipelines.common.polyrecon_cli import Polyrecon
 from tests.pipelines.blender.support import BLENDER_3, NO_BLENDER_5_2, PYTHON_OF_BLENDER_5_2
+from tests.pipelines.real_files.sampling_luxcore import Films, relmse
 
 HERE = Path(__file__).parent
 FEATURES = {"normal": "Denoising Normal", "albedo": "Denoising Albedo", "depth": "Denoising Depth"}
@@ -228,6 +229,18 @@ class LuxCore(RealFiles):
         np.testing.assert_array_equal(planes["POSITION.R"], exr.read(self.folder / "film1_POSITION.exr")["R"])
         _, report = self.denoised(merged)
         self.assertEqual(report["variance_source"], "from the file")
+
+    def test_samples_follow_the_map_of_samplemap(self):
+        films = Films(self.folder)
+        pictures, counts, importance = films.two_rounds(0)
+        placed, even = ([np.mean(one) for one in each] for each in counts)
+        self.assertAlmostEqual(sum(placed) / sum(even), 1, delta=0.05)
+        # The upper half of the map differs from the lower one, so a map upside down would not correlate.
+        taken = counts[0][0] + counts[0][1]
+        self.assertGreater(np.corrcoef(taken.ravel(), importance.ravel())[0, 1], 0.95)
+        self.assertLess(np.corrcoef(taken.ravel(), importance[::-1].ravel())[0, 1], 0.7)
+        reference = films.reference(1024)
+        self.assertLess(relmse(pictures[0], reference), 0.8 * relmse(pictures[1], reference))
 
 
 if __name__ == "__main__":
