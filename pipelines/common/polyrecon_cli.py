@@ -39,13 +39,17 @@ class Polyrecon:
 
     def describe(self):
         """Its name, version and path."""
+        return f"{self.version()} ({self.program})"
+
+    def version(self):
+        """Its name and version."""
         code, output, errors = process.run([self.program, "--version"])
         if code != 0 or not output.startswith("polyrecon "):
             reason = (process.lines_of(errors) or [f"--version ends with code {code}"])[-1]
             if reason.startswith("polyrecon: ") and code in ExitCode.__members__.values():  # It has too few resources.
                 raise DriverError(code, f"{self.program}: {reason.removeprefix('polyrecon: ')}")
             raise DriverError(ExitCode.MISSING, f"{self.program}: is not polyrecon: {reason}")
-        return f"{output.strip()} ({self.program})"
+        return output.strip()
 
     def check_options(self, command, *words):
         """Raises DriverError where a sub-command would refuse these options. No file is looked at."""

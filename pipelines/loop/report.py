@@ -110,7 +110,7 @@ def _make_page(result, settings, polyrecon, template, images, folder):
     files = settings.files
     description = {
         "title": files.output.name + ("" if files.number is None else f", frame {files.number}"),
-        "subtitle": f"{result.renderer}, {polyrecon.describe()}, {result.audit.width} x {result.audit.height}",
+        "subtitle": f"{result.renderer}, {polyrecon.version()}, {result.audit.width} x {result.audit.height}",
         "frame_name": "round",
         "frames": [f"{entry.round}: {entry.samples:.3g} spp" for entry in result.state.rounds] + ["result"],
         "images": images,

@@ -70,7 +70,7 @@ def _make_page(result, polyrecon, page, images, folder):
     ]
     description = {
         "title": f"{page.stem}, {len(rows)} frames",
-        "subtitle": f"{first.renderer}, {polyrecon.describe()}, {first.audit.width} x {first.audit.height}",
+        "subtitle": f"{first.renderer}, {polyrecon.version()}, {first.audit.width} x {first.audit.height}",
         "frame_name": "frame",
         "frames": [f"{row['number']}: {row['samples']:.3g} spp" for row in rows],
         "images": images,
