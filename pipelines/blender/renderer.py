@@ -70,6 +70,7 @@ class BlenderRenderer(Renderer):
 
     def begin(self, frame):
         self.frame = frame
+        self.attributes = {}  # Of the user's passes
         self._open()
         self.input_digests = self.inputs.begin_frame(self.opened["files"]["used"])
         self.name = f"Blender {self.opened['version']}"
@@ -196,7 +197,7 @@ class BlenderRenderer(Renderer):
         channels, _ = self._render_once(first=0, samples=self.opened["samples"], user_passes=True)
         self.inputs.check()
         own = {name: values for name, values in channels.items() if not _is_time(name) and not self._serves_loop(name)}
-        exr.write(merged, {**exr.read(merged), **own})
+        exr.write(merged, {**exr.read(merged), **own}, {**exr.metadata(merged), **self.attributes})
 
     def _serves_loop(self, name):
         return _layer_of(name) in {*PART_LAYERS, VECTORS, "Debug Sample Count"}
@@ -269,6 +270,7 @@ class BlenderRenderer(Renderer):
             self._open()
         raw, seconds = self.session.render(**job)
         channels = exr.read(raw)
+        self.attributes.update(_of_passes(exr.metadata(raw)))
         raw.unlink()
         return channels, seconds
 
@@ -284,7 +286,8 @@ class BlenderRenderer(Renderer):
         if time is not None:
             part[f"{layer}.{RENDER_SECONDS}"] = 1e-3 * time
         self.inputs.check()
-        exr.write(target, part, compression="none")  # It is read again soon, by every merge.
+        # It is read again soon, by every merge.
+        exr.write(target, part, self.attributes if keep_all else None, compression="none")
 
 
 def _sequences_of(first, samples, length):
@@ -294,6 +297,11 @@ def _sequences_of(first, samples, length):
         following = min(end, (first // length + 1) * length)
         yield first, following - first
         first = following
+
+
+def _of_passes(attributes):
+    """Those that describe passes: compositors find Cryptomatte, and its names, by them alone."""
+    return {name: value for name, value in attributes.items() if name.startswith("cryptomatte/")}
 
 
 def _is_time(name):

@@ -252,6 +252,7 @@ def user_passes(scene):
     scene.cycles.samples = 64
     layer = scene.view_layers[0]
     layer.use_pass_z = layer.use_pass_object_index = layer.use_pass_diffuse_color = True
+    layer.use_pass_cryptomatte_object = True
     settings = scene.render.image_settings
     if hasattr(settings, "media_type"):
         settings.media_type = "MULTI_LAYER_IMAGE"

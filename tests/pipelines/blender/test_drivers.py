@@ -18,6 +18,8 @@ from pipelines.common import exr
 from tests.long_test import long_test
 from tests.pipelines.blender.support import BLENDER_3, NO_BLENDER_5_2, PYTHON_OF_BLENDER_5_2, ROOT, SceneTest
 
+CRYPTOMATTE = {f"CryptoObject0{level}" for level in range(3)}  # layers of its pass
+
 
 def executable(path, text):
     path.write_text(text)
@@ -172,7 +174,7 @@ class Adaptive(SceneTest):
         self.assertIn("relmse.Y", exr.names(self.folder / "maps" / "error.exr"))
         types = channel_types(self.folder / "new" / "lean.exr")
         layers = {name.rpartition(".")[0].partition(".")[2] for name in types}
-        self.assertEqual(layers, {"Combined", "Depth", "Object Index", "Diffuse Color"})
+        self.assertEqual(layers, {"Combined", "Depth", "Object Index", "Diffuse Color", *CRYPTOMATTE})
         for layer, kind in (("Combined.R", "half"), ("Diffuse Color.G", "half"), ("Depth.Z", "float")):
             self.assertEqual(types[f"ViewLayer.{layer}"], kind)
         self.assertEqual(types["ViewLayer.Object Index.X"], "float")
@@ -203,7 +205,7 @@ class Adaptive(SceneTest):
         layers = self.driver("adaptive.py", scene, "-o", "a.exr", *words, "--outputs", "layers,error", "--keep-passes")
         self.assertEqual(layers.returncode, 0, layers.stderr)
         names = {name.rpartition(".")[0].partition(".")[2] for name in channel_types(self.folder / "a.exr")}
-        self.assertEqual(names, {"Combined", "Combined Error", "Depth", "Object Index", "Diffuse Color"})
+        self.assertEqual(names, {"Combined", "Combined Error", "Depth", "Object Index", "Diffuse Color", *CRYPTOMATTE})
 
     def test_own_passes_have_all_samples_on_request(self):
         scene, words = self.scene("user_passes"), ["--budget-spp", 8, "--first-pass", 4, "--quality", "draft", "--bpy"]
@@ -220,6 +222,12 @@ class Adaptive(SceneTest):
         color = {samples: channels["ViewLayer.Diffuse Color.R"] for samples, channels in found.items()}
         error = {samples: np.abs(color[samples] - color["many"]).mean() for samples in ("first", "full")}
         self.assertLess(error["full"], error["first"] / 2)
+        # Compositors find a Cryptomatte by its attributes.
+        for samples in found:
+            attributes = exr.metadata(self.folder / f"{samples}.exr")
+            told = {name.rpartition("/")[2]: value for name, value in attributes.items() if "cryptomatte/" in name}
+            self.assertEqual(told["name"], "ViewLayer.CryptoObject", samples)
+            self.assertIn('"Sphere":', told["manifest"], samples)
 
     def test_what_is_missed_is_said_and_fails_only_on_request(self):
         scene = self.scene("user_passes")
