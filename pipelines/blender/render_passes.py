@@ -25,12 +25,12 @@ if not __package__:  # run as a script from a checkout
 from ..common.modules import RENDERING, required
 
 with required("polyrecon-blender-passes", RENDERING):
-    from ..common import folder_lock, outputs, process
+    from ..common import folder_lock, process
     from ..common.arguments import Parser
     from ..common.command import Notes, each_frame
     from ..common.errors import run_main
     from ..common.files import remove_temporaries
-    from ..common.terminal import print_lines
+    from ..common.terminal import print_lines, size_text
     from .options import add_common, renderer_of
 
 
@@ -85,7 +85,7 @@ def render_parts(options, renderer, notes, frame, polyrecon, progress):
     print_lines(
         f"{frame.output}: {number}{audit.width} x {audit.height}, {renderer.name}, {options.spp} samples per pixel in "
         f"{options.parts} parts",
-        f"  {outputs.size_text(frame.output.stat().st_size)}, {time.monotonic() - begin:.1f} s",
+        f"  {size_text(frame.output.stat().st_size)}, {time.monotonic() - begin:.1f} s",
         f"  next: polyrecon denoise -i {shlex.quote(str(frame.output))} --outputs layers",
     )
     if options.verbose:

@@ -17,11 +17,13 @@ _CHOICES = re.compile(r"invalid choice: '?(?P<value>.*?)'? \(choose from (?P<cho
 
 class Parser(argparse.ArgumentParser):
     """program: name of the installed command, and of its sub-command if it has one. The description and the epilog are
-    shown as they are, with %(prog)s for what the user typed."""
+    shown as they are, with %(prog)s for what the user typed. words: what may stand in place of a choice."""
 
-    def __init__(self, program=None, prog=None, **options):
+    def __init__(self, program=None, prog=None, words=(), **options):
         self.program = program or prog
+        self.words = words
         options.setdefault("formatter_class", _Help)
+        options.setdefault("allow_abbrev", False)  # As in the program: a new option makes no old command ambiguous.
         super().__init__(prog=prog or typed_name(program), **options)
         self.add_argument("--version", action=_Version, help="print the versions of driver and program, and exit")
 
@@ -34,7 +36,7 @@ class Parser(argparse.ArgumentParser):
     def error(self, message):
         """Ends the program with exit code 2 and one line."""
         if match := _CHOICES.search(message):
-            message += _suggestion(match["value"], re.findall(r"[\w-]+", match["choices"]))
+            message += _suggestion(match["value"], [*re.findall(r"[\w-]+", match["choices"]), *self.words])
         print_lines(f"{self.program}: {message}; see {self.prog} --help", file=sys.stderr)
         sys.exit(ExitCode.USAGE)
 
@@ -42,7 +44,7 @@ class Parser(argparse.ArgumentParser):
         """argparse names a missing option before an unknown one, which may be the missing one misspelt."""
         for word in words[: words.index("--")] if "--" in words else words:
             name = word.partition("=")[0]
-            if re.match("--[a-z]", name) and not any(known.startswith(name) for known in self._option_string_actions):
+            if re.match("--[a-z]", name) and name not in self._option_string_actions:
                 self.error(f"unknown option {name}{_suggestion(name, self._option_string_actions)}")
 
 

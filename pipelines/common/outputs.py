@@ -122,11 +122,6 @@ def is_colour(name):
     return channel in ("R", "G", "B", "A") and not (layers and layers[-1].startswith("Crypto"))
 
 
-def size_text(size):
-    """The bytes of a file or a folder, to read."""
-    return f"{size / 1e9:.1f} GB" if size >= 1e9 else f"{size / 1e6:.1f} MB"
-
-
 def removal(folders):
     """The command line that removes these folders."""
     names = [str(folder) for folder in folders]

@@ -23,6 +23,14 @@ def print_lines(*lines, file=None):
         print(printable(line).encode(encoding, "backslashreplace").decode(encoding), file=file, flush=True)
 
 
+def size_text(size):
+    """A number of bytes, to read."""
+    for unit, name in ((1e9, "GB"), (1e6, "MB"), (1e3, "kB")):
+        if size >= unit:
+            return f"{size / unit:.1f} {name}"
+    return f"{size:.0f} bytes"
+
+
 def quiet_or_print(options):
     """The function that prints lines of a driver: print_lines, or one that does nothing with --quiet."""
     return (lambda *lines: None) if options.quiet else print_lines

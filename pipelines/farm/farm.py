@@ -26,6 +26,7 @@ def main(words=None):
     subjects = {name: module.__doc__.split(".")[0].replace("\n", " ") for name, module in COMMANDS.items()}
     parser = Parser(
         "polyrecon-farm",
+        words=("help",),
         usage="%(prog)s COMMAND ..., %(prog)s help COMMAND",
         description="\n".join(["commands:", *(f"  {name:8}{subject}" for name, subject in subjects.items())]),
     )

@@ -24,7 +24,7 @@ from ..common.errors import DriverError, ExitCode, run_main
 from ..common.files import write_text
 from ..common.frame_names import frame_path, parse_ranges, ranges_text
 from ..common.polyrecon_cli import Polyrecon, find_polyrecon
-from ..common.terminal import print_lines, printable, quiet_or_print
+from ..common.terminal import print_lines, printable, quiet_or_print, size_text
 from ..common.work_folder import WorkFolder
 from .job import FRAME_ERROR, RECORDS, REPORT_FILE, Job, chunks, write_json
 from .job_options import pattern
@@ -156,7 +156,7 @@ def lines_of(found):
     """The report for the terminal. No line begins with a text of a file, which might be an openjd_ command."""
     lines = [f"{found['finished']} of {found['frames']} frames are finished"]
     if found["unfinished"]:
-        lines.append(f"not finished: {found['unfinished']}")
+        lines.append(f"not finished: {found['unfinished']}; submitting again denoises these alone")
     lines += [f"frame {frame}: {why}" for frame, why in found["reasons"].items()]
     for name, node in sorted(found["nodes"].items()):
         done = f"{counted(node['frames'], 'frame')} by {counted(node['tasks'], 'task')}"
@@ -167,12 +167,10 @@ def lines_of(found):
     lines += [f"no end, the node died or still works on it: {attempt}" for attempt in found["attempts_without_end"]]
     lines += [f"failed (node, frames, exit code): {attempt}" for attempt in found["failed_attempts"]]
     if found["peak_bytes"]:
-        requested = f", of {found['bytes_requested'] / 1e6:.0f} MB requested" if found["bytes_requested"] else ""
-        lines.append(f"most memory of a task: {found['peak_bytes'] / 1e6:.0f} MB{requested}")
-        lines.append(
-            f"a frame read {found['bytes_read_per_frame'] / 1e6:.1f} MB and wrote "
-            f"{found['bytes_written_per_frame'] / 1e6:.1f} MB"
-        )
+        requested = f", of {size_text(found['bytes_requested'])} requested" if found["bytes_requested"] else ""
+        lines.append(f"most memory of a task: {size_text(found['peak_bytes'])}{requested}")
+        read, written = (size_text(found[f"bytes_{what}_per_frame"]) for what in ("read", "written"))
+        lines.append(f"a frame read {read} and wrote {written}")
     return lines
 
 

@@ -10,6 +10,8 @@ from ..common.frame_names import frame_path, parse_ranges
 from ..common.polyrecon_cli import Polyrecon
 from .requirements import MEMORY_MARGIN, Model, chunk_for, frame_of, threads_for
 
+AOV_OPTIONS = ("-l", "--aov")
+
 
 @dataclasses.dataclass(frozen=True)
 class Submission:
@@ -83,23 +85,37 @@ def model_of(options):
     return Model(options.model) if options.model else Model()
 
 
-def aov_words(words):
-    """The options --aov among words of `polyrecon denoise`. What a pattern or "all" stands for, the program knows."""
+def words_of(options, words):
+    """These options with their values among words of `polyrecon denoise`."""
     found = []
     for at, word in enumerate(words):
-        if word in ("-l", "--aov"):
+        if word in options:
             found += words[at : at + 2]
-        elif word.startswith("--aov="):
+        elif word.startswith(tuple(f"{option}=" for option in options if option.startswith("--"))):
             found.append(word)
     return found
 
 
 def first_frame(options, frames, polyrecon):
-    """The Frame of the first render that exists. Before rendering there may be none: None, if the options suffice."""
+    """The Frame of the first render that exists and is not broken; the job's report names those that are. Before
+    rendering there may be none: None, if the options suffice."""
+    aovs = words_of(AOV_OPTIONS, options.options)  # What a pattern or "all" stands for, the program knows.
+    broken = None
     for frame in frames:
         path = frame_path(options.input, frame)
-        if os.path.exists(path):
-            return frame_of(json.loads(polyrecon.run("inspect", "--json", path, *aov_words(options.options))))
+        if not os.path.exists(path):
+            continue
+        try:
+            inspection = polyrecon.run("inspect", "--json", path, *aovs)
+        except DriverError as error:
+            if error.code != ExitCode.BAD_INPUT:
+                raise
+            broken = broken or error
+            continue
+        check_layers(polyrecon, options, frame)
+        return frame_of(json.loads(inspection))
+    if broken:
+        raise broken
     if options.memory and options.threads and options.chunk:
         return None
     raise DriverError(
@@ -107,6 +123,18 @@ def first_frame(options, frames, polyrecon):
         f"{frame_path(options.input, frames[0])}: no render exists yet, so memory and time are unknown: "
         "give --memory, --threads and --chunk",
     )
+
+
+def check_layers(polyrecon, options, frame):
+    """Raises DriverError where a render lacks a layer that the options name, as all renders then do."""
+    named = words_of((*AOV_OPTIONS, "--map"), options.options)
+    if not named:
+        return
+    words = ["-i", options.input, "-o", options.output, "--frames", frame, "--dry-run", "--strict", "--quiet"]
+    try:
+        polyrecon.run("denoise", *words, *named)
+    except DriverError as error:
+        raise DriverError(error.code, f"options of polyrecon denoise: {error}") from error
 
 
 def counted(number, thing):

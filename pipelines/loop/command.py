@@ -10,7 +10,7 @@ from ..common.command import Notes, check_outputs, found_polyrecon, frames_of, p
 from ..common.denoise_defaults import DEFAULT_QUALITY, ON_MISS, QUALITIES
 from ..common.errors import DriverError, ExitCode
 from ..common.frame_names import is_pattern, without_number
-from ..common.terminal import print_lines
+from ..common.terminal import print_lines, size_text
 from . import adaptive, prior, report, shot, shot_report
 from .budget import Budget
 from .folder import PassFolder
@@ -87,9 +87,9 @@ def run_frames(program, options, renderer, identity):
         page = shot_page(options.report, numbers)
         files = [path for frame in frames for path in frame.outputs] + ([page] if page else [])
         check_outputs(files, options.overwrite or options.resume)
-        if options.with_prior:
-            prior.check(options.polyrecon)
         polyrecon = found_polyrecon(options)
+        if options.with_prior:
+            prior.check(polyrecon)
         files = ["-i", frames[0].passes / "merged.exr", "-o", frames[0].output]
         polyrecon.check_options("denoise", *files, "--outputs", options.outputs)
         settings = [
@@ -115,17 +115,18 @@ def run_frames(program, options, renderer, identity):
         with progress_of(options, len(frames), together=bool(numbers)) as progress:
             progress.begin_frame()
             arguments = (options.verbose, renderer, polyrecon, progress, notes.tell)
-            missed = ""
+            missed = failed = ""
             if options.resume and is_finished(settings, options.overwrite):
                 said = [f"{entry.files.output}: finished already: skipped" for entry in settings]
-            elif numbers:
-                said, missed = whole_shot(settings, page, *arguments)
             else:
-                said, missed = one_frame(settings[0], *arguments)
+                said, missed = whole_shot(settings, page, *arguments) if numbers else one_frame(settings[0], *arguments)
+                failed = missed if options.on_miss == "fail" else ""
+                said += [] if failed else end_of_passes(settings)
         if not options.quiet:
             print_lines(*said)
-        if missed and options.on_miss == "fail":
-            raise DriverError(ExitCode.MISSED, missed)
+        if failed:
+            with advice_of_passes(frames):
+                raise DriverError(ExitCode.MISSED, failed)
         if missed:
             print_lines(f"{program}: {missed}", file=sys.stderr)
     finally:
@@ -191,7 +192,7 @@ def one_frame(settings, verbose, renderer, polyrecon, progress, tell):
         report.write(result, settings, polyrecon, pages)
     tell(result.audit.notes)
     missed = report.missed(result, settings.budget)
-    said = [*report.lines(result, settings, verbose), *end_of_passes([settings])]
+    said = report.lines(result, settings, verbose, polyrecon)
     return said, f"{settings.files.output}: {missed}" if missed else ""
 
 
@@ -203,7 +204,7 @@ def whole_shot(settings, page, verbose, renderer, polyrecon, progress, tell):
     for _, frame in result.frames:
         tell(frame.audit.notes)
     missed = report.missed(result, result.budget)
-    said = [*shot_report.lines(result, verbose), *end_of_passes(settings)]
+    said = shot_report.lines(result, verbose, polyrecon)
     return said, f"shot of {len(settings)} frames: {missed}" if missed else ""
 
 
@@ -243,7 +244,7 @@ def passes_text(files):
     of_all = files[0].passes_of_all
     if of_all and set(of_all.iterdir()) == set(folders):
         folders = [of_all]
-    size = outputs.size_text(sum(PassFolder(folder).size for folder in folders))
+    size = size_text(sum(PassFolder(folder).size for folder in folders))
     return (
         f"passes in {of_all or folders[0]} ({size}): --resume continues with them, `{outputs.removal(folders)}` "
         "removes them"

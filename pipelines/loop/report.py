@@ -10,6 +10,7 @@ from ..common.errors import DriverError
 from ..common.files import write_text
 from ..common.terminal import printable
 from ..common.work_folder import WorkFolder
+from . import prior
 from .budget import CONVERGENCE_RATE
 from .folder import PassFolder
 from .frame import MAX_ROUNDS, NO_ERROR_LEFT
@@ -20,7 +21,7 @@ FEW_SAMPLES = 64  # per pixel; with more, --with-prior does not pay (docs/guide/
 CURVE = {"width": 1000, "height": 300, "left": 74, "right": 984, "top": 14, "bottom": 250}  # Pixels
 
 
-def lines(result, settings, verbose):
+def lines(result, settings, verbose, polyrecon):
     """The lines about a frame: what was rendered, what came of it, what would make it better. `verbose`: what was
     decided on the way, too."""
     audit, rounds, files = result.audit, result.state.rounds, settings.files
@@ -33,7 +34,7 @@ def lines(result, settings, verbose):
         + (f"; features: {features}" if features else "; no features"),
         f"  relative MSE {error_text(result.noise)} before, {error_text(result.error)} estimated after, "
         f"{seconds_text(result.seconds)}; {result.why_ended or 'the budget is spent'}",
-        f"  better: {advice(result, settings)}",
+        f"  better: {advice(result, settings, polyrecon)}",
     ]
     if not verbose:
         return found
@@ -47,7 +48,7 @@ def round_lines(result):
     ]
 
 
-def advice(result, settings):
+def advice(result, settings, polyrecon):
     """The options of the driver that would lower the error. result: of a frame or a shot."""
     budget, factor = settings.budget, 2 ** (1 / CONVERGENCE_RATE)
     if budget.target and MAX_ROUNDS in result.why_ended and missed(result, budget):
@@ -64,7 +65,7 @@ def advice(result, settings):
     if settings.quality != "best":
         words.append(f"--quality {'best' if settings.quality == 'standard' else 'standard'}")
     if not settings.with_prior and result.samples <= FEW_SAMPLES:
-        words.append("--with-prior, since the samples are few")
+        words.append(f"{prior.advice(polyrecon)}, since the samples are few")
     return "; ".join(words)
 
 

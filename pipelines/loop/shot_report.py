@@ -19,7 +19,7 @@ PLOT = {"width": 1000, "height": 220, "left": 74, "right": 984, "top": 14, "bott
 SHEET_WIDTH = 320  # Largest width of a picture of the contact sheet, in pixels
 
 
-def lines(result, verbose):
+def lines(result, verbose, polyrecon):
     """What is printed of a shot: its frames, and what would make it better. `verbose`: what was decided on the way,
     too."""
     (settings, first), frames = result.frames[0], [frame for _, frame in result.frames]
@@ -32,7 +32,7 @@ def lines(result, verbose):
         + (f"features: {features}" if features else "no features"),
         f"  relative MSE {error_text(result.noise)} before, {error_text(result.error)} estimated after, "
         f"{seconds_text(result.seconds)}; {result.why_ended}",
-        f"  better: {advice(result, settings)}",
+        f"  better: {advice(result, settings, polyrecon)}",
     ]
     return [*found, *(f"  {line}" for line in first.audit.lines())] if verbose else found
 

@@ -31,7 +31,7 @@ with required("polyrecon-povray-passes", RENDERING):
     from ..common.command import add_output_arguments
     from ..common.errors import run_main
     from ..common.layer_names import HALF_A_SUFFIX, HALF_B_SUFFIX, VARIANCE_SUFFIX
-    from ..common.terminal import print_lines
+    from ..common.terminal import print_lines, size_text
     from ..loop.renderer import SAMPLE_COUNT
     from . import passes
     from .crops import cover
@@ -79,7 +79,7 @@ def _main(words):
             print_lines(
                 f"{options.output}: {scene.width} x {scene.height}, {scene.version}, {samples.mean():.3g} samples per "
                 f"pixel; features: {found}",
-                f"  {outputs.size_text(pathlib.Path(options.output).stat().st_size)}, {time.monotonic() - begun:.1f} s",
+                f"  {size_text(pathlib.Path(options.output).stat().st_size)}, {time.monotonic() - begun:.1f} s",
                 f"  next: polyrecon denoise -i {shlex.quote(options.output)} --outputs layers",
             )
 

@@ -83,10 +83,10 @@ class Session:
         try:
             bpy.ops.wm.open_mainfile(filepath=path, load_ui=False, use_scripts=False)
         except RuntimeError as error:
-            refuse_newer(inputs.version_of(path))
+            refuse_newer(path, inputs.version_of(path))
             this = ".".join(map(str, bpy.app.version[:2]))
             raise RuntimeError(f"{error}".strip() + f" (or one of a Blender later than {this})") from error
-        refuse_newer(bpy.data.version)
+        refuse_newer(path, bpy.data.version)
         self.files = {"opened": inputs.opened(bpy.data.filepath), "used": inputs.used()}
         if cache_folder:
             caches.redirect(cache_folder)
@@ -232,11 +232,11 @@ class Session:
             render.border_min_y, render.border_max_y = (height - y1 + 0.1) / height, (height - y0 + 0.1) / height
 
 
-def refuse_newer(version):
+def refuse_newer(path, version):
     """Refuses a file of a newer Blender: this one would leave out what it does not know. version: None if unknown."""
     if version and tuple(version[:2]) > bpy.app.version[:2]:
         saved, this = (".".join(map(str, numbers[:2])) for numbers in (version, bpy.app.version))
-        raise RuntimeError(f"the file was saved by Blender {saved}, this is {this}: render it with {saved} or later")
+        raise RuntimeError(f"{path} was saved by Blender {saved}, this is {this}: name {saved} or later with --blender")
 
 
 def take_standard_output():

@@ -243,6 +243,11 @@ class Adaptive(SceneTest):
             self.assertRegex(done.stderr, f"^polyrecon-blender: new/a.exr: {said}.*\n$")
         types = channel_types(self.folder / "new" / "a.exr")
         self.assertEqual(set(types), {f"ViewLayer.Combined.{c}" for c in "RGBA"})
+        # A code other than 0 leaves the passes for --resume; a run that ends with 0 removes them.
+        self.assertRegex(done.stderr, r"; passes in new/a.passes \(.*\): --resume continues with them, `rm -r ")
+        self.assertEqual(sorted(os.listdir(self.folder / "new")), ["a.exr", "a.passes"])
+        done = self.driver("adaptive.py", scene, *words, "--target", 1000, "--on-miss", "fail", "--resume")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
         self.assertEqual(os.listdir(self.folder / "new"), ["a.exr"])
         wrong = ["--budget-spp", 8, "--overwrite", "--outputs", "beaty"]
         done = self.driver("adaptive.py", scene, *words, *wrong)
@@ -295,7 +300,7 @@ class Adaptive(SceneTest):
                 "render_passes.py", scene, "-o", f"{compress}.exr", "--spp", 4, "--parts", 2, "--blender", BLENDER_3
             )
             self.assertEqual(done.returncode, 7, done.stderr)
-            self.assertIn("the file was saved by Blender 5.0, this is 3.4", done.stderr)
+            self.assertRegex(done.stderr, f"{kind}.*\\.blend was saved by Blender 5.0, this is 3.4: .* with --blender")
 
     def test_wrong_use_is_an_error_before_any_work(self):
         scene = self.folder / "none.blend"

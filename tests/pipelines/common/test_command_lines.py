@@ -71,7 +71,9 @@ class CommandLines(unittest.TestCase):
             ("polyrecon-blender", ["--budgt-spp=9"], "unknown option --budgt-spp: did you mean --budget-spp?"),
             ("polyrecon-povray", ["--zzz"], "unknown option --zzz; see "),
             ("polyrecon-blender", ["--quality", "standrd"], "did you mean standard?"),
+            ("polyrecon-blender", ["--budget-sp", "9"], "unknown option --budget-sp: did you mean --budget-spp?"),
             ("polyrecon-farm", ["slrm"], "did you mean slurm?"),
+            ("polyrecon-farm", ["hlep"], "did you mean help?"),
             ("polyrecon-farm slurm submit", ["--fames=1"], "unknown option --fames: did you mean --frames?"),
             ("polyrecon-blender", ["s.blend"], "required"),
         ):

@@ -1,7 +1,7 @@
 import io
 import unittest
 
-from pipelines.common.terminal import print_lines, printable
+from pipelines.common.terminal import print_lines, printable, size_text
 
 FORGED = {
     "a\nopenjd_fail: b": "a\\nopenjd_fail: b",
@@ -33,6 +33,10 @@ class Terminal(unittest.TestCase):
             with io.BytesIO() as content, io.TextIOWrapper(content, encoding, newline="\n") as file:
                 print_lines("日\n", "ä", file=file)
                 self.assertEqual(content.getvalue().decode(encoding), shown)
+
+    def test_sizes_have_a_unit_that_fits(self):
+        for size, text in ((0, "0 bytes"), (999, "999 bytes"), (21_540, "21.5 kB"), (3e6, "3.0 MB"), (41e9, "41.0 GB")):
+            self.assertEqual(size_text(size), text)
 
 
 if __name__ == "__main__":

@@ -51,6 +51,10 @@ class Reports(unittest.TestCase):
             print_lines(*report.lines_of(found))
         return stdout.getvalue().splitlines()
 
+    def test_small_frames_have_sizes_too(self):
+        record = {**ENDED, "bytes_read": 20_400, "bytes_written": 6}
+        self.assertIn("a frame read 20.4 kB and wrote 6 bytes", self.lines(record))
+
     def test_openjd_injection(self):
         """A line of the session begins with openjd_; no name or message of a file can begin one."""
         forged = {**ENDED, "node": FORGED, "frame_errors": {"2": FORGED, "-1": "openjd_fail: forged"}}
@@ -71,7 +75,9 @@ class Reports(unittest.TestCase):
             self.assertIn("polyrecon-farm: not finished: 1-3", done.stderr)
             said[words] = done.stdout.splitlines()
         self.assertEqual(said[("-q",)], [])
-        self.assertEqual(said[()], ["0 of 3 frames are finished", "not finished: 1-3"])
+        self.assertEqual(
+            said[()], ["0 of 3 frames are finished", "not finished: 1-3; submitting again denoises these alone"]
+        )
         self.assertEqual(said[("-v",)][:3], [*said[()], "finished: none"])
         self.assertRegex(said[("-v",)][3], "checked by: .*polyrecon denoise -i ")
 

@@ -73,7 +73,8 @@ class Requirements(unittest.TestCase):
 
     def test_layers_to_denoise_are_counted_as_the_program_names_them(self):
         sample = Path(os.environ["POLYRECON_SAMPLES"]) / "study_small_0.exr"  # with two light groups
-        options = argparse.Namespace(input=str(sample.with_name("study_small_#.exr")), memory=0, model=None)
+        files = {"input": str(sample.with_name("study_small_#.exr")), "output": "clean.#.exr"}
+        options = argparse.Namespace(**files, memory=0, model=None)
         requests = {}
         for words in ((), ("--aov", "Combined_lamp"), ("--aov=all",), ("-l", "Combined_lamp,Combined_daylight")):
             options.options = list(words)
@@ -82,6 +83,37 @@ class Requirements(unittest.TestCase):
         self.assertLess(none, one)
         self.assertLess(one, both)
         self.assertEqual(both, named)
+
+
+class FirstFrame(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+        make_shot(self.folder, [1, 2, 3])
+        broken = self.folder / "shot.0001.exr"
+        broken.write_bytes(broken.read_bytes()[:2000])
+
+    def first(self, frames, *words):
+        pattern = str(self.folder / "shot.####.exr")
+        options = argparse.Namespace(
+            input=pattern, output=str(self.folder / "c.####.exr"), options=list(words), memory=0, threads=0, chunk=0
+        )
+        return first_frame(options, frames, Polyrecon(POLYRECON))
+
+    def test_a_broken_frame_does_not_keep_the_others_from_being_submitted(self):
+        self.assertEqual(self.first([0, 1, 2]).width, 64)
+        with self.assertRaises(DriverError) as caught:
+            self.first([0, 1])
+        self.assertEqual(caught.exception.code, ExitCode.BAD_INPUT)
+        self.assertIn("shot.0001.exr", str(caught.exception))
+
+    def test_a_layer_that_no_frame_has_is_said_before_anything_is_submitted(self):
+        for words in (["--aov", "Combned"], ["--aov=Combned"], ["--map", "albedo=Combned"]):
+            with self.assertRaises(DriverError) as caught:
+                self.first([1, 2, 3], *words)
+            self.assertEqual(caught.exception.code, ExitCode.MISSING)
+            self.assertRegex(str(caught.exception), "^options of .*shot.0002.exr: no layer Combned")
 
 
 class Commands(unittest.TestCase):
@@ -166,7 +198,9 @@ class Commands(unittest.TestCase):
             subprocess.run([POLYRECON, "denoise", *words, "--frames", "1", "--quiet"], check=True)
             done = self.farm("report", *words, "--frames", "1-2", "--polyrecon", POLYRECON)
             self.assertEqual(done.returncode, 4)
-            self.assertIn("1 of 2 frames are finished\nnot finished: 2\n", done.stdout)
+            self.assertIn(
+                "1 of 2 frames are finished\nnot finished: 2; submitting again denoises these alone\n", done.stdout
+            )
             # With other settings frame 1 is not finished.
             done = self.farm("report", *words, "--frames", "1", "--polyrecon", POLYRECON, "--", "--quality", "best")
             self.assertEqual(done.returncode, 4)

@@ -3,6 +3,7 @@ import json
 import re
 import tempfile
 import unittest
+import unittest.mock
 from pathlib import Path
 
 from pipelines.common.command import Frame
@@ -60,12 +61,15 @@ class Report(unittest.TestCase):
             for budget, more in ((Budget(samples=16), "--budget-spp 40"), (Budget(target=0.02), "--target 0.01")):
                 _, result = loop(Path(folder, str(budget)), budget)
                 settings = Settings(Frame(7, Path(folder, "passes"), Path(folder, "out.exr")), budget)
-                read, done, better = report.lines(result, settings, verbose=False)
+                read, done, better = report.lines(result, settings, False, Polyrecon())
                 self.assertIn(f"out.exr: frame 7, 96 x 64, synthetic, {result.samples:.3g} samples per pixel", read)
                 self.assertIn(f"relative MSE {result.noise:.3g} before, {result.error:.3g} estimated after", done)
                 self.assertLess(result.error, result.noise)
                 self.assertIn(f"{more} halves the error", better)
-                self.assertGreater(len(report.lines(result, settings, verbose=True)), 4)
+                with unittest.mock.patch.dict("os.environ", {"POLYRECON_OIDN": "/nowhere"}):
+                    better = report.lines(result, settings, False, Polyrecon())[-1]
+                self.assertIn("; --with-prior (after pip install pyoidn), since the samples are few", better)
+                self.assertGreater(len(report.lines(result, settings, True, Polyrecon())), 4)
 
     def test_what_was_missed_is_said(self):
         with tempfile.TemporaryDirectory() as folder:
@@ -81,7 +85,7 @@ class Report(unittest.TestCase):
             impossible = Budget(target=result.error / 2)
             ended = dataclasses.replace(result, why_ended="--max-rounds 4 is reached")
             settings = Settings(Frame(7, Path(folder, "passes"), Path(folder, "out.exr")), impossible, max_rounds=4)
-            self.assertEqual(report.advice(ended, settings), "--max-rounds 8")
+            self.assertEqual(report.advice(ended, settings, Polyrecon()), "--max-rounds 8")
             without_error = dataclasses.replace(result, error=float("nan"))
             self.assertIn("estimated relMSE unknown", report.missed(without_error, impossible))
 

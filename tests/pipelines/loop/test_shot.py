@@ -88,7 +88,7 @@ class Budgets(Folder):
             self.assertEqual(frame.error, float(np.nanmean(exr.read(frame.error_map)["relmse.Y"])))
         self.assertIn(
             f"3 frames, 48 x 32, synthetic, {result.samples:.3g} samples per pixel on average",
-            "\n".join(shot_report.lines(result, verbose=False)),
+            "\n".join(shot_report.lines(result, False, Polyrecon())),
         )
 
     def test_seconds_are_those_of_all_frames(self):
