@@ -81,9 +81,10 @@ const std::map<std::string, int>& device_types() {
 /// The value of an environment variable; empty where it is not set.
 std::string text_of(const char* value) { return value ? value : ""; }
 
-std::vector<fs::path> folders_of_path() {
+/// The folders of a list such as that in PATH.
+std::vector<fs::path> folders_in(const char* list) {
   std::vector<fs::path> folders;
-  const std::string path = text_of(std::getenv("PATH"));
+  const std::string path = text_of(list);
   for (std::size_t begin = 0; begin < path.size();) {
     const std::size_t end = std::min(path.find(':', begin), path.size());
     folders.emplace_back(path.substr(begin, end - begin));
@@ -119,7 +120,7 @@ std::vector<fs::path> python_modules() {
   std::vector<fs::path> prefixes;
   std::error_code ignored;
   if (const std::string active = text_of(std::getenv("VIRTUAL_ENV")); !active.empty()) prefixes.emplace_back(active);
-  for (const fs::path& folder : folders_of_path())
+  for (const fs::path& folder : folders_in(std::getenv("PATH")))
     if (fs::exists(folder / "python3", ignored)) prefixes.push_back(folder.parent_path());
   if (const std::string home = text_of(std::getenv("HOME")); !home.empty())
     prefixes.push_back(fs::path(home) / ".local");
@@ -129,6 +130,11 @@ std::vector<fs::path> python_modules() {
     for (const fs::path& folder : python_modules(prefix))
       if (std::find(modules.begin(), modules.end(), folder) == modules.end()) modules.push_back(folder);
   return modules;
+}
+
+/// What the user has named: the value of --oidn, else $POLYRECON_OIDN.
+std::string named_library(const std::string& option) {
+  return option.empty() ? text_of(std::getenv("POLYRECON_OIDN")) : option;
 }
 
 /// The file that --oidn or $POLYRECON_OIDN means.
@@ -217,7 +223,7 @@ std::vector<std::string> oidn_places() {
   const auto add = [&](const fs::path& file) {
     if (fs::exists(file, ignored)) places.push_back(file.string());
   };
-  for (const fs::path& folder : folders_of_path())
+  for (const fs::path& folder : folders_in(std::getenv("PATH")))
     if (const fs::path blender = fs::canonical(folder / "blender", ignored); !blender.empty())
       add(blender.parent_path() / "lib" / library_file);
   const std::vector<fs::path> modules = python_modules();
@@ -226,10 +232,20 @@ std::vector<std::string> oidn_places() {
   return places;
 }
 
+bool oidn_is_installed(const std::string& path) {
+  std::error_code ignored;
+  if (const std::string named = named_library(path); !named.empty()) return fs::exists(file_of(named), ignored);
+  std::vector<fs::path> folders = folders_in(std::getenv("LD_LIBRARY_PATH"));
+  for (const char* folder : {"/usr/lib/x86_64-linux-gnu", "/usr/lib64", "/usr/lib", "/usr/local/lib", "/lib64"})
+    folders.emplace_back(folder);
+  return oidn_places().size() > 1 || std::any_of(folders.begin(), folders.end(), [&](const fs::path& folder) {
+           return fs::exists(folder / library_file, ignored);
+         });
+}
+
 OidnLibrary::OidnLibrary(const OidnOptions& options) {
   const int type = device_types().at(options.device);
-  const std::string variable_path = text_of(std::getenv("POLYRECON_OIDN"));
-  const std::string named = options.path.empty() ? variable_path : options.path;
+  const std::string named = named_library(options.path);
   const std::string source = options.path.empty() ? "$POLYRECON_OIDN" : "--oidn";
   std::string reason;
   for (const std::string& file : named.empty() ? oidn_places() : std::vector<std::string>{file_of(named)}) {
@@ -246,9 +262,10 @@ OidnLibrary::OidnLibrary(const OidnOptions& options) {
     throw Error(ExitCode::Missing, fmt::format("{}: Open Image Denoise cannot be used ({})", source, reason));
   throw Error(
       ExitCode::Missing,
-      fmt::format("Open Image Denoise cannot be used ({}): install the system's package, put Blender on the PATH "
-                  "or run 'pip install pyoidn', or name its library with --oidn",
-                  reason));
+      fmt::format(
+          "Open Image Denoise cannot be used ({}): install the system's package, put Blender 4.1 or later on the PATH "
+          "or run 'pip install pyoidn', or name its library with --oidn",
+          reason));
 }
 
 OidnLibrary::~OidnLibrary() = default;

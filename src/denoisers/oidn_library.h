@@ -23,6 +23,10 @@ std::vector<std::string> oidn_devices();
 /// the PATH, and the module bpy), and the wheel pyoidn. All but the first exist.
 std::vector<std::string> oidn_places();
 
+/// Whether the library's file is there, in `path`, $POLYRECON_OIDN, oidn_places() or a folder of the system's
+/// libraries. It is not loaded.
+bool oidn_is_installed(const std::string& path = "");
+
 /// Images of one run, of 3 channels and one size; null where there is none. Albedo and normal of a colour have no
 /// noise.
 struct OidnImages {

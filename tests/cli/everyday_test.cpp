@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -70,6 +71,8 @@ TEST_F(Everyday, AFolderThatCannotBeMadeIsNamedBeforeAnyWork) {
   EXPECT_EQ(o.code, 5);
   EXPECT_TRUE(is_one_error_line(o.err));
   EXPECT_TRUE(o.out.empty()) << "it was read before: " << o.out;
+  EXPECT_THAT(run({"view", "in.exr", "-o", "/proc/new/page.html"}).err,
+              HasSubstr("/proc/new/page.html: its folder cannot be made in /proc"));
 }
 
 TEST_F(Everyday, ADryRunMakesNoFolder) {
@@ -99,6 +102,66 @@ TEST_F(Everyday, EndingsDecideTheFormatOrAreRefused) {
     ASSERT_TRUE(input) << name;
     EXPECT_EQ(input->format_name(), format);
     EXPECT_EQ(input->spec().width, 40);
+  }
+}
+
+TEST_F(Everyday, MistakesInSequencesAreToldShortly) {
+  for (int k = 1; k <= 3; ++k) write_render(path("shot.000" + std::to_string(k) + ".exr"));
+  const Words call{"denoise", "-i", "shot.####.exr", "-o", "new/shot.####.exr", "--dry-run"};
+  const auto with = [&](const Words& more) {
+    Words words = call;
+    words.insert(words.end(), more.begin(), more.end());
+    return run(words);
+  };
+  const Outcome mistyped = with({"--aov", "Comb1ned"});
+  EXPECT_EQ(mistyped.code, 4);
+  EXPECT_THAT(mistyped.err, HasSubstr("frame 1: shot.0001.exr: no layer Comb1ned; did you mean "));
+  EXPECT_THAT(mistyped.err, HasSubstr("\npolyrecon: frame 2: shot.0002.exr: as frame 1\n"));
+  EXPECT_THAT(mistyped.err, HasSubstr("\npolyrecon: 3 of 3 frames are missing or broken: 1-3\n"));
+  const Outcome quiet = with({"-q"});
+  EXPECT_EQ(quiet.code, 0);
+  EXPECT_EQ(quiet.out + quiet.err, "");
+  EXPECT_THAT(with({"--frame", "2"}).err, HasSubstr("--frame requires --sample-map; did you mean --frames?"));
+  for (const auto& [input, output, said] : std::vector<std::array<std::string, 3>>{
+           {"shot.####.exr", "new",
+            "-o new: for a sequence, put #### or %04d into the file's name, or name a folder: new/"},
+           {"shot.###.exr", "new/", "no file like shot.000.exr: there is shot.000"},
+           {"shot.%03d.exr", "new/", "so write %04d, or check the folder"},
+           {"*.exr", "new/", "*.exr: no such file; name a sequence as shot.####.exr, or the folder"}}) {
+    const Outcome o = run({"denoise", "-i", input, "-o", output});
+    EXPECT_TRUE(is_one_error_line(o.err)) << o.err;
+    EXPECT_THAT(o.err, HasSubstr(said));
+  }
+}
+
+TEST_F(Everyday, AMistypedOptionIsNamedThoughAnotherOneIsMissing) {
+  for (const auto& [words, said] : std::vector<std::pair<Words, std::string>>{
+           {{"denoise", "--inptu", "in.exr", "-o", "c.exr"}, "--inptu is no option of denoise; did you mean --input?"},
+           {{"merge", "--verson"}, "--verson is no option of merge; did you mean --version?"},
+           {{"denoise", "-o", "c.exr"}, "--input is required"},
+           {{"hlep"}, "'hlep' is no command; did you mean help?"},
+           {{"view", "in.exr", "-o", "v.html", "--layer", "Comb1ned"},
+            "has none of the layers 'Comb1ned'; did you mean"},
+           {{"--check-options", "denoise", "-i", "a.####.exr", "-o", "c.####.png"}, "give it the ending .exr"}}) {
+    const Outcome o = run(words);
+    EXPECT_NE(o.code, 0);
+    EXPECT_TRUE(is_one_error_line(o.err)) << o.err;
+    EXPECT_THAT(o.err, HasSubstr(said));
+  }
+  EXPECT_EQ(run({"-i", "in.exr", "-o", "c.exr", "--quality", "draft"}).code, 0) << "without the word denoise";
+}
+
+TEST_F(Everyday, WhatIsNoRenderIsToldWhatToDo) {
+  for (const auto& [name, said] : {std::pair("scene.blend", "; polyrecon-blender renders the scene and denoises it\n"),
+                                   std::pair("look.PNG", "; save the render as OpenEXR, which keeps its passes")}) {
+    std::ofstream(path(name)) << "BLENDER-v304";
+    for (const char* command : {"denoise", "inspect", "preview"}) {
+      Words words{command, name};
+      if (std::string(command) == "preview") words.insert(words.end(), {"-o", "new.jpg"});
+      const Outcome o = run(words);
+      EXPECT_EQ(o.code, 3);
+      EXPECT_THAT(o.err, HasSubstr(std::string(name) + ": not an OpenEXR file" + said));
+    }
   }
 }
 
@@ -169,6 +232,17 @@ TEST_F(Everyday, AdviceIsWordedForTheRenderer) {
   for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 150U) << line;
   EXPECT_EQ(nlohmann::json::parse(read_text(path("r.json")))["advice"], json);
 
+  // Blender's OpenEXR that is no MultiLayer: one layer, and attributes that name the view layer.
+  OIIO::ImageSpec spec(24, 16, 4, OIIO::TypeDesc::HALF);
+  spec.attribute("cycles.1 RenderLayer.samples", "24");
+  const std::vector<float> values(24 * 16 * 4, 0.5F);
+  const auto file = OIIO::ImageOutput::create(path("one.exr"));
+  ASSERT_TRUE(file->open(path("one.exr"), spec) && file->write_image(OIIO::TypeDesc::FLOAT, values.data()) &&
+              file->close());
+  const std::string one = run({"inspect", "one.exr"}).out;
+  EXPECT_THAT(one, HasSubstr("samples per pixel: 24\n"));
+  EXPECT_THAT(one, HasSubstr("(Blender: OpenEXR MultiLayer, View Layer > Passes > Data > Denoising Data)"));
+
   write_exr(path("plain.exr"), 24, 16, {"R", "G", "B"}, grey);
   EXPECT_THAT(
       run({"inspect", "plain.exr"}).out,
@@ -193,6 +267,8 @@ TEST_F(Everyday, LayersThatDoNotAddUpAreSaid) {
 }
 
 TEST_F(Everyday, FewSamplesAreAdvisedToTakeAPrior) {
+  std::ofstream(path("libOpenImageDenoise.so.2")) << "it is not loaded";
+  ::setenv("POLYRECON_OIDN", path("").c_str(), 1);
   const Words call{"denoise", "in.exr", "--overwrite", "--quality", "draft", "--samples"};  // -i may be left out
   for (const auto& [samples, few] : {std::pair("16", true), std::pair("64", true), std::pair("65", false)}) {
     Words words = call;
@@ -201,6 +277,10 @@ TEST_F(Everyday, FewSamplesAreAdvisedToTakeAPrior) {
     ASSERT_EQ(o.code, 0) << o.err;
     EXPECT_EQ(o.out.find(std::string(samples) + " samples per pixel are few (--prior oidn)") != std::string::npos, few);
   }
+  std::filesystem::remove(path("libOpenImageDenoise.so.2"));
+  EXPECT_THAT(run({"denoise", "in.exr", "--overwrite", "--quality", "draft", "--samples", "16"}).out,
+              HasSubstr("16 samples per pixel are few (--prior oidn, after pip install pyoidn)"));
+  ::unsetenv("POLYRECON_OIDN");
 }
 
 TEST_F(Everyday, ANoteStandsOnceInASequence) {

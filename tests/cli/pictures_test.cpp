@@ -194,7 +194,7 @@ TEST_F(OwnWindows, ALayerThatIsNoPartOfTheBeautyIsDenoisedByItself) {
   EXPECT_THAT(r["notes"], Not(Contains(HasSubstr("key gets"))));
   ASSERT_EQ(r["others"].size(), 1U);
   EXPECT_EQ(r["others"][0]["layer"], "shadow");
-  EXPECT_THAT(o.out, HasSubstr("note                       shadow gets windows of its own"));
+  EXPECT_THAT(o.out, HasSubstr("note: shadow gets windows of its own"));
 
   // inspect says it beforehand: of the named layers, else of all lights. A layer `shadow` is a feature unless it is
   // named.

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "io/files/atomic_file.h"
+#include "io/files/missing_file.h"
 #include "polyrecon/error.h"
 
 namespace polyrecon {
@@ -55,7 +56,7 @@ std::string ending_of(const std::string& path) {
 
 void require_readable(const std::string& path) {
   std::error_code error;
-  if (!fs::exists(path, error)) throw Error(ExitCode::Missing, path + ": no such file");
+  if (!fs::exists(path, error)) throw missing_file(path);
   if (fs::is_directory(path, error)) throw Error(ExitCode::BadInput, path + ": is a folder; name a file");
   // Opening a pipe waits for its writer, and a device may have no end.
   if (!fs::is_regular_file(path, error)) throw Error(ExitCode::BadInput, path + ": is a pipe or a device; name a file");

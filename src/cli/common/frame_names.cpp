@@ -18,6 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr int most_likely_digits = 8;
 constexpr int max_frames = 1000000;
 constexpr std::size_t max_width = 255;  // NAME_MAX of Linux
 
@@ -197,6 +198,21 @@ std::optional<int> FramePattern::frame_of(const std::string& candidate) const {
   return std::nullopt;
 }
 
+std::string FramePattern::other_width(const fs::path& folder) const {
+  std::error_code problem;
+  for (const auto& entry : fs::directory_iterator(folder.empty() ? fs::path(".") : folder, problem))
+    for (int width = 1; width <= most_likely_digits; ++width) {
+      FramePattern other = *this;
+      other.width_ = width;
+      const std::string file = (folder / entry.path().filename()).string();
+      if (other.frame_of(file))
+        return fmt::format(
+            "there is {}, so write {}, or ", file,
+            sign_counts_ ? fmt::format("%0{}d", width) : std::string(static_cast<std::size_t>(width), '#'));
+    }
+  return "";
+}
+
 std::vector<int> FramePattern::existing_frames() const {
   const std::string shown = path(0);
   if (in_folder_)
@@ -209,7 +225,8 @@ std::vector<int> FramePattern::existing_frames() const {
        entry.increment(problem))
     if (const auto frame = frame_of((folder / entry->path().filename()).string())) frames.push_back(*frame);
   if (frames.empty())
-    throw Error(ExitCode::Missing, fmt::format("no file like {}: check the folder, or give --frames", shown));
+    throw Error(ExitCode::Missing,
+                fmt::format("no file like {}: {}check the folder, or give --frames", shown, other_width(folder)));
   std::sort(frames.begin(), frames.end());
   return frames;
 }

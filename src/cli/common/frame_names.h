@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -38,6 +39,8 @@ class FramePattern {
   std::vector<int> existing_frames() const;
 
  private:
+  /// Where the folder has frames with another number of digits: their pattern, for a message; else empty.
+  std::string other_width(const std::filesystem::path& folder) const;
   std::string number(int frame) const;
 
   std::vector<std::string> pieces_;  ///< The text between the places; one more than there are places.

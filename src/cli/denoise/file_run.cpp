@@ -13,6 +13,7 @@
 #include "cli/denoise/write_outputs.h"
 #include "core/mean.h"
 #include "core/stopwatch.h"
+#include "denoisers/oidn_library.h"
 #include "io/files/atomic_file.h"
 #include "io/layers/pass_advice.h"
 #include "pipeline/part_of_beauty.h"
@@ -138,7 +139,8 @@ void FileRun::denoise(LoadedFrame loaded, std::size_t max_memory, RunProgress& p
   done.result = reconstruct(done.in.frame, neighbours_of(loaded), params, progress, job_.denoiser.get());
   report.noise_before = mean_of(done.result.error.relative_noise);
   // With a denoiser no other one is advised.
-  report.advice = pass_advice(done.in.source, job_.denoiser ? 0 : mean_samples(done.in.frame.sample_count));
+  report.advice =
+      pass_advice(done.in.source, job_.denoiser ? 0 : mean_samples(done.in.frame.sample_count), oidn_is_installed());
   release_images(done);
   report.picture = loaded.picture;
   report.notes = done.in.notes;

@@ -60,8 +60,8 @@ std::vector<FrameFiles> frames_of_pattern(const DenoiseOptions& o, const FramePa
     const auto pattern = FramePattern::parse(named);
     if (!pattern)
       throw Error(ExitCode::Usage,
-                  fmt::format("{} {}: for a sequence, put #### or %04d into the file's name, or name a folder",
-                              option.name, given));
+                  fmt::format("{} {}: for a sequence, put #### or %04d into the file's name, or name a folder: {}/",
+                              option.name, given, std::filesystem::path(given).replace_extension().string()));
     for (FrameFiles& files : frames) files.outputs.*option.path = pattern->path(*files.frame);
   }
   add_neighbours(inputs, radius, frames);

@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <filesystem>
 #include <map>
 #include <numeric>
 #include <set>
+#include <system_error>
 #include <utility>
 
 #include "cli/common/checks.h"
@@ -174,6 +176,11 @@ Job make_job(const DenoiseOptions& o, const OptionSet& set) {
 
 void check_options(const DenoiseOptions& o) {
   if (!o.frames.empty()) parse_frames(o.frames);
+  std::error_code ignored;
+  for (const OutputOption& option : output_options())
+    if (const std::string& path = o.outputs.*option.path;
+        std::filesystem::path(path).has_extension() && !std::filesystem::is_directory(path, ignored))
+      require_endings({{option.name, path, file_kind_of(option.kind)}});
   resolve(o, o.frame_radius.value_or(0), false);
 }
 

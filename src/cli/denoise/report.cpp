@@ -49,7 +49,7 @@ std::string layers_text(const ReadResult& in) {
     if (has) with += fmt::format("{}{}", with.empty() ? "" : ", ", name);
   const std::size_t aovs = in.frame.aovs.size();
   return fmt::format("{}{}{}{}", beauty, with.empty() ? "" : " with ", with,
-                     aovs > 0 ? fmt::format(", and {} light AOVs", aovs) : "");
+                     aovs > 0 ? fmt::format(", and {} light AOV{}", aovs, aovs == 1 ? "" : "s") : "");
 }
 
 std::string short_text(const RunReport& run, const std::vector<std::string>& advice) {
@@ -60,7 +60,7 @@ std::string short_text(const RunReport& run, const std::vector<std::string>& adv
                 before, r.estimated_relative_mse, run.seconds);
   if (run.chosen) text += line("settings chosen", settings_choice_text(*run.chosen, reconstruction_seconds(r)));
   for (const std::string& better : advice) text += text_line("  better: {}", better);
-  for (const std::string& note : run.notes) text += line("note", note);
+  for (const std::string& note : run.notes) text += text_line("  note: {}", note);
   return text;
 }
 

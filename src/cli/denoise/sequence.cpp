@@ -8,6 +8,7 @@
 #include <exception>
 #include <functional>
 #include <future>
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -25,6 +26,9 @@
 namespace polyrecon {
 namespace {
 
+/// A longer reason for which several frames fail is printed for the first of them only.
+constexpr std::size_t most_repeated = 60;
+
 /// Counts the frames that were written, skipped or failed, and those that lacked a layer of the first frame.
 class Outcome {
  public:
@@ -33,7 +37,14 @@ class Outcome {
   /// Call it inside a catch block.
   void failed(const FrameFiles& files, const Error& error) {
     if (strict_ || !concerns_one_frame(error.code())) throw;
-    progress_.print(stderr, text_line("polyrecon: {}: {}", files.label(), error.what()));
+    std::string reason = error.what();
+    const std::string path = files.input + ": ";
+    // A mistyped layer is missing in every frame, and its message lists all layers that there are.
+    if (reason.compare(0, path.size(), path) == 0 && reason.size() > path.size() + most_repeated) {
+      const auto [first, is_new] = reasons_.emplace(reason.substr(path.size()), files.label());
+      if (!is_new) reason = path + "as " + first->second;
+    }
+    progress_.print(stderr, text_line("polyrecon: {}: {}", files.label(), reason));
     failed_.push_back(&files);
   }
   void skipped() { ++skipped_; }
@@ -80,6 +91,7 @@ class Outcome {
   const std::vector<int> gaps_;
   RunProgress& progress_;
   std::vector<const FrameFiles*> failed_, lacking_, missed_;
+  std::map<std::string, std::string> reasons_;  ///< The first frame that failed for each.
   std::size_t skipped_ = 0, written_ = 0;
 };
 
@@ -229,6 +241,7 @@ void show_dry_run(const Job& job) {
       read_frame_header(files.input,
                         read_options_for(job, files.number_in_names()));  // throws where the frame would fail
       const bool skip = job.run.skip_existing && is_finished(job, files);
+      if (job.run.verbosity == Verbosity::Quiet) continue;
       std::fputs(text_line("{}: {} -> {}{}", files.label(), files.input, files.outputs.picture,
                            skip ? ", finished already: skipped" : "")
                      .c_str(),
@@ -236,7 +249,8 @@ void show_dry_run(const Job& job) {
     } catch (const Error& error) {
       outcome.failed(files, error);
     }
-  if (const std::string gaps = outcome.gaps_text(""); !gaps.empty()) std::fputs(text_line("{}", gaps).c_str(), stdout);
+  if (const std::string gaps = outcome.gaps_text(""); !gaps.empty() && job.run.verbosity != Verbosity::Quiet)
+    std::fputs(text_line("{}", gaps).c_str(), stdout);
   outcome.throw_if_any_failed(job.frames.size());
 }
 

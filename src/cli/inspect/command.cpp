@@ -12,6 +12,7 @@
 #include "cli/common/read_limits.h"
 #include "cli/inspect/report.h"
 #include "io/layers/layer_words.h"
+#include "io/layers/pass_advice.h"
 #include "pipeline/part_of_beauty.h"
 #include "pipeline/savings.h"
 #include "pipeline/survey.h"
@@ -79,6 +80,8 @@ void run(const InspectOptions& o) {
       if (problem.code() != ExitCode::CheckFailed) throw;
       report.file.notes.emplace_back(problem.what());
     }
+  const Inspection& found = report.file;
+  report.advice = pass_advice(found.source, found.samples, oidn_is_installed(o.denoiser.oidn.path));
   const std::string text = o.json ? json_text(inspect_json(report)) : inspect_text(report);
   std::fputs(text.c_str(), stdout);
 }

@@ -64,7 +64,7 @@ nlohmann::ordered_json inspect_json(const InspectReport& report) {
           {"view_layer", found.source.view_layer},
           {"roles", roles_json(found.source)},
           {"missing", found.missing},
-          {"advice", advice_json(pass_advice(found.source, found.samples))},
+          {"advice", advice_json(report.advice)},
           {"samples", found.samples > 0 ? Json(found.samples) : Json()},
           {"noise_level", found.noise_level >= 0 ? Json(found.noise_level) : Json()},
           {"steps", decisions_json(report.steps)},

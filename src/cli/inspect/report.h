@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "io/inspect.h"
+#include "io/layers/pass_advice.h"
 #include "polyrecon/report.h"
 
 namespace polyrecon {
@@ -22,6 +23,7 @@ struct InspectReport {
   Inspection file;
   std::vector<Decision> steps;             ///< Decisions that denoise would take; empty for a file without beauty.
   std::vector<FoundDenoiser> denoisers{};  ///< Those that --prior takes by name.
+  std::vector<PassAdvice> advice{};
 };
 
 /// The report as lines of text.

@@ -7,7 +7,6 @@
 #include "cli/inspect/report.h"
 #include "core/relmse.h"
 #include "io/layers/channel_names.h"
-#include "io/layers/pass_advice.h"
 
 namespace polyrecon {
 namespace {
@@ -48,8 +47,7 @@ std::string inspect_text(const InspectReport& report) {
   for (const Layer& layer : found.source.layers) text += text_of(layer, found.statistics_of(layer.name));
   text += roles_text(found.source);
   if (!found.missing.empty()) text += text_line("missing: {}", fmt::join(found.missing, ", "));
-  for (const std::string& advice : advice_lines(pass_advice(found.source, found.samples)))
-    text += text_line("better: {}", advice);
+  for (const std::string& advice : advice_lines(report.advice)) text += text_line("better: {}", advice);
   if (found.samples > 0) text += text_line("samples per pixel: {:g}", found.samples);
   if (found.noise_level >= 0)
     text += text_line("noise level (variance / (mean^2 + {:g})): {:.4g}", relmse_floor, found.noise_level);

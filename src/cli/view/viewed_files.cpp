@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "cli/common/layers.h"
+#include "core/nearest.h"
 #include "core/resample.h"
 #include "io/pictures/color.h"
 #include "io/values/pass_values.h"
@@ -77,9 +78,13 @@ std::vector<Wanted> wanted_layers(const LayeredFile& file, const std::vector<std
   for (const std::string& name : names)
     if (const Layer* layer = find_layer(file, name); layer && readable(file, *layer))
       found.push_back({layer, Importance::First, layer == picture});
-  if (found.empty())
-    throw Error(ExitCode::Missing, fmt::format("{}: has none of the layers '{}' (polyrecon inspect lists its layers)",
-                                               file.info.path, fmt::join(names, "', '")));
+  if (found.empty()) {
+    std::vector<std::string> known;
+    for (const Layer& layer : file.layers) known.insert(known.end(), {layer.name, layer.pass});
+    throw Error(ExitCode::Missing,
+                fmt::format("{}: has none of the layers '{}'{} (polyrecon inspect lists its layers)", file.info.path,
+                            fmt::join(names, "', '"), did_you_mean(names.front(), known)));
+  }
   return found;
 }
 

@@ -196,7 +196,13 @@ void write_bytes(const std::string& target, const std::string& bytes) {
 
 void check_writable(const std::string& target) {
   check_target(target);
-  const Temporary probe((nearest_folder(target) / fs::path(target).filename()).string());
+  try {
+    const Temporary probe((nearest_folder(target) / fs::path(target).filename()).string());
+  } catch (const Error& problem) {  // It names the file as one of the folder that exists.
+    if (nearest_folder(target) == folder_of(target)) throw;
+    throw Error(problem.code(),
+                fmt::format("{}: its folder cannot be made in {}", target, nearest_folder(target).string()));
+  }
 }
 
 void write_atomically(const std::string& target, const std::function<void(const std::string& path)>& write,

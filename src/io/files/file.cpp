@@ -16,6 +16,7 @@
 #include "io/exr/description.h"
 #include "io/files/channel_reader.h"
 #include "io/files/file_identity.h"
+#include "io/files/missing_file.h"
 #include "io/files/plain_image_file.h"
 #include "polyrecon/error.h"
 
@@ -37,7 +38,7 @@ bool begins_with_zeros(const std::string& path) {
 
 std::uint64_t size_of_existing(const std::string& path) {
   std::error_code failure;
-  if (!std::filesystem::exists(path, failure)) throw Error(ExitCode::Missing, fmt::format("{}: no such file", path));
+  if (!std::filesystem::exists(path, failure)) throw missing_file(path);
   if (!std::filesystem::is_regular_file(path, failure)) refuse_file(path, "not a file");
   const std::uint64_t bytes = std::filesystem::file_size(path, failure);
   if (failure || !std::ifstream(path, std::ios::binary)) refuse_file(path, "cannot be opened for reading");
@@ -57,6 +58,14 @@ constexpr std::array<PlainFormat, 4> plain_formats{{{".pfm", "pnm", {"PF", "Pf"}
                                                     {".tif", "tiff", tiff_beginnings},
                                                     {".tiff", "tiff", tiff_beginnings}}};
 
+/// What to do with a file that is no render, by its extension; empty where it is not known.
+std::string hint_for(const std::string& extension) {
+  if (extension == ".blend") return "; polyrecon-blender renders the scene and denoises it";
+  for (const char* picture : {".png", ".jpg", ".jpeg", ".webp", ".bmp", ".tga"})
+    if (extension == picture) return "; save the render as OpenEXR, which keeps its passes and its range";
+  return "";
+}
+
 /// The format that the name stands for. Throws where there is none, and where the file begins as another format: a
 /// format that is not needed is refused, since each decoder has faults of its own.
 std::string plain_format_of(const std::string& path) {
@@ -65,7 +74,7 @@ std::string plain_format_of(const std::string& path) {
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   const auto found = std::find_if(plain_formats.begin(), plain_formats.end(),
                                   [&](const PlainFormat& f) { return f.extension == extension; });
-  if (found == plain_formats.end()) refuse_file(path, "not an OpenEXR file");
+  if (found == plain_formats.end()) refuse_file(path, "not an OpenEXR file" + hint_for(extension));
   const auto head = first_bytes(path);
   if (std::none_of(found->beginnings.begin(), found->beginnings.end(), [&](std::string_view beginning) {
         return !beginning.empty() && std::string_view(head.data(), beginning.size()) == beginning;

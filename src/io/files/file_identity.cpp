@@ -11,6 +11,7 @@
 #include <fstream>
 #include <vector>
 
+#include "io/files/missing_file.h"
 #include "polyrecon/error.h"
 
 namespace polyrecon {
@@ -34,7 +35,7 @@ void require_unchanged(const FileInfo& file) {
 
 std::string file_identity(const std::string& path) {
   std::error_code ignored;
-  if (!std::filesystem::exists(path, ignored)) throw Error(ExitCode::Missing, path + ": no such file");
+  if (!std::filesystem::exists(path, ignored)) throw missing_file(path);
   if (!std::filesystem::is_regular_file(path, ignored)) throw Error(ExitCode::BadInput, path + ": not a file");
   std::ifstream file(path, std::ios::binary);
   // The file is hashed in blocks, because it may not fit into memory. The hash of a block seeds the next one.

@@ -234,6 +234,14 @@ void find_beauty_without_name(std::vector<Layer>& layers) {
   }
 }
 
+/// Whether the attribute holds the samples per pixel of some view layer.
+bool is_samples_attribute(const std::string& name) {
+  return std::any_of(renderers().begin(), renderers().end(), [&](const Renderer& renderer) {
+    return std::any_of(renderer.samples_attributes.begin(), renderer.samples_attributes.end(),
+                       [&](const SamplesAttribute& attribute) { return names_attribute(name, attribute.name, ""); });
+  });
+}
+
 std::optional<double> number_in(const FileInfo& file, const std::string& attribute) {
   for (const PartInfo& part : file.parts)
     if (const AttributeInfo* found = find_attribute(part, attribute)) {
@@ -345,7 +353,14 @@ bool is_result(const FileInfo& file) {
 std::optional<double> samples_in_metadata(const FileInfo& file, const std::string& view_layer) {
   for (const SamplesAttribute& attribute : samples_attributes(view_layer))
     if (const auto value = number_in(file, attribute.name)) return value;
-  return std::nullopt;
+  if (!view_layer.empty()) return std::nullopt;
+  std::optional<double> only;  // A file of one layer, whose view layer is named by the attribute alone.
+  for (const AttributeInfo& attribute : file.parts.front().attributes)
+    if (is_samples_attribute(attribute.name)) {
+      if (only) return std::nullopt;
+      only = number_in(file, attribute.name);
+    }
+  return only;
 }
 
 }  // namespace polyrecon

@@ -39,7 +39,7 @@ bool says_so(const PartInfo& part, const Renderer& renderer, const std::string& 
     if (about.find(name) != std::string::npos) return true;
     if (about_the_program.count(about) > 0 && letters_of(attribute.value).find(name) != std::string::npos) return true;
     for (const SamplesAttribute& samples : renderer.samples_attributes)
-      if (attribute.name == with_view_layer(samples.name, view_layer)) return true;
+      if (names_attribute(attribute.name, samples.name, view_layer)) return true;
   }
   return false;
 }
@@ -94,30 +94,34 @@ std::size_t noisy_aovs(const FrameSource& source) {
   }));
 }
 
-std::string how_to(const Renderer* renderer, Role role) {
+std::string how_to(const FrameSource& source, const Renderer* renderer, Role role) {
+  const bool one_layer = source.layers.size() == 1 && source.view_layer.empty();
   if (renderer)
     for (const PassSwitch& one : renderer->switches)
-      if (one.role == role) return renderer->name + ": " + one.place;
+      if (one.role == role)
+        return renderer->name + ": " +
+               (one_layer && !renderer->many_layers.empty() ? renderer->many_layers + ", " : "") + one.place;
   return "render such passes";
 }
 
 }  // namespace
 
-std::vector<PassAdvice> pass_advice(const FrameSource& source, double samples) {
+std::vector<PassAdvice> pass_advice(const FrameSource& source, double samples, bool oidn_is_installed) {
   std::vector<PassAdvice> advice;
   if (source.chosen.empty()) return advice;
   const Renderer* renderer = renderer_of(source);
   for (const Loss& loss : losses)
     for (const RoleInfo& info : role_table())
       if (info.surface == loss.unseen && !has(source, info.role))
-        advice.push_back({info.name, loss.without, how_to(renderer, info.role)});
+        advice.push_back({info.name, loss.without, how_to(source, renderer, info.role)});
   if (!noise_is_known(source))
     advice.push_back({"variance", "the noise is estimated from the picture",
                       renderer && !renderer->noise_switch.empty()
                           ? renderer->name + ": " + renderer->noise_switch
                           : "render parts with different seeds and join them by polyrecon merge"});
   if (samples > 0 && samples <= few_samples && !has(source, Role::Prior))
-    advice.push_back({name_of(Role::Prior), fmt::format("{:.4g} samples per pixel are few", samples), "--prior oidn"});
+    advice.push_back({name_of(Role::Prior), fmt::format("{:.4g} samples per pixel are few", samples),
+                      oidn_is_installed ? "--prior oidn" : "--prior oidn, after pip install pyoidn"});
   const std::size_t aovs = noisy_aovs(source);
   if (aovs > 0)
     advice.push_back({aov, fmt::format("{} light AOV{} noisy", aovs, aovs == 1 ? " stays" : "s stay"), "--aov all"});

@@ -16,8 +16,8 @@ struct PassAdvice {
 };
 
 /// Advice for a frame that was read, the most useful first; empty where all is there.
-/// samples: per pixel; 0 if unknown.
-std::vector<PassAdvice> pass_advice(const FrameSource& source, double samples);
+/// samples: per pixel; 0 if unknown. oidn_is_installed: whether --prior oidn works as it is.
+std::vector<PassAdvice> pass_advice(const FrameSource& source, double samples, bool oidn_is_installed);
 
 /// The advice for people, a line for each place where something is switched on.
 std::vector<std::string> advice_lines(const std::vector<PassAdvice>& advice);

@@ -50,6 +50,7 @@ Renderer blender() {
   // Vector holds (X, Y) from here to the place in the frame before and (Z, W) from the place in the frame after to
   // here, with rows counted upwards.
   r.motion_factors = {1, -1, -1, 1};
+  r.many_layers = "OpenEXR MultiLayer";
   r.switches = {
       {Role::Albedo, "View Layer > Passes > Data > Denoising Data"},
       {Role::Normal, "View Layer > Passes > Data > Denoising Data"},

@@ -130,6 +130,15 @@ std::string with_view_layer(std::string attribute, const std::string& view_layer
   return at == std::string::npos ? attribute : attribute.replace(at, 2, view_layer);
 }
 
+bool names_attribute(const std::string& attribute, const std::string& name, const std::string& view_layer) {
+  const std::size_t at = name.find("{}");
+  if (at == std::string::npos || !view_layer.empty()) return attribute == with_view_layer(name, view_layer);
+  const std::string_view text = attribute, front = std::string_view(name).substr(0, at);
+  const std::string_view back = std::string_view(name).substr(at + 2);
+  return text.size() > front.size() + back.size() && text.substr(0, front.size()) == front &&
+         text.substr(text.size() - back.size()) == back;
+}
+
 std::vector<SamplesAttribute> samples_attributes(const std::string& view_layer) {
   std::vector<SamplesAttribute> attributes;
   for (const Renderer& renderer : renderers())

@@ -55,6 +55,10 @@ bool is_surface_color(const std::string& pass);
 /// An attribute's name with the view layer in place of "{}".
 std::string with_view_layer(std::string attribute, const std::string& view_layer);
 
+/// Whether an attribute's name is this one, whose "{}" stands for the view layer. Without a name of the view layer, as
+/// in files of one layer, for any.
+bool names_attribute(const std::string& attribute, const std::string& name, const std::string& view_layer);
+
 /// The attributes that can hold the samples per pixel of a view layer, in the order in which they are looked for.
 std::vector<SamplesAttribute> samples_attributes(const std::string& view_layer);
 

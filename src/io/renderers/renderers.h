@@ -107,6 +107,8 @@ struct Renderer {
   /// Factors that turn the channels of the motion pass into Frame::motion.
   std::array<Real, 4> motion_factors{1, 1, 1, 1};
   SampleMapFormat sample_map;
+  std::string
+      many_layers;  ///< The name of the file type that holds passes, where another type holds the picture alone.
   std::vector<PassSwitch> switches;           ///< For features that improve the result.
   std::string noise_switch;                   ///< How its renders come to tell their noise; may be empty.
   std::vector<std::string> other_pass_files;  ///< Passes without a role that it writes to files of their own.
