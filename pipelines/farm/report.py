@@ -165,7 +165,7 @@ def lines_of(found):
             f"{node['frames_per_hour']:.0f} frames an hour and task"
         )
     lines += [f"no end, the node died or still works on it: {attempt}" for attempt in found["attempts_without_end"]]
-    lines += [f"failed (node, frames, exit code): {attempt}" for attempt in found["failed_attempts"]]
+    lines += [f"an attempt failed (node, frames, exit code): {attempt}" for attempt in found["failed_attempts"]]
     if found["peak_bytes"]:
         requested = f", of {size_text(found['bytes_requested'])} requested" if found["bytes_requested"] else ""
         lines.append(f"most memory of a task: {size_text(found['peak_bytes'])}{requested}")

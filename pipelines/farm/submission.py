@@ -134,7 +134,7 @@ def check_layers(polyrecon, options, frame):
     try:
         polyrecon.run("denoise", *words, *named)
     except DriverError as error:
-        raise DriverError(error.code, f"options of polyrecon denoise: {error}") from error
+        raise DriverError(error.code, f"options of {error}") from error  # It begins with "polyrecon denoise: ".
 
 
 def counted(number, thing):

@@ -113,7 +113,9 @@ class FirstFrame(unittest.TestCase):
             with self.assertRaises(DriverError) as caught:
                 self.first([1, 2, 3], *words)
             self.assertEqual(caught.exception.code, ExitCode.MISSING)
-            self.assertRegex(str(caught.exception), "^options of .*shot.0002.exr: no layer Combned")
+            self.assertRegex(
+                str(caught.exception), "^options of polyrecon denoise: [^:]*shot.0002.exr: no layer Combned"
+            )
 
 
 class Commands(unittest.TestCase):
