@@ -152,6 +152,7 @@ class DebianPackages(Folder):
         control = run("dpkg-deb", "--ctrl-tarfile", self.packages["libpolyrecon1"])
         self.assertIn("shlibs", control)
         self.assertIn("ldconfig", control)
+        self.assertIn(" polyrecon_execute@POLYRECON_1.0 0.1.0\n", control)
 
     def test_dependencies_are_debian_packages_and_complete(self):
         depends = run("dpkg-deb", "--field", self.packages["polyrecon"], "Depends")
@@ -175,10 +176,15 @@ class DebianPackages(Folder):
     def test_packed_program_and_pages_work(self):
         program, module = self.unpacked()
         self.assertEqual(run(program, "--version"), run(PROGRAM, "--version"))
-        self.assertNotIn(".symtab", run("readelf", "--sections", program, module))
+        sections = run("readelf", "--sections", program, module)
+        self.assertNotIn(".symtab", sections)
+        self.assertNotIn(".comment", sections)
         run(program, "preview", SAMPLES / "study_small_0.exr", "-o", self.folder / "look.png")
         page = gzip.decompress((self.folder / "root/usr/share/man/man1/polyrecon.1.gz").read_bytes())
         self.assertIn(b"Exit codes", page)
+        maintainer = run("dpkg-deb", "--field", self.packages["polyrecon"], "Maintainer").strip()
+        changelog = gzip.decompress((self.folder / "root/usr/share/doc/polyrecon/changelog.gz").read_bytes())
+        self.assertIn(f" -- {maintainer}  ", changelog.decode())
 
 
 if __name__ == "__main__":

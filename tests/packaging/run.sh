@@ -9,14 +9,15 @@ root=$(realpath -m "${1:-build/debian}")
 mirror=${DEBIAN_MIRROR:-http://deb.debian.org/debian}
 
 echo "== packages"
-cmake --preset release
-cmake --build --preset release
-rm -rf build/packages
-cpack --config build/release/CPackConfig.cmake -G DEB -B build/packages
-# Set a real maintainer with -DCPACK_PACKAGE_CONTACT before you distribute packages; lintian warns of the default.
+cmake --preset deb
+cmake --build --preset deb
+rm -f build/packages/*.deb
+cpack --config build/deb/CPackConfig.cmake -G DEB -B build/packages
 if command -v lintian >/dev/null; then
-  lintian --fail-on error --suppress-tags bogus-mail-host,bogus-mail-host-in-debian-changelog,root-in-contact \
-    build/packages/*.deb
+  # Information that a string of two overlapping parts looks like a misspelt word is no fault.
+  lintian --info --display-info --suppress-tags spelling-error-in-binary --fail-on error,warning,info build/packages/*.deb
+else
+  echo "lintian is not installed: the packages are not checked"
 fi
 
 echo "== a fresh Debian in $root"

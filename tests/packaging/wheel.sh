@@ -15,6 +15,14 @@ wheel=$(realpath "${1:-$(echo build/packages/polyrecon-*-py3-none-manylinux*.whl
 megabytes=$(($(stat -c %s "$wheel") / 1000000))
 [ "$megabytes" -lt 60 ] || { echo "$wheel: $megabytes MB, more than 60" >&2; exit 1; }
 
+# Functions for several x86-64 levels (POLYRECON_SIMD_CLONES) are chosen by relocations of this type.
+rm -rf build/wheel/unpacked
+python3 -m zipfile -e "$wheel" build/wheel/unpacked
+for file in bin/polyrecon lib/libpolyrecon.so.1; do
+  readelf --relocs --wide "build/wheel/unpacked/polyrecon/$file" | grep IRELATIV >/dev/null ||
+    { echo "$wheel: $file is built for the oldest x86-64 alone" >&2; exit 1; }
+done
+
 echo "== a fresh Debian in $root"
 # The packages are those that pyenv's Pythons are linked with.
 [ -e "$root/etc/debian_version" ] || debootstrap --variant=minbase \

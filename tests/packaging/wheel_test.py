@@ -54,6 +54,13 @@ class Wheel(unittest.TestCase):
             # The driver runs the program that was installed with it, though it is not on the PATH.
             self.assertIn(str(PACKAGE / "bin" / "polyrecon"), run(COMMANDS / script, "--version"))
 
+    def test_blender_as_a_module_is_missing_in_one_line(self):
+        scene = self.folder / "shot.blend"
+        scene.touch()
+        words = [scene, "-o", self.folder / "shot.exr", "--budget-spp", "8", "--bpy"]
+        told = run(COMMANDS / "polyrecon-blender", *words, code=4)
+        self.assertRegex(told, r"\A.* lacks the module bpy: .* -m pip install bpy \(for Python 3.11 or 3.13\)\n\Z")
+
     def test_no_library_is_the_system_s(self):
         """Only those that every Linux has (of the policy manylinux) come from elsewhere."""
         found = run("ldd", PACKAGE / "bin" / "polyrecon") + run("ldd", PACKAGE / "lib/polyrecon/polyrecon_pictures.so")
