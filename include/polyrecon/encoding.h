@@ -15,7 +15,7 @@ constexpr double default_dwa_level = 45;
 /// with one that it would change is written with ZIP.
 struct Encoding {
   std::optional<Compression> compression;  ///< Unset: each function that takes it names its default.
-  double dwa_level = default_dwa_level;    ///< Of Dwaa and Dwab: higher makes smaller files and larger errors.
+  double dwa_level = default_dwa_level;    ///< For Dwaa and Dwab: higher makes smaller files and larger errors.
 };
 
 }  // namespace polyrecon

@@ -14,7 +14,7 @@ import stat
 from .errors import DriverError, ExitCode
 
 LOCK = "polyrecon.lock"  # Stays in the folder; empty while no driver works there.
-OTHER_FILES = 256  # Open files that a driver needs besides locks
+OTHER_FILES = 256  # Open files that a driver needs in addition to locks
 
 
 def allow_many(count):

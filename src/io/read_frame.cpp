@@ -211,7 +211,7 @@ class FrameBuilder {
     return variance;
   }
 
-  /// What notes call the images of a pass: the layers.
+  /// The names of a pass's images in notes: those of the layers.
   PassNames names_of(const PassChoice& choice) const {
     const auto name = [&](int index) { return index < 0 ? std::string() : layer(index).name; };
     return {name(choice.mean), name(choice.variance), name(choice.half_a), name(choice.half_b)};

@@ -8,7 +8,7 @@
 
 namespace polyrecon {
 
-/// What is known about a frame before its pixels are worked on.
+/// The noise of a frame and the decisions about it, made before its pixels are worked on.
 struct Survey {
   NoiseVariance noise;      ///< That of the beauty.
   Preparation preparation;  ///< The features that take part, and which steps run.

@@ -52,7 +52,8 @@ class FramePattern {
 /// The name of a file without its folders.
 std::string file_name(const std::string& path);
 
-/// Where the number's place in a file's name begins, as FramePattern finds it; nothing where there is none.
+/// The index at which the number's place in a file's name begins, as FramePattern finds it; nothing where there is
+/// none.
 std::optional<std::size_t> number_begin(const std::string& name);
 
 /// The last number in a file's name, "shot.0012.exr" -> 12; nothing where there is none.

@@ -4,7 +4,7 @@
 
 namespace polyrecon {
 
-/// What a result holds.
+/// The contents of a result.
 struct ResultContents {
   bool layers = true;                 ///< Layers of the input that are not denoised.
   bool working = true;                ///< Variances, halves and sample counts of the input.
@@ -14,8 +14,8 @@ struct ResultContents {
 
 constexpr const char* default_contents = "input";
 
-/// What a list such as "layers,error" names. Throws Error{Usage} where a word is unknown, or where none says which
-/// layers of the input are kept.
+/// The contents that a list such as "layers,error" names. Throws Error{Usage} where a word is unknown, or where none
+/// says which layers of the input are kept.
 ResultContents parse_contents(const std::string& list);
 
 }  // namespace polyrecon

@@ -33,8 +33,8 @@ struct Job {
   bool is_sequence = false;  ///< A frame of a sequence that fails does not end the run.
   std::vector<int> gaps;     ///< Numbers that no file has, between those that were found; empty with --frames.
   ReadOptions read;
-  std::vector<std::optional<FramePattern>> map_patterns;  ///< Of the files in read.map, in its order.
-  std::optional<FramePattern> cost_pattern;               ///< Of the file of costs of the sample map.
+  std::vector<std::optional<FramePattern>> map_patterns;  ///< Those of the files in read.map, in its order.
+  std::optional<FramePattern> cost_pattern;               ///< That of the sample map's file of costs.
   Params params;  ///< If a pilot chooses the settings: those of standard quality.
   std::optional<FrameLimits> limits;
   std::vector<Params> presets;  ///< Settings that a pilot chooses from, as presets(); empty without limits.

@@ -1,5 +1,5 @@
 'use strict';
-// What keys, pointer and controls do: each of these changes the state and has the page drawn again.
+// The actions of keys, pointer and controls: each changes the state and has the page drawn again.
 
 const maxZoom = 256;
 

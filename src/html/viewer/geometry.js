@@ -1,5 +1,5 @@
 'use strict';
-// Where on the canvas each image is drawn, at which zoom.
+// The place on the canvas where each image is drawn, and its zoom.
 
 /** The cells of the canvas in its pixels, each with the image and the frame that it shows. */
 function cells() {

@@ -1,5 +1,5 @@
 'use strict';
-// What is drawn above the pictures: names, the line of a wipe, the chosen pixel, numbers in pixels.
+// Draws above the pictures: names, the line of a wipe, the chosen pixel, numbers in pixels.
 
 function drawOverlay() {
   const canvas = $('overlay');

@@ -1,5 +1,5 @@
 'use strict';
-// What is shown: everything that the controls, keys and links change.
+// The state of the page: everything that the controls, keys and links change.
 
 const $ = (id) => document.getElementById(id);
 

@@ -19,7 +19,7 @@ function unpacker() {
       : Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
     const { writable, readable } = new DecompressionStream('deflate');
     const writer = writable.getWriter();
-    // What is wrong with the bytes is said by the reader, too.
+    // The reader reports faulty bytes, too.
     writer.write(packed).catch(() => {});
     writer.close().catch(() => {});
     const bytes = new Uint8Array(size);

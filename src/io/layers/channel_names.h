@@ -30,13 +30,14 @@ bool adopt_only_color(std::vector<Layer>& layers);
 /// is one and the noisy one otherwise; nullptr where the file has neither.
 const Layer* picture_layer(const std::vector<Layer>& layers);
 
-/// What a layer accompanies by its name: "m2_img" is the second moment of "img".
+/// A companion and the layer that it accompanies, by its name: "m2_img" is the second moment of "img".
 struct NamedCompanion {
   Companion companion = Companion::Mean;
   std::string mean;
 };
 
-/// What kind of variance, and of which layer, this one is by its name alone. Nothing where the name says none.
+/// The kind of variance that a layer is by its name alone, and the layer that it accompanies. Nothing where the name
+/// says none.
 std::optional<NamedCompanion> variance_by_name(const Layer& layer);
 
 /// Whether the layer is a picture whose channels are CIE XYZ.

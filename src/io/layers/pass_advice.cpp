@@ -13,8 +13,8 @@
 namespace polyrecon {
 namespace {
 
-/// What is worse where no pass shows a property of the surfaces, the worst loss first (docs/guide/passes.md has the
-/// figures). Of other features too few renderers have any, or they bring too little.
+/// The loss where no pass shows a property of the surfaces, the worst first (docs/guide/passes.md has the figures).
+/// Other features are written by too few renderers, or bring too little.
 struct Loss {
   Surface unseen;
   const char* without;

@@ -9,9 +9,9 @@ namespace polyrecon {
 
 /// A pass that a frame lacks, what it would bring, and where to switch it on.
 struct PassAdvice {
-  std::string pass;     ///< "albedo", "variance" for what tells the noise, "prior" for few samples, "aov" for AOVs
+  std::string pass;     ///< "albedo", "variance" for what shows the noise, "prior" for few samples, "aov" for AOVs
                         ///< that stay noisy.
-  std::string without;  ///< "textures get blurred": what is worse without it.
+  std::string without;  ///< "textures blur": the loss without it.
   std::string how;      ///< In the words of the renderer, where it is known: "Blender: View Layer > Passes > ...".
 };
 

@@ -16,7 +16,7 @@ struct SiblingFile {
 
 /// A file and the other files of its render.
 struct FilesOfRender {
-  std::string pass;  ///< Of the file itself, by its name or its folder's; empty where neither is known.
+  std::string pass;  ///< The pass of the file itself, by its name or its folder's; empty where unknown.
   std::vector<SiblingFile> others;
 };
 

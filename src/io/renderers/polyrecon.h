@@ -14,7 +14,7 @@ constexpr const char* shared_samples_attribute = "polyrecon/sharedSamples";  ///
 constexpr const char* samples_attribute = "polyrecon/{}/samples";            ///< "{}" stands for the view layer.
 constexpr const char* version_attribute = "polyrecon/version";
 constexpr const char* input_attribute = "polyrecon/input";            ///< Identity of the file that was denoised.
-constexpr const char* error_attribute = "polyrecon/estimatedRelMSE";  ///< Of a result, mean of the picture.
+constexpr const char* error_attribute = "polyrecon/estimatedRelMSE";  ///< Mean over the picture of a result.
 constexpr const char* settings_attribute = "polyrecon/settings";      ///< Settings of a result of `denoise`.
 
 }  // namespace polyrecon

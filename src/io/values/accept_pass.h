@@ -1,4 +1,4 @@
-// Which of the images that come with a pass can be believed, whether they come from files or from memory.
+// Checks which of the images that come with a pass can be trusted, whether they come from files or from memory.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace polyrecon {
 
-/// What the images of a pass are called in notes.
+/// The names of a pass's images in notes.
 struct PassNames {
   std::string mean, variance, half_a, half_b;
 };

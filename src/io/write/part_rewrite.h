@@ -1,4 +1,4 @@
-// What is written of each part of a file: its header, and where the samples of its channels come from.
+// The parts of a file that is written again: their headers, and where the samples of their channels come from.
 #pragma once
 
 #include <OpenEXR/ImfHeader.h>
