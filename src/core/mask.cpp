@@ -24,6 +24,8 @@ std::size_t mask_pixels(const Image& mask, std::size_t all) {
   return static_cast<std::size_t>(std::count(mask.plane(0), mask.plane(0) + mask.pixels(), Real(1)));
 }
 
+Image both_masks(const Image& a, const Image& b) { return a.empty() ? b : outside_set_to(0, b, a); }
+
 Image outside_set_to(Real value, const Image& mask, Image image) {
   if (mask.empty()) return image;
   for_samples(image, [&](Real& sample, std::size_t i) {

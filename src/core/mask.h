@@ -12,6 +12,9 @@ inline bool in_mask(const Image& mask, std::size_t i) { return mask.empty() || m
 /// Number of pixels inside the mask, of `all`.
 std::size_t mask_pixels(const Image& mask, std::size_t all);
 
+/// The mask of the pixels that are inside both.
+Image both_masks(const Image& a, const Image& b);
+
 /// The image with a value in all pixels outside the mask. An empty image stays empty.
 Image outside_set_to(Real value, const Image& mask, Image image);
 

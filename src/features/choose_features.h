@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/lamps.h"
 #include "polyrecon/frame.h"
 #include "polyrecon/params.h"
 #include "polyrecon/report.h"
@@ -36,6 +37,7 @@ struct Preparation {
   std::vector<Decision> decisions;
   Image rendered = {};  ///< Mask of the pixels that were rendered; the others stay 0 (core/void_pixels.h).
   Image sampled = {};   ///< Mask of the pixels that are samples of it; the others are hidden.
+  Lamps lamps = {};     ///< They are hidden too, and keep their values.
 };
 
 /// Decides which features take part in the fit and which of them are prefiltered. Features that are not finite,

@@ -9,6 +9,8 @@
 #include "blend/undershoot.h"
 #include "core/color_layout.h"
 #include "core/halves.h"
+#include "core/lamps.h"
+#include "core/mask.h"
 #include "core/mean.h"
 #include "core/parallel.h"
 #include "core/rect.h"
@@ -259,13 +261,14 @@ Result reconstruct(Frame& frame, const std::vector<TimedNeighbour>& neighbours, 
   // Polynomials around every centre, of the order with the least estimated error, blended (equations 3 to 9).
   Candidate solved = fit_polynomials(frame, pair, params, max_bytes, phases, report);
 
-  // Void pixels stay empty.
-  const Image& rendered = halves.survey.preparation.rendered;
-  empty_void(rendered, pair, solved);
+  // Void pixels stay empty; lamps get their values at the end.
+  const Lamps& lamps = halves.survey.preparation.lamps;
+  const Image fitted = both_masks(halves.survey.preparation.rendered, lamps.others);
+  empty_void(fitted, pair, solved);
 
   // The estimate of the error that is left, and the prior where its error is smaller.
   result.error = phases.run(
-      "error map", 1, [&](Progress&) { return make_error_map(pair, halves.survey.noise.variance, solved, rendered); });
+      "error map", 1, [&](Progress&) { return make_error_map(pair, halves.survey.noise.variance, solved, fitted); });
   result.order = solved.order;
   Image ours;  // all layers without the prior, which the colour layers add up to
   if (!prior.pass.mean.empty()) {
@@ -280,6 +283,7 @@ Result reconstruct(Frame& frame, const std::vector<TimedNeighbour>& neighbours, 
   // The image, with the energy of the input (equations 10 and 11).
   Image image = phases.run("energy", 1, [&](Progress&) { return restore(frame, halves, solved, params, report); });
   if (!ours.empty()) image = follow_beauty(std::move(ours), image);
+  put_lamps(lamps, frame, image);
   report.energy_change = require_energy(frame.beauty, image);
   put_layers(image, result);
   result.alpha = result.alpha.empty() ? frame.alpha : phases.run("alpha", 1, [&](Progress& p) {
