@@ -75,6 +75,48 @@ std::string layer_name(const std::string& sibling, const std::string& in_file_na
   return beauty.pass + sibling.substr(begin);
 }
 
+/// Whether the layer is a pass that a render may have in a file of several: a feature, or what describes its samples.
+bool is_pass_of_render(const Layer& layer) {
+  return layer.companion == Companion::Mean && (info_of(layer.role).feature || layer.role == Role::SampleCount) &&
+         info_of(layer.role).layer_channels.allow(layer.channels.size());
+}
+
+/// Adds the passes that the source lacks from a file of several, and their variances and halves. A file whose name does
+/// not say that it holds passes holds a picture of its own if it has a beauty, and nothing of it is taken.
+/// Returns the names of the passes.
+std::vector<std::string> add_passes(FrameSource& source, const FileOfPasses& of_several, const LayerView& place,
+                                    const ReadLimits& limits) {
+  FileInfo file;
+  try {
+    file = describe_file(of_several.path, limits);
+  } catch (const Error&) {
+    if (of_several.named_so) throw;
+    return {};
+  }
+  const std::vector<Layer> layers = find_layers(file);
+  const auto is_beauty = [](const Layer& l) { return l.role == Role::Beauty && l.companion == Companion::Mean; };
+  if (!of_several.named_so && std::any_of(layers.begin(), layers.end(), is_beauty)) return {};
+  const bool at_one_place = std::all_of(layers.begin(), layers.end(),
+                                        [&](const Layer& l) { return place_of(l) == place_of(layers.front()); });
+  const auto is_here = [&](const Layer& l) { return at_one_place || place_of(l) == place; };
+  std::vector<Role> taken;
+  std::vector<std::string> names;
+  for (const Layer& layer : layers)
+    if (is_pass_of_render(layer) && is_here(layer) && !has_mean(source, layer.role)) {
+      if (std::find(taken.begin(), taken.end(), layer.role) == taken.end()) taken.push_back(layer.role);
+      names.push_back(layer.pass);
+    }
+  if (names.empty()) return {};
+  source.files.push_back(std::move(file));
+  for (Layer layer : layers) {
+    if (!is_here(layer) || std::find(taken.begin(), taken.end(), layer.role) == taken.end()) continue;
+    rename_layer(layer, layer.pass, place);
+    layer.file = static_cast<int>(source.files.size()) - 1;
+    source.layers.push_back(std::move(layer));
+  }
+  return names;
+}
+
 }  // namespace
 
 int add_file(FrameSource& source, const std::string& path, Role role, const ReadLimits& limits) {
@@ -108,15 +150,27 @@ FrameSource open_source(const std::string& path, const ReadLimits& limits, std::
                               (is_denoised_name(sibling.pass) && is_result(describe_file(sibling.path, limits)));
                      }),
       siblings.end());
-  if (siblings.empty()) return source;
+  if (siblings.empty() && render.of_several.empty()) return source;
   const std::string& pass = render.pass;
+  const Layer before = source.layers.front();
   if (bare && !pass.empty()) source.layers.front().name = source.layers.front().pass = pass;
   const Layer beauty = bare ? source.layers.front() : *picture_layer(source.layers);
   std::vector<std::string> names;
   for (const SiblingFile& sibling : siblings) {
-    const auto added = static_cast<std::size_t>(add_file(source, sibling.path, Role::Other, limits));
+    const auto known = classify_pass(sibling.pass);
+    const auto added =
+        static_cast<std::size_t>(add_file(source, sibling.path, known ? known->role : Role::Other, limits));
     rename_layer(source.layers[added], layer_name(sibling.pass, pass, beauty), place_of(beauty));
     names.push_back(path_from_folder_of(path, sibling.path));
+    if (find_layers(source.files.back()).size() > 1) render.of_several.push_back({sibling.path, true});
+  }
+  classify_layers(source.files, source.layers);
+  for (const FileOfPasses& file : render.of_several)
+    if (const std::vector<std::string> passes = add_passes(source, file, place_of(beauty), limits); !passes.empty())
+      names.push_back(fmt::format("{} ({})", path_from_folder_of(path, file.path), fmt::join(passes, ", ")));
+  if (names.empty()) {
+    source.layers.front() = before;
+    return source;
   }
   classify_layers(source.files, source.layers);
   notes.push_back(fmt::format("passes from files next to the input: {}", fmt::join(names, ", ")));

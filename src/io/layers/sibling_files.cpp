@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cstring>
 #include <filesystem>
 #include <optional>
@@ -20,9 +21,12 @@ namespace fs = std::filesystem;
 constexpr std::size_t short_word = 2;  // names of so few letters are too often something else
 constexpr std::string_view name_separators = "._- ";
 
-/// Words in front of a pass in the name of its folder, and names of folders with a file for each pass: "AOV_albedo/",
-/// "aovs/".
-constexpr std::array<std::string_view, 5> words_for_passes{"AOV", "AOVs", "pass", "passes", "elements"};
+/// Words in front of a pass in the name of its folder, names of folders with a file for each pass, and words in the
+/// names of files with several: "AOV_albedo/", "aovs/", "shot_data".
+constexpr std::array<std::string_view, 17> words_for_passes{
+    "AOV",   "AOVs",      "pass", "passes",    "elements", "layers",    "multilayer", "data",  "utility",
+    "utils", "utilities", "tech", "technical", "features", "denoising", "extra",      "extras"};
+constexpr std::size_t least_word_for_passes = 3;  // letters of a word that is not known to mean passes
 
 bool is_name_separator(char c) { return name_separators.find(c) != std::string_view::npos; }
 
@@ -245,6 +249,40 @@ std::vector<SiblingFile> files_of(const PassFolder& folder, const fs::path& self
   return files;
 }
 
+bool is_word(const std::string& text) {
+  return text.size() >= least_word_for_passes &&
+         std::all_of(text.begin(), text.end(), [](unsigned char c) { return std::isalpha(c) != 0; });
+}
+
+/// The word that the name of a file has in place of the pass, or added to the name; empty where it is no word, or names
+/// a pass.
+std::string word_of(const std::string& other, const NameParts& parts) {
+  const std::string in_place = parts.pass.empty() ? std::string() : between(parts.before, other, parts.after);
+  const std::string added = between(parts.before + parts.pass, other, parts.after);
+  const bool apart = !added.empty() && is_name_separator(added.front());
+  for (const std::string& word : {in_place, apart ? added.substr(1) : std::string()})
+    if (is_word(word)) return is_pass_or_companion(parts.before, word) ? std::string() : word;
+  return {};
+}
+
+/// Files in the folder that may hold several passes of a file with this stem and extension. Without a name that the
+/// files have in common, only known words count: "beauty.0001" | "aovs.0001".
+void add_files_of_several(const PassFolder& folder, bool is_own, const fs::path& self,
+                          std::vector<FileOfPasses>& files) {
+  if (!folder.pass.empty()) return;
+  const std::string stem = self.stem().string();
+  const NameParts parts = parts_of(stem);
+  const std::size_t before = files.size();
+  visit_folder(folder.path, [&](const fs::path& path) {
+    if (path.extension() != self.extension()) return;
+    const std::string other = path.stem().string(), word = word_of(other, parts);
+    const bool named_so = is_word_for_passes(word) || (!is_own && other == stem);
+    if (named_so || (is_own && !parts.before.empty() && !word.empty())) files.push_back({path.string(), named_so});
+  });
+  std::sort(files.begin() + static_cast<std::ptrdiff_t>(before), files.end(),
+            [](const auto& a, const auto& b) { return a.path < b.path; });
+}
+
 /// Adds the files of the folders with passes that are not there yet. Returns whether it added one.
 bool add_files_of(const std::vector<PassFolder>& folders, const fs::path& self, std::vector<SiblingFile>& siblings) {
   std::vector<SiblingFile> files;
@@ -273,16 +311,21 @@ bool is_denoised_name(const std::string& pass) {
 
 FilesOfRender find_siblings(const std::string& path) {
   const fs::path self(path);
-  FilesOfRender render{pass_in_file_name(path), {}};
+  FilesOfRender render{pass_in_file_name(path), {}, {}};
+  const std::vector<PassFolder> below = folders_in(self.parent_path());
   add_files_of({{self.parent_path(), {}}}, self, render.others);
-  add_files_of(folders_in(self.parent_path()), self, render.others);
+  add_files_of(below, self, render.others);
+  add_files_of_several({self.parent_path(), {}}, true, self, render.of_several);
+  for (const PassFolder& folder : below) add_files_of_several(folder, false, self, render.of_several);
   const auto named = named_folder(self);
   if (!named) return render;
   const std::vector<PassFolder> folders = folders_next_to(*named);
   // A folder that is named after a feature holds one if there is a beauty: "shadow" may be the name of a shot, too.
   const bool has_beauty = is_beauty(named->parts.pass) ||
                           std::any_of(folders.begin(), folders.end(), [](const auto& f) { return is_beauty(f.pass); });
-  if (has_beauty && add_files_of(folders, self, render.others) && render.pass.empty()) render.pass = named->parts.pass;
+  if (!has_beauty) return render;
+  if (add_files_of(folders, self, render.others) && render.pass.empty()) render.pass = named->parts.pass;
+  for (const PassFolder& folder : folders) add_files_of_several(folder, false, self, render.of_several);
   return render;
 }
 
