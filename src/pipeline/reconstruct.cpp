@@ -255,7 +255,7 @@ Result reconstruct(Frame& frame, const std::vector<TimedNeighbour>& neighbours, 
   const std::size_t max_bytes = tile_memory(shape, params);
   ReadyPrior prior = ready_prior(std::move(frame.prior), denoiser != nullptr, halves.prepared);
   if (prior.validated)
-    prior.validation = phases.run("validation of the prior", validation_units(pair),
+    prior.validation = phases.run("validation of the prior", validation_units(pair, params),
                                   [&](Progress& p) { return make_validation(prior.pass, pair, params, max_bytes, p); });
 
   // Polynomials around every centre, of the order with the least estimated error, blended (equations 3 to 9).

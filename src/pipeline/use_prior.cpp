@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
 #include <utility>
@@ -78,7 +79,7 @@ HalfPair half_alone(const HalfPair& pair, std::size_t h, double correlation) {
 
 Params validation_params(const Params& params) {
   Params validation = params_for(Quality::Draft);
-  validation.stages = 2;
+  validation.stages = std::min(params.stages, 2);
   validation.patch = params.patch;
   return validation;
 }
@@ -159,7 +160,9 @@ ValidationHalves make_validation(Pass& prior, const HalfPair& pair, const Params
   return out;
 }
 
-std::size_t validation_units(const HalfPair& pair) { return 2 * fit_units(pair, validation_params(Params())); }
+std::size_t validation_units(const HalfPair& pair, const Params& params) {
+  return 2 * fit_units(pair, validation_params(params));
+}
 
 std::size_t validation_channels(std::size_t feature_channels) {
   return (half_pair_channels(ColorLayout::primaries, feature_channels) +

@@ -41,12 +41,13 @@ struct ReadyPrior {
 ReadyPrior ready_prior(Pass prior, bool made_here, const Prepared& prepared);
 
 /// The halves of a prior in the exposure of the frame, and the halves of the frame, each split once more
-/// (noise/fission.h) and reconstructed alone, at draft quality in two stages. Takes the halves out of the prior.
+/// (noise/fission.h) and reconstructed alone, at draft quality in two stages, or one if the result has one. Takes the
+/// halves out of the prior.
 ValidationHalves make_validation(Pass& prior, const HalfPair& pair, const Params& params, std::size_t max_bytes,
                                  Progress& progress);
 
 /// Units of work of make_validation.
-std::size_t validation_units(const HalfPair& pair);
+std::size_t validation_units(const HalfPair& pair, const Params& params);
 
 /// Channels that make_validation holds in addition to the pair, the prior, its result and tiles.
 std::size_t validation_channels(std::size_t feature_channels);
