@@ -10,7 +10,7 @@ import tempfile
 
 from tests.attacks.program import MEGABYTE, Program, Tally
 
-KINDS = ("headers", "decoders", "numbers", "swaps", "names", "special_files", "limits")
+KINDS = ("variants", "headers", "decoders", "numbers", "swaps", "names", "special_files", "limits")
 FRAME_MEMORY = 300 * MEGABYTE
 
 

@@ -170,6 +170,20 @@ TEST_F(Attacks, AnOddFrameDoesNotEndASequence) {
             "e.Combined");
 }
 
+TEST_F(Attacks, ChannelsWithoutALayersNameAreOfALayer) {
+  const std::vector<std::string> combined{"L.Combined.R", "L.Combined.G", "L.Combined.B"};
+  for (const std::vector<std::string>& odd : std::vector<std::vector<std::string>>{
+           {".R"}, {".R", ".G", ".B"}, {".R", ".G", ".B", ".A"}, {"..R"}, {".A"}, {"L..R", "L..G", "L..B"}, {"."}}) {
+    for (const bool alone : {false, true}) {
+      std::vector<std::string> channels = alone ? std::vector<std::string>{} : combined;
+      channels.insert(channels.end(), odd.begin(), odd.end());
+      write_exr(path("in.exr"), width, height, channels, [](int x, int y, int) { return 0.1 + 0.01 * (x * y % 7); });
+      for (const Outcome& o : {run({"inspect", "in.exr"}), denoise("in.exr", "o.exr", {"--aov", "all", "--alpha"})})
+        EXPECT_TRUE(o.code == 0 || ((o.code == 3 || o.code == 4) && alone)) << odd.front() << o.code << o.err;
+    }
+  }
+}
+
 TEST_F(Attacks, PathsNeedNotBeUtf8) {
   render(
       "Stra\xdf"

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Fuzzes the EXR reader under AddressSanitizer and UndefinedBehaviorSanitizer for at least SECONDS (default 7200) and
-# FILES (default 100000). A file fails if it takes more than 10 s of processor time, 10 minutes of wall-clock time or
-# 2 GB of memory. Failing files are kept in build/fuzz/findings, the corpus in build/fuzz/corpus. Needs Debian's clang-16,
-# which includes libFuzzer.
+# FILES (default 100000), then for a tenth of SECONDS the command line. A file fails if it takes more than 10 s of
+# processor time, 10 minutes of wall-clock time or 2 GB of memory. Failing files are kept in build/fuzz/findings, the
+# corpus in build/fuzz/corpus. Needs Debian's clang-16, which includes libFuzzer.
 #   tests/fuzz/run.sh [SECONDS [FILES]]
 # With CMAKE_PREFIX_PATH (and LD_LIBRARY_PATH) naming an OpenEXR built with the same flags, the fuzzer covers that library
 # too; docs/dev/files_from_strangers.md says how to build it.
@@ -28,5 +28,7 @@ fuzz -max_total_time="$seconds"
 done_files=$(awk '/stat::number_of_executed_units/ { n += $2 } END { print n + 0 }' build/fuzz/log)
 [ "$done_files" -ge "$files" ] || fuzz -runs=$((files - done_files))
 awk '/stat::number_of_executed_units/ { n += $2 } END { print n " files, findings:" }' build/fuzz/log
+mkdir -p build/fuzz/words
+"$build/options_fuzzer" -max_len=1000 -timeout=600 -artifact_prefix=build/fuzz/findings/ -max_total_time="$((seconds / 10))" build/fuzz/words
 ls build/fuzz/findings
 [ -z "$(ls build/fuzz/findings)" ]

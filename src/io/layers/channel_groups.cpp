@@ -155,7 +155,8 @@ class PartChannels {
   /// The layer of a channel, and the word that says which channel of it.
   std::pair<std::string, std::string> split(const std::string& channel) const {
     const auto dot = channel.rfind('.');
-    if (dot != std::string::npos) return {channel.substr(0, dot), channel.substr(dot + 1)};
+    // An empty name stands for no layer elsewhere, so ".R" is of a layer "."
+    if (dot != std::string::npos) return {channel.substr(0, std::max<std::size_t>(dot, 1)), channel.substr(dot + 1)};
     if (bare_.count(channel) > 0) return {title_.empty() ? bare_pass_ : title_, channel};
     if (auto glued = split_glued(channel); !glued.first.empty()) return glued;
     return {title_is_layer_ ? title_ : channel, channel};
