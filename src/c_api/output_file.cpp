@@ -70,8 +70,7 @@ void require_exr_output(const std::string& path) {
 }
 
 std::string identity_of_input(const FrameSource& source) {
-  std::string text;
-  for (const FileInfo& file : source.files) text += (text.empty() ? "" : "; ") + file_identity(file.path);
+  std::string text = files_identity(source.files);
   for (const FileInfo& file : source.files) require_unchanged(file);
   return text;
 }

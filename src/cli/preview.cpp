@@ -13,12 +13,12 @@
 
 #include "cli/commands.h"
 #include "cli/common/checks.h"
+#include "cli/common/comparison.h"
 #include "cli/common/display_options.h"
 #include "cli/common/layers.h"
 #include "cli/common/memory_limit.h"
 #include "cli/common/numbers.h"
 #include "cli/common/progress_output.h"
-#include "cli/compare/comparison.h"
 #include "core/nearest.h"
 #include "io/layers/layer_words.h"
 #include "io/pictures/color.h"

@@ -10,6 +10,7 @@
 
 #include "cli/commands.h"
 #include "cli/common/checks.h"
+#include "cli/common/comparison.h"
 #include "cli/common/display_options.h"
 #include "cli/common/layers.h"
 #include "cli/common/map_files.h"
@@ -17,7 +18,6 @@
 #include "cli/common/printed_text.h"
 #include "cli/common/progress_output.h"
 #include "cli/common/sequence_arguments.h"
-#include "cli/compare/comparison.h"
 #include "cli/compare/comparison_output.h"
 #include "cli/compare/comparison_page.h"
 #include "core/relmse.h"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/compare/comparison.h"
+#include "cli/common/comparison.h"
 #include "io/pictures/color.h"
 #include "io/pictures/preview.h"
 

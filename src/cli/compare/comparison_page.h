@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/compare/comparison.h"
+#include "cli/common/comparison.h"
 #include "html/viewer_page.h"
 #include "io/pictures/color.h"
 #include "metrics/reliability.h"

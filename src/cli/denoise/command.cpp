@@ -55,10 +55,10 @@ bool run_single(const Job& job, RunProgress& progress) {
 }
 
 /// Returns whether a limit was missed.
-bool run_job(Job job, RunProgress& progress) {
-  set_thread_limit(job.run.threads);
-  set_codec_threads(job.run.threads > 0 ? job.run.threads : processors());
-  load_denoiser(job);
+bool run_job(Job wanted, RunProgress& progress) {
+  set_thread_limit(wanted.run.threads);
+  set_codec_threads(wanted.run.threads > 0 ? wanted.run.threads : processors());
+  const Job job = with_denoiser(std::move(wanted));
   if (job.run.dry_run) {
     show_dry_run(job);
     return false;

@@ -26,7 +26,7 @@ bool has_attribute(const FileInfo& file, const std::string& attribute, const std
 /// The identity of all files with its passes, or of the named one if they cannot be found.
 std::string neighbour_identity(const Job& job, const NeighbourFile& neighbour) {
   try {
-    return identity_of(read_frame_header(neighbour.path, read_options_for(job, neighbour.frame)).source);
+    return files_identity(read_frame_header(neighbour.path, read_options_for(job, neighbour.frame)).source.files);
   } catch (const Error&) {
     return file_identity(neighbour.path);
   }
@@ -34,7 +34,7 @@ std::string neighbour_identity(const Job& job, const NeighbourFile& neighbour) {
 
 /// The identity that a result would have if the frame was read now.
 std::string present_identity(const Job& job, const FrameFiles& files, const FrameSource& source) {
-  std::string text = identity_of(source);
+  std::string text = files_identity(source.files);
   for (const NeighbourFile& neighbour : files.neighbours)
     if (std::error_code ignored; std::filesystem::is_regular_file(neighbour.path, ignored))
       text += neighbour_text(neighbour.offset, neighbour_identity(job, neighbour));

@@ -202,8 +202,9 @@ void check_files(const Job& job) {
   require_writable(all_outputs);
 }
 
-void load_denoiser(Job& job) {
+Job with_denoiser(Job job) {
   if (job.make_denoiser) job.denoiser = job.make_denoiser(job.denoiser_options);
+  return job;
 }
 
 ReadOptions read_options_for(const Job& job, std::optional<int> frame) {

@@ -41,7 +41,7 @@ struct Job {
   std::optional<SampleMapOptions> sample_map;
   MakeDenoiser make_denoiser = nullptr;  ///< Null: the prior is a layer of the file, if it has one.
   DenoiserOptions denoiser_options;
-  std::shared_ptr<const Denoiser> denoiser;  ///< Set by load_denoiser.
+  std::shared_ptr<const Denoiser> denoiser;  ///< Null before with_denoiser, and where none is wanted.
   ResultContents contents;
   Encoding encoding;
   RunOptions run;
@@ -59,9 +59,9 @@ void check_options(const DenoiseOptions& options);
 /// an input too, an input that does not exist, a folder that cannot be written to. Reads no pixel.
 void check_files(const Job& job);
 
-/// Makes the denoiser of a job ready, if it has one. Throws Error{Missing} where it is not installed. Call it once the
-/// number of threads is set.
-void load_denoiser(Job& job);
+/// The job with its denoiser, if it wants one, loaded. Throws Error{Missing} where it is not installed. Call it once
+/// the number of threads is set.
+Job with_denoiser(Job job);
 
 /// How the frame of this number is read: in the names of files that options name, the number replaces ####.
 ReadOptions read_options_for(const Job& job, std::optional<int> frame);

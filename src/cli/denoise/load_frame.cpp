@@ -37,12 +37,6 @@ ReadOptions with_picture(ReadOptions options, const PictureChoice& picture) {
   return options;
 }
 
-std::string identity_of(const FrameSource& source) {
-  std::string text;
-  for (const FileInfo& file : source.files) text += (text.empty() ? "" : "; ") + file_identity(file.path);
-  return text;
-}
-
 std::string neighbour_text(int offset, const std::string& identity) {
   return fmt::format("; {:+d}: {}", offset, identity);
 }
@@ -56,7 +50,7 @@ std::string LoadedFrame::neighbours_identity() const {
 LoadedFrame load_frame(const std::string& path, const ReadOptions& options) {
   const Stopwatch watch;
   LoadedFrame loaded{read_frame(path, options), 0, {}, {}, {}};
-  loaded.identity = identity_of(loaded.in.source);
+  loaded.identity = files_identity(loaded.in.source.files);
   for (const FileInfo& file : loaded.in.source.files) require_unchanged(file);
   loaded.read_seconds = watch.seconds();
   loaded.picture = {{loaded.in.source.view_layer, loaded.in.source.view}, options.own_windows};

@@ -45,9 +45,6 @@ struct LoadedFrame {
   std::string neighbours_identity() const;
 };
 
-/// The identity of all files of a frame.
-std::string identity_of(const FrameSource& source);
-
 /// The suffix for a neighbour in time behind the identity of a frame.
 std::string neighbour_text(int offset, const std::string& identity);
 

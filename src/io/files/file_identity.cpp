@@ -54,4 +54,10 @@ std::string file_identity(const std::string& path) {
   return fmt::format("{}, {} bytes, xxh64 {:016x}", std::filesystem::path(path).filename().string(), bytes, hash);
 }
 
+std::string files_identity(const std::vector<FileInfo>& files) {
+  std::string text;
+  for (const FileInfo& file : files) text += (text.empty() ? "" : "; ") + file_identity(file.path);
+  return text;
+}
+
 }  // namespace polyrecon

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "polyrecon/file_info.h"
 
@@ -10,6 +11,9 @@ namespace polyrecon {
 /// not depend on the folder or the time of the file. Throws Error{Missing} if there is no such file, Error{BadInput} if
 /// it cannot be read.
 std::string file_identity(const std::string& path);
+
+/// The identities of several files that one frame was read from, joined by "; ". Throws as file_identity.
+std::string files_identity(const std::vector<FileInfo>& files);
 
 /// The stamp of a file as it is now; an empty one where there is none.
 FileStamp stamp_of(const std::string& path);

@@ -1,4 +1,4 @@
-#include "cli/compare/comparison.h"
+#include "cli/common/comparison.h"
 
 #include <fmt/format.h>
 
