@@ -15,8 +15,8 @@ struct Survey {
 };
 
 /// Determines the noise of a frame and decides which of the steps run. Features of unknown noise get a variance in
-/// `frame` if the prefilter may run, and void pixels and lamps are hidden (hide_void). Throws Error{CheckFailed} where the beauty
-/// has no usable pixel, Error{Interrupted} when progress asks to stop.
+/// `frame` if the prefilter may run, and void pixels and lamps are hidden (hide_void). Throws Error{CheckFailed} where
+/// the beauty has no usable pixel, Error{Interrupted} when progress asks to stop.
 Survey survey_frame(Frame& frame, const Steps& steps, Progress& progress);
 
 }  // namespace polyrecon
