@@ -6,9 +6,13 @@
 #include <utility>
 
 #include "core/color_layout.h"
+#include "core/halves.h"
 #include "core/mask.h"
+#include "core/mean.h"
 #include "core/parallel.h"
+#include "core/real.h"
 #include "core/rect.h"
+#include "core/relmse.h"
 #include "core/repair.h"
 
 namespace polyrecon {
@@ -154,6 +158,15 @@ Image others_than_lamps(const Image& brightness, const Image& rendered) {
   return others;
 }
 
+/// known_variance of a pass at these pixels; empty where its noise is not known.
+Image variance_there(const Pass& pass, const std::vector<std::size_t>& pixels) {
+  if (!pass.noise_is_known()) return {};
+  Image out(static_cast<int>(pixels.size()), 1, pass.mean.channels());
+  for (int c = 0; c < out.channels(); ++c)
+    for (std::size_t k = 0; k < pixels.size(); ++k) out.plane(c)[k] = storable(known_variance(pass, c, pixels[k]));
+  return out;
+}
+
 }  // namespace
 
 Lamps find_lamps(const Frame& frame, const Image& rendered) {
@@ -173,6 +186,7 @@ Lamps find_lamps(const Frame& frame, const Image& rendered) {
     lamps.layers.push_back(std::move(values));
   };
   keep(repaired(frame.beauty.mean));
+  lamps.variance = variance_there(frame.beauty, lamps.pixels);
   for (const Pass& aov : frame.aovs) keep(repaired(aov.mean));
   return lamps;
 }
@@ -187,6 +201,23 @@ void put_lamps(const Lamps& lamps, const Frame& frame, Image& image) {
             lamps.layers[static_cast<std::size_t>(layer)].plane(c)[k];
     if (layout.has_alpha()) image.plane(layout.alpha_channel())[i] = frame.alpha.plane(0)[i];
   }
+}
+
+void put_errors(const Lamps& lamps, const Image& image, ErrorMap& error) {
+  if (lamps.variance.empty()) return;
+  for (std::size_t k = 0; k < lamps.pixels.size(); ++k) {
+    const std::size_t i = lamps.pixels[k];
+    double relative = 0;
+    for (int c = 0; c < ColorLayout::primaries; ++c) {
+      error.mse.plane(c)[i] = lamps.variance.plane(c)[k];
+      relative += static_cast<double>(lamps.variance.plane(c)[k]) /
+                  relmse_denominator(static_cast<double>(image.plane(c)[i])) / ColorLayout::primaries;
+    }
+    for (Image* part : {&error.relative_mse, &error.relative_variance, &error.relative_noise})
+      part->plane(0)[i] = storable(relative);
+    if (!error.prior_share.empty()) error.prior_share.plane(0)[i] = 0;
+  }
+  error.mean_relative_mse = mean_of(error.relative_mse);
 }
 
 }  // namespace polyrecon

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "polyrecon/error_map.h"
 #include "polyrecon/frame.h"
 
 namespace polyrecon {
@@ -13,6 +14,7 @@ struct Lamps {
   Image others;                     ///< The mask (core/mask.h) of all other pixels; empty without lamps.
   std::vector<std::size_t> pixels;  ///< Indices of the pixels of lamps, in order.
   std::vector<Image> layers;        ///< Values of beauty and AOVs there: pixels.size() x 1.
+  Image variance;                   ///< That of the beauty's mean there; empty where the file does not tell it.
 
   bool empty() const { return pixels.empty(); }
 };
@@ -30,5 +32,8 @@ Lamps find_lamps(const Frame& frame, const Image& rendered);
 
 /// Writes the values of the lamps' pixels into an image with the channels of ColorLayout: beauty, AOVs, alpha.
 void put_lamps(const Lamps& lamps, const Frame& frame, Image& image);
+
+/// Writes the error of the lamps' pixels into the error map of that image: they are the input, so it is their noise.
+void put_errors(const Lamps& lamps, const Image& image, ErrorMap& error);
 
 }  // namespace polyrecon

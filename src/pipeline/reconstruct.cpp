@@ -284,6 +284,7 @@ Result reconstruct(Frame& frame, const std::vector<TimedNeighbour>& neighbours, 
   Image image = phases.run("energy", 1, [&](Progress&) { return restore(frame, halves, solved, params, report); });
   if (!ours.empty()) image = follow_beauty(std::move(ours), image);
   put_lamps(lamps, frame, image);
+  put_errors(lamps, image, result.error);
   report.energy_change = require_energy(frame.beauty, image);
   put_layers(image, result);
   result.alpha = result.alpha.empty() ? frame.alpha : phases.run("alpha", 1, [&](Progress& p) {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/lamps.h"
+#include "support/images.h"
 #include "support/reconstruction.h"
 #include "support/scene.h"
 
@@ -75,6 +76,29 @@ TEST(Lamp, OfOnePixelIsNoFireflyWhereItHoldsMuchOfTheEnergy) {
     EXPECT_EQ(result.at(36, 25, 1), static_cast<Real>(radiance));
     EXPECT_LT(error_between(result, scene.truth, 2, 100), error_between(scene.frame.beauty.mean, scene.truth, 2, 100));
   }
+}
+
+TEST(Lamp, HasTheErrorOfItsNoise) {
+  const test::Scene scene = scene_with_lamp(3e3, 4);
+  Frame frame = scene.frame;
+  frame.beauty.variance =
+      test::image_of(width, height, 3, [](int x, int y, int) { return std::abs(distance(x, y) - 4) < 1 ? 1e4 : 1e-4; });
+  const Lamps lamps = find_lamps(frame, {});
+  const Result result = test::run(frame, test::quick());
+  double mean = 0;
+  for (const std::size_t i : lamps.pixels) {
+    double relative = 0;
+    for (int c = 0; c < 3; ++c) {
+      const auto value = static_cast<double>(result.beauty.plane(c)[i]);
+      EXPECT_EQ(result.error.mse.plane(c)[i], frame.beauty.variance.plane(c)[i]);
+      relative += static_cast<double>(frame.beauty.variance.plane(c)[i]) / (value * value + 0.01) / 3;
+    }
+    EXPECT_NEAR(static_cast<double>(result.error.relative_mse.plane(0)[i]), relative, 1e-5 * relative);
+    EXPECT_EQ(result.error.relative_noise.plane(0)[i], result.error.relative_mse.plane(0)[i]);
+  }
+  for (std::size_t i = 0; i < result.error.relative_mse.pixels(); ++i)
+    mean += static_cast<double>(result.error.relative_mse.plane(0)[i]) / (width * height);
+  EXPECT_NEAR(result.error.mean_relative_mse, mean, 1e-6 * mean);
 }
 
 TEST(Lamp, LayersKeepTheirSharesOfIt) {
