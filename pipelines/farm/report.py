@@ -156,7 +156,7 @@ def lines_of(found):
     """The report for the terminal. No line begins with a text of a file, which might be an openjd_ command."""
     lines = [f"{found['finished']} of {found['frames']} frames are finished"]
     if found["unfinished"]:
-        lines.append(f"not finished: {found['unfinished']}; submitting again denoises these alone")
+        lines.append(f"not finished: {found['unfinished']}; submitting again denoises what is missing")
     lines += [f"frame {frame}: {why}" for frame, why in found["reasons"].items()]
     for name, node in sorted(found["nodes"].items()):
         done = f"{counted(node['frames'], 'frame')} by {counted(node['tasks'], 'task')}"

@@ -55,6 +55,11 @@ class Template(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
         self.assertIn("Report", done.stdout)
 
+    def test_its_texts_are_whole(self):
+        parameters = yaml.safe_load((FARM / "template.yaml").read_text())["parameterDefinitions"]
+        found = {parameter["name"]: parameter.get("description", "") for parameter in parameters}
+        self.assertTrue(found["InputName"].endswith("in place of #### or %04d"), found["InputName"])
+
     def test_it_runs_chunks_and_the_report(self):
         done = run(OPENJD, "run", FARM / "template.yaml", "--step", "Report", "--run-dependencies", *self.parameters())
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)

@@ -76,7 +76,7 @@ class Reports(unittest.TestCase):
             said[words] = done.stdout.splitlines()
         self.assertEqual(said[("-q",)], [])
         self.assertEqual(
-            said[()], ["0 of 3 frames are finished", "not finished: 1-3; submitting again denoises these alone"]
+            said[()], ["0 of 3 frames are finished", "not finished: 1-3; submitting again denoises what is missing"]
         )
         self.assertEqual(said[("-v",)][:3], [*said[()], "finished: none"])
         self.assertRegex(said[("-v",)][3], "checked by: .*polyrecon denoise -i ")

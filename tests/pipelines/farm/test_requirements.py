@@ -201,7 +201,7 @@ class Commands(unittest.TestCase):
             done = self.farm("report", *words, "--frames", "1-2", "--polyrecon", POLYRECON)
             self.assertEqual(done.returncode, 4)
             self.assertIn(
-                "1 of 2 frames are finished\nnot finished: 2; submitting again denoises these alone\n", done.stdout
+                "1 of 2 frames are finished\nnot finished: 2; submitting again denoises what is missing\n", done.stdout
             )
             # With other settings frame 1 is not finished.
             done = self.farm("report", *words, "--frames", "1", "--polyrecon", POLYRECON, "--", "--quality", "best")

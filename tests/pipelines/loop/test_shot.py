@@ -151,7 +151,9 @@ class Passes(Folder):
     def test_a_finished_shot_is_left_alone_and_a_part_of_one_refused(self):
         budget = Budget(samples=8)
         words = (None, False, SyntheticShot(), Polyrecon(), Progress("none"), lambda notes: None)
-        command.whole_shot(settings_of(self.folder, budget), *words)
+        settings = settings_of(self.folder, budget)
+        command.whole_shot(settings, *words)
+        self.assertEqual(command.end_of_passes(settings), [])
         self.assertEqual(sorted(path.name for path in self.folder.iterdir()), ["1.exr", "2.exr", "3.exr"])
         again = settings_of(self.folder, budget, resume=True)
         self.assertTrue(command.is_finished(again, overwrite=False))
