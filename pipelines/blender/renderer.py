@@ -27,6 +27,7 @@ PART_LAYERS = {
     "AO",
 }
 VECTORS = "Vector"  # The layer of the motion vectors, which the first part alone has
+CRYPTOMATTE = "cryptomatte/"  # Beginning of the attributes by which compositors find a Cryptomatte and its names
 RENDER_TIME = "Render Time"  # Cycles' pass: milliseconds of a thread for all samples of a pixel
 OVERHEAD_SECONDS = 0.045  # fixed seconds of a pass, until they are measured
 
@@ -197,7 +198,7 @@ class BlenderRenderer(Renderer):
         channels, _ = self._render_once(first=0, samples=self.opened["samples"], user_passes=True)
         self.inputs.check()
         own = {name: values for name, values in channels.items() if not _is_time(name) and not self._serves_loop(name)}
-        exr.write(merged, {**exr.read(merged), **own}, {**exr.metadata(merged), **self.attributes})
+        exr.write(merged, {**exr.read(merged), **own}, self.attributes)
 
     def _serves_loop(self, name):
         return _layer_of(name) in {*PART_LAYERS, VECTORS, "Debug Sample Count"}
@@ -270,7 +271,7 @@ class BlenderRenderer(Renderer):
             self._open()
         raw, seconds = self.session.render(**job)
         channels = exr.read(raw)
-        self.attributes.update(_of_passes(exr.metadata(raw)))
+        self.attributes.update(exr.metadata(raw, CRYPTOMATTE))
         raw.unlink()
         return channels, seconds
 
@@ -297,11 +298,6 @@ def _sequences_of(first, samples, length):
         following = min(end, (first // length + 1) * length)
         yield first, following - first
         first = following
-
-
-def _of_passes(attributes):
-    """Those that describe passes: compositors find Cryptomatte, and its names, by them alone."""
-    return {name: value for name, value in attributes.items() if name.startswith("cryptomatte/")}
 
 
 def _is_time(name):

@@ -43,10 +43,11 @@ def names(path):
     return found
 
 
-def metadata(path):
-    """The attributes of the first part that are texts or numbers: {name: value}."""
+def metadata(path, prefix=""):
+    """The attributes of the first part whose names begin so, and that are texts or numbers: {name: value}."""
     with opened(path) as file:
-        attributes = {attribute.name: attribute.value for attribute in file.spec().extra_attribs}
+        found = [attribute for attribute in file.spec().extra_attribs if attribute.name.startswith(prefix)]
+        attributes = {attribute.name: attribute.value for attribute in found}
     return {name: value for name, value in attributes.items() if isinstance(value, (str, int, float))}
 
 
