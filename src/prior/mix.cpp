@@ -65,10 +65,10 @@ Image term_weights(const Image& y, const Image& p, double epsilon, const Image& 
 }
 
 /// Channels of the terms of w and of the fair w' (mix.h): sums of these are Gaussian means.
-enum Term : std::uint8_t { numerator, denominator, fair_numerator, fair_denominator, fair_square, term_count };
+enum Term : std::uint8_t { Numerator, Denominator, FairNumerator, FairDenominator, FairSquare, TermCount };
 
 /// Means of the terms, one for each.
-using TermMeans = std::array<double, term_count>;
+using TermMeans = std::array<double, TermCount>;
 
 /// Adds the terms of one half, before they are averaged. y: the samples of the other half; own: those of this one.
 void add_terms(const Image& y, const Image& own, const Image& p, const Image& d, double epsilon, const Image& sampled,
@@ -84,23 +84,23 @@ void add_terms(const Image& y, const Image& own, const Image& p, const Image& d,
         // Where the prior is bright, squares are relative to it.
         const double relative = (ours * ours + epsilon) / (prior * prior + ours * ours + epsilon);
         const double fairly = step * relative * static_cast<double>(fair_s.at(x, row, c));
-        terms.at(x, row, numerator) += storable(error * weighted);
-        terms.at(x, row, denominator) += storable(step * weighted);
-        terms.at(x, row, fair_denominator) += storable(step * fairly);
+        terms.at(x, row, Numerator) += storable(error * weighted);
+        terms.at(x, row, Denominator) += storable(step * weighted);
+        terms.at(x, row, FairDenominator) += storable(step * fairly);
         fair += error * fairly;
       }
-      terms.at(x, row, fair_numerator) += storable(fair);
-      terms.at(x, row, fair_square) += storable(fair * fair);
+      terms.at(x, row, FairNumerator) += storable(fair);
+      terms.at(x, row, FairSquare) += storable(fair * fair);
     }
   });
 }
 
 /// w, drawn towards w' as far as w' contradicts it. pixels: how many independent ones the means are of.
 double corrected_share(double w, const TermMeans& means, double pixels) {
-  if (!(means[fair_denominator] > 0)) return w;
-  const double fair = means[fair_numerator] / means[fair_denominator];
-  const double variance = std::max(0.0, means[fair_square] - means[fair_numerator] * means[fair_numerator]) / pixels;
-  const double contradiction = std::abs(fair - w) - std::sqrt(variance) / means[fair_denominator];
+  if (!(means[FairDenominator] > 0)) return w;
+  const double fair = means[FairNumerator] / means[FairDenominator];
+  const double variance = std::max(0.0, means[FairSquare] - means[FairNumerator] * means[FairNumerator]) / pixels;
+  const double contradiction = std::abs(fair - w) - std::sqrt(variance) / means[FairDenominator];
   return contradiction > 0 ? w + std::copysign(contradiction, fair - w) : w;
 }
 
@@ -124,16 +124,16 @@ double corner_at(const Image& image, int x, int y, int c) {
 }  // namespace
 
 Image reconstruction_share(const HalfPair& pair, const ValidationHalves& halves) {
-  Image terms(pair.width(), pair.height(), term_count);
+  Image terms(pair.width(), pair.height(), TermCount);
   for (std::size_t h = 0; h < 2; ++h)
     add_terms(pair.color[1 - h], pair.color[h], halves.prior[h], halves.ours[h], pair.epsilon, pair.sampled, terms);
   const auto pixels = static_cast<double>(terms.pixels());
   TermMeans means{};
-  for (std::size_t t = 0; t < term_count; ++t) means[t] = sum_of(terms, static_cast<int>(t)) / pixels;
+  for (std::size_t t = 0; t < TermCount; ++t) means[t] = sum_of(terms, static_cast<int>(t)) / pixels;
   Image share(pair.width(), pair.height(), 1, Real(1));
-  const double weight = means[denominator];
+  const double weight = means[Denominator];
   if (!(weight > 0)) return share;  // both pictures are the same
-  const double everywhere = std::clamp(corrected_share(means[numerator] / weight, means, pixels), 0.0, 1.0);
+  const double everywhere = std::clamp(corrected_share(means[Numerator] / weight, means, pixels), 0.0, 1.0);
   share = Image(pair.width(), pair.height(), 1);
   for (const double sigma : share_sigmas) {
     const Image around = gaussian_blur(terms, sigma, pair.sampled);
@@ -141,9 +141,8 @@ Image reconstruction_share(const HalfPair& pair, const ValidationHalves& halves)
     for_rows(share.height(), [&](int y) {
       for (int x = 0; x < share.width(); ++x) {
         TermMeans here{};
-        for (std::size_t t = 0; t < term_count; ++t)
-          here[t] = static_cast<double>(around.at(x, y, static_cast<int>(t)));
-        const double w = (here[numerator] + weight * everywhere) / (here[denominator] + weight);
+        for (std::size_t t = 0; t < TermCount; ++t) here[t] = static_cast<double>(around.at(x, y, static_cast<int>(t)));
+        const double w = (here[Numerator] + weight * everywhere) / (here[Denominator] + weight);
         share.at(x, y, 0) += static_cast<Real>(corrected_share(w, here, independent) / share_sigmas.size());
       }
     });
