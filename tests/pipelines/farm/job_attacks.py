@@ -25,7 +25,7 @@ if __name__ == "__main__":
 from pipelines.farm import report, task
 from pipelines.farm.job import JOB_FILE, RECORDS, Job
 from tests.pipelines.farm.shot import make_shot
-from tests.pipelines.loop.journal_attacks import REFUSALS, edited
+from tests.pipelines.loop.journal_attacks import REFUSALS, damage_json, edited
 
 POLYRECON = os.path.abspath(os.environ["POLYRECON"])
 SECONDS = 120  # after which a command counts as hanging
@@ -60,19 +60,6 @@ def with_texts(document, rng):
     owner = rng.choice([document, *(value for value in document.values() if value and isinstance(value, (list, dict)))])
     owner[rng.choice(list(owner) if isinstance(owner, dict) else range(len(owner)))] = rng.choice(TEXTS)
     return document
-
-
-def damage_json(path, rng):
-    content = path.read_bytes()
-    kind = rng.randrange(10)
-    if kind == 0:
-        path.write_bytes(content[: rng.randrange(len(content))])
-    elif kind == 1:
-        at = rng.randrange(len(content))
-        path.write_bytes(content[:at] + rng.randbytes(rng.randrange(1, 9)) + content[at + 1 :])
-    else:
-        change = edited if kind < 6 else with_texts
-        path.write_text(json.dumps(change(json.loads(content), rng)))
 
 
 def damage_entry(path, rng):
@@ -136,7 +123,7 @@ def attack(whole, folder, rng):
     records = sorted((job / RECORDS).iterdir())
     target = rng.choice((job / JOB_FILE, job / JOB_FILE, *records))
     if rng.random() < 0.75:
-        damage_json(target, rng)
+        damage_json(target, rng, edited if rng.random() < 0.5 else with_texts)
     else:
         target = rng.choice((job / JOB_FILE, *records, job / RECORDS, job / "report.json", folder / "shot.0002.exr"))
         damage_entry(target, rng)

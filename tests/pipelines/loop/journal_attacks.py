@@ -85,16 +85,20 @@ def edited(document, rng):
 
 
 def damage_journal(passes, rng):
-    journal = passes / "journal.json"
-    content = journal.read_bytes()
+    damage_json(passes / "journal.json", rng, edited)
+
+
+def damage_json(path, rng, change):
+    """Cuts a JSON file, writes wrong bytes into it, or, mostly, changes what it says by change(document, rng)."""
+    content = path.read_bytes()
     kind = rng.randrange(10)
     if kind == 0:
-        journal.write_bytes(content[: rng.randrange(len(content))])
+        path.write_bytes(content[: rng.randrange(len(content))])
     elif kind == 1:
         at = rng.randrange(len(content))
-        journal.write_bytes(content[:at] + rng.randbytes(rng.randrange(1, 9)) + content[at + 1 :])
+        path.write_bytes(content[:at] + rng.randbytes(rng.randrange(1, 9)) + content[at + 1 :])
     else:
-        journal.write_text(json.dumps(edited(json.loads(content), rng)))
+        path.write_text(json.dumps(change(json.loads(content), rng)))
 
 
 def damage_file(passes, rng):
